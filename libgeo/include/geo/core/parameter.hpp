@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace geo {
+
+using ParameterValue = std::variant<double, std::int64_t, bool, std::string>;
+
+/// One declaration of one parameter. It lives beside the struct member that holds the value and
+/// serves the configuration file, `--set`, `terrane params`, docs, file attributes and calibration.
+struct Parameter {
+  std::string_view name;   ///< "section.key"; the key ends in the unit where it has one
+  std::string_view units;  ///< UDUNITS, "1" for pure numbers, "" for flags and choices
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  std::string_view doc;
+  std::string_view source;                ///< key in docs/references.bib, or "design"
+  std::vector<std::string_view> choices;  ///< allowed words of a string parameter; empty: any
+  std::variant<double*, std::int64_t*, bool*, std::string*> storage;
+  ParameterValue default_value;
+
+  [[nodiscard]] ParameterValue value() const;
+  /// Checks type and range (NaN-safe) and stores. An integer is accepted where a real number is
+  /// asked for. Throws ConfigurationError whose text names the key, the value and what is allowed.
+  void set(const ParameterValue& value) const;
+  /// The same from text, as `--set key=text` gives it.
+  void set_text(std::string_view text) const;
+  /// "real", "integer", "boolean" or "string".
+  [[nodiscard]] std::string_view type_name() const;
+  /// "[0, 1]", "{d8, mfd}" or "any".
+  [[nodiscard]] std::string range_text() const;
+};
+
+/// Declarations; the member's present value becomes the default.
+Parameter real(std::string_view name, double& member, std::string_view units, double min,
+               double max, std::string_view doc, std::string_view source);
+Parameter integer(std::string_view name, std::int64_t& member, std::string_view units,
+                  std::int64_t min, std::int64_t max, std::string_view doc,
+                  std::string_view source);
+Parameter flag(std::string_view name, bool& member, std::string_view doc, std::string_view source);
+Parameter choice(std::string_view name, std::string& member, std::vector<std::string_view> choices,
+                 std::string_view doc, std::string_view source);
+Parameter text(std::string_view name, std::string& member, std::string_view doc,
+               std::string_view source);
+
+/// A value as TOML writes it; real numbers keep every bit.
+std::string to_toml(const ParameterValue& value);
+
+/// The parameter of that name, or nullptr.
+const Parameter* find_parameter(std::span<const Parameter> parameters, std::string_view name);
+/// The candidate nearest to a misspelt word (Damerau-Levenshtein), or empty if none is near.
+std::string nearest_word(std::string_view word, std::span<const std::string_view> candidates);
+
+}  // namespace geo

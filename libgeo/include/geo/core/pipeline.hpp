@@ -1,0 +1,42 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "geo/core/stage.hpp"
+
+namespace geo {
+
+/// An ordered list of stages over one state.
+class Pipeline {
+ public:
+  explicit Pipeline(std::vector<std::unique_ptr<Stage>> stages) : stages_(std::move(stages)) {}
+
+  [[nodiscard]] std::span<const std::unique_ptr<Stage>> stages() const noexcept { return stages_; }
+  /// Position of a stage, or -1.
+  [[nodiscard]] int find(std::string_view name) const;
+  /// All stages' declarations, in order.
+  [[nodiscard]] std::vector<Parameter> parameters() const;
+
+  /// Checks, before a cell is computed, that stages first..last (positions, inclusive) find every
+  /// field they read in `initial` or in an earlier stage of that span. Throws ConfigurationError
+  /// that names the field, who wants it and who would write it.
+  void check(std::span<const FieldSpec* const> initial, int first, int last) const;
+
+  /// Who watches a run: called before and after each stage (with the budgets it reported).
+  struct Observer {
+    std::function<void(int position)> before;
+    std::function<void(int position, const State&, const Context&)> after;
+  };
+  /// Runs first..last. After each stage, fields that no later stage in the span reads leave the
+  /// state. Checks that a stage wrote what it declared (Bug otherwise).
+  void run(State& state, Context& context, int first, int last, const Observer& observer) const;
+
+ private:
+  std::vector<std::unique_ptr<Stage>> stages_;
+};
+
+}  // namespace geo

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "geo/core/field.hpp"
+#include "geo/core/parameter.hpp"
+#include "geo/core/planet.hpp"
+#include "geo/core/state.hpp"
+
+namespace geo {
+
+/// What a stage is, and which fields pass through it.
+struct StageInfo {
+  std::string_view name;
+  std::string_view doc;
+  std::vector<const FieldSpec*> reads;     ///< must be there before it runs
+  std::vector<const FieldSpec*> optional;  ///< used when there
+  std::vector<const FieldSpec*> writes;    ///< there afterwards, and in the stage's file
+};
+
+/// Named sums that must close: rock, water. Written to the manifest.
+using Budget = std::map<std::string, double>;
+
+/// What a run gives a stage besides fields: the planet, the seed, and ways to be heard.
+struct Context {
+  Planet planet;
+  std::uint64_t seed = 1;
+  /// Called with the fraction of the stage that is done; may be empty.
+  std::function<void(double fraction)> on_progress;
+  /// Set by a signal handler; stages look at it between steps.
+  const std::atomic<bool>* stop = nullptr;
+  /// Budgets of the stage that runs now.
+  Budget budget;
+  /// Facts worth a warning to the user, one line each.
+  std::vector<std::string> warnings;
+
+  /// Reports progress and throws Interrupted if a signal came.
+  void advance(double fraction) const;
+};
+
+/// A stage's only door to the state. Reading or writing what the stage did not declare throws Bug.
+class StageIo {
+ public:
+  StageIo(State& state, const StageInfo& info) : state_(state), info_(info) {}
+
+  [[nodiscard]] const Grid& grid() const noexcept { return state_.grid(); }
+
+  template <class T>
+  [[nodiscard]] std::span<const T> read(const Field<T>& spec) const {
+    check_readable(spec);
+    return state_.read(spec);
+  }
+  /// Empty when the field is absent.
+  template <class T>
+  [[nodiscard]] std::span<const T> read_optional(const Field<T>& spec) const {
+    check_readable(spec);
+    return state_.has(spec) ? state_.read(spec) : std::span<const T>{};
+  }
+  /// An output: holds zeros, or the field's present values when the stage also reads it.
+  template <class T>
+  [[nodiscard]] std::span<T> write(const Field<T>& spec) {
+    check_writable(spec);
+    return state_.update(spec);
+  }
+
+ private:
+  void check_readable(const FieldSpec& spec) const;
+  void check_writable(const FieldSpec& spec) const;
+  State& state_;
+  const StageInfo& info_;
+};
+
+/// One step of the pipeline: turns a state into a richer one.
+class Stage {
+ public:
+  virtual ~Stage() = default;
+  [[nodiscard]] virtual const StageInfo& info() const = 0;
+  /// Declarations bound to this stage's own parameter struct; section = stage name.
+  [[nodiscard]] virtual std::vector<Parameter> parameters() = 0;
+  /// Computes. Every declared output is written or an Error thrown.
+  virtual void run(StageIo& io, Context& context) const = 0;
+};
+
+}  // namespace geo

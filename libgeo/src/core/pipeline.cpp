@@ -1,0 +1,98 @@
+#include "geo/core/pipeline.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+namespace geo {
+namespace {
+
+bool lists(const std::vector<const FieldSpec*>& specs, const FieldSpec& spec) {
+  return std::any_of(specs.begin(), specs.end(),
+                     [&](const FieldSpec* listed) { return listed->name == spec.name; });
+}
+
+}  // namespace
+
+void Context::advance(double fraction) const {
+  if (stop != nullptr && stop->load(std::memory_order_relaxed)) throw Interrupted();
+  if (on_progress) on_progress(fraction);
+}
+
+void StageIo::check_readable(const FieldSpec& spec) const {
+  if (lists(info_.reads, spec) || lists(info_.optional, spec) || lists(info_.writes, spec)) return;
+  throw Bug(fmt::format("stage {} reads {} without declaring it", info_.name, spec.name));
+}
+
+void StageIo::check_writable(const FieldSpec& spec) const {
+  if (lists(info_.writes, spec)) return;
+  throw Bug(fmt::format("stage {} writes {} without declaring it", info_.name, spec.name));
+}
+
+int Pipeline::find(std::string_view name) const {
+  for (std::size_t at = 0; at < stages_.size(); ++at) {
+    if (stages_[at]->info().name == name) return static_cast<int>(at);
+  }
+  return -1;
+}
+
+std::vector<Parameter> Pipeline::parameters() const {
+  std::vector<Parameter> all;
+  for (const auto& stage : stages_) {
+    auto own = stage->parameters();
+    all.insert(all.end(), own.begin(), own.end());
+  }
+  return all;
+}
+
+void Pipeline::check(std::span<const FieldSpec* const> initial, int first, int last) const {
+  std::set<std::string_view> there;
+  for (const FieldSpec* spec : initial) there.insert(spec->name);
+  for (int at = first; at <= last; ++at) {
+    const StageInfo& info = stages_[at]->info();
+    for (const FieldSpec* wanted : info.reads) {
+      if (there.contains(wanted->name)) continue;
+      std::string writers;
+      for (const auto& stage : stages_) {
+        if (!lists(stage->info().writes, *wanted) || stage->info().name == info.name) continue;
+        writers += fmt::format("{}{}", writers.empty() ? "" : " or ", stage->info().name);
+      }
+      throw ConfigurationError(fmt::format("stage {} needs the field {}, which {}", info.name,
+                                           wanted->name,
+                                           writers.empty() ? "no stage writes: give it with --dem"
+                                                           : "stage " + writers + " writes"));
+    }
+    for (const FieldSpec* written : info.writes) there.insert(written->name);
+  }
+}
+
+void Pipeline::run(State& state, Context& context, int first, int last,
+                   const Observer& observer) const {
+  check(state.present(), first, last);
+  for (int at = first; at <= last; ++at) {
+    const StageInfo& info = stages_[at]->info();
+    if (observer.before) observer.before(at);
+    context.budget.clear();
+    context.advance(0.0);
+    StageIo io(state, info);
+    stages_[at]->run(io, context);
+    for (const FieldSpec* spec : info.writes) {
+      if (!state.has(*spec)) {
+        throw Bug(fmt::format("stage {} did not write {}", info.name, spec->name));
+      }
+    }
+    context.advance(1.0);
+    if (observer.after) observer.after(at, state, context);
+    for (const FieldSpec* spec : state.present()) {
+      bool needed = false;
+      for (int later = at + 1; later <= last && !needed; ++later) {
+        needed = lists(stages_[later]->info().reads, *spec) ||
+                 lists(stages_[later]->info().optional, *spec);
+      }
+      if (!needed) state.erase(*spec);
+    }
+  }
+}
+
+}  // namespace geo

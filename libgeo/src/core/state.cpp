@@ -1,0 +1,30 @@
+#include "geo/core/state.hpp"
+
+namespace geo {
+
+void State::set(const FieldSpec& spec, Values values) {
+  const auto size = std::visit([](const auto& array) { return array.size(); }, values);
+  if (size != static_cast<std::size_t>(grid_->size())) {
+    throw Bug("field " + std::string(spec.name) + ": array does not fit the grid");
+  }
+  if (values.index() != static_cast<std::size_t>(spec.type)) {
+    throw Bug("field " + std::string(spec.name) + ": array of another type");
+  }
+  fields_[spec.name] = {&spec, std::make_shared<Values>(std::move(values))};
+}
+
+std::shared_ptr<const Values> State::values(const FieldSpec& spec) const {
+  const auto at = fields_.find(spec.name);
+  if (at == fields_.end()) throw Bug("field " + std::string(spec.name) + " is not there");
+  return at->second.values;
+}
+
+std::vector<const FieldSpec*> State::present() const {
+  std::vector<const FieldSpec*> specs;
+  for (const FieldSpec* spec : field::all()) {
+    if (has(*spec)) specs.push_back(spec);
+  }
+  return specs;
+}
+
+}  // namespace geo
