@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "geo/core/state.hpp"
+
+namespace geo::io {
+
+/// Where the values of a file come from: global attributes of every file of a run.
+struct Provenance {
+  std::string title;        ///< "terrane: climate"
+  std::string config_toml;  ///< the resolved configuration
+  std::uint64_t seed = 1;
+  std::string version;  ///< "0.1.0"
+  std::string history;  ///< one line: time stamp (SOURCE_DATE_EPOCH respected) and command
+  std::string references;
+};
+
+/// Fields of one stage, held together with their grid while a writer streams them to disk.
+struct Snapshot {
+  std::string stage;
+  std::shared_ptr<const Grid> grid;
+  std::vector<std::pair<const FieldSpec*, std::shared_ptr<const Values>>> fields;
+};
+
+/// Writes a snapshot as NetCDF-4 with CF-1.10 metadata: temporary name, flush, rename. Deflate 1,
+/// shuffle, chunked. Throws IoError (which names the path and the reason).
+void write_netcdf(const std::filesystem::path& path, const Snapshot& snapshot,
+                  const Provenance& provenance);
+/// Writes a snapshot as VTK XML ImageData: cell data, appended raw. Temporary name, flush, rename.
+void write_vti(const std::filesystem::path& path, const Snapshot& snapshot,
+               const Provenance& provenance);
+/// A ParaView collection that lists files with a time step each, in order.
+void write_pvd(const std::filesystem::path& path, const std::vector<std::filesystem::path>& files);
+
+/// Reads back the grid and the vocabulary fields of a stage file, bit for bit. InputError when it
+/// is not one (names path and what is missing), IoError when it cannot be read.
+Snapshot read_netcdf(const std::filesystem::path& path);
+/// Provenance of a stage file.
+Provenance read_provenance(const std::filesystem::path& path);
+
+}  // namespace geo::io
