@@ -15,15 +15,15 @@ namespace {
 constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 
 void check_size(int nx, int ny) {
-  // One row or column has no neighbours to speak of, and Index holds 2^31 - 1 cells.
-  constexpr std::int64_t kMostCells = 1'000'000'000;
+  // One row or column has no neighbours to speak of; 29 bits leave room for a direction in 32.
+  constexpr std::int64_t kMostCells = std::int64_t{1} << 29;
   if (nx < 4 || ny < 3) {
     throw ConfigurationError("grid of " + std::to_string(nx) + " x " + std::to_string(ny) +
                              " cells is too small: at least 4 x 3");
   }
   if (std::int64_t{nx} * ny > kMostCells) {
     throw ConfigurationError("grid of " + std::to_string(nx) + " x " + std::to_string(ny) +
-                             " cells is too large: at most 1000000000 cells");
+                             " cells is too large: at most 536870912 cells");
   }
 }
 

@@ -42,23 +42,23 @@ DepressionHierarchy build_depression_hierarchy(const Grid& grid, std::span<const
                                                std::span<const std::uint8_t> outlets,
                                                std::span<const Index> receiver);
 
-/// Turns the flow of each pit over its sill, so that every cell reaches an outlet: the path from
-/// sill to pit is reversed (Cordonnier et al. 2019, "carving"). Receivers stay neighbours, and no
-/// step climbs the filled surface. Pits whose number is in `keep` stay roots (endorheic).
-/// `receiver` must be the one that the graph was built from.
+/// Water routed to outlets over the spill points of all depressions.
 struct Routing {
   FlowGraph graph;
   std::vector<float> filled_m;  ///< elevation, raised to the spill level in depressions
 };
 
-/// The whole of it in one call, and faster: receivers, passes, reversal, order. Filled elevations
-/// only if asked for.
+/// Steepest descent, and out of each pit over its lowest pass, so that every cell reaches an
+/// outlet: the path from pass to pit is reversed (Cordonnier et al. 2019, "carving"). Receivers
+/// stay neighbours, and no step climbs the filled surface. Filled elevations only if asked for.
+/// Cost: linear, but for a radix sort of the passes.
 Routing route_water(const Grid& grid, std::span<const float> elevation_m,
                     std::span<const std::uint8_t> outlets, bool want_filled = false);
 
-/// Reverses the paths of all pits of the hierarchy but those flagged in `keep_leaf` (one byte per
-/// leaf; empty: none) along the spill directions of the hierarchy.
-void connect_depressions(const Grid& grid, const DepressionHierarchy& hierarchy,
+/// The same reversal with some pits kept as roots (endorheic): those flagged in `keep_leaf`, one
+/// byte per leaf; empty: none. Every other leaf spills towards the root, sea or kept pit, that it
+/// reaches over the lowest water level. `receiver` must be the one the hierarchy was built from.
+void connect_depressions(const DepressionHierarchy& hierarchy,
                          std::span<const std::uint8_t> keep_leaf, std::span<Index> receiver);
 
 /// Raises every cell to the level at which its water can reach an outlet (Barnes et al. 2014).
