@@ -73,13 +73,14 @@ double implicit_drop(double s0, double factor, double n) {
   // For n < 1 the function is concave: from below Newton's steps overshoot at most once, and the
   // bracket catches them. For n >= 1 it is convex and the way from s0 is monotone.
   double low = 0.0, high = s0, s = s0;
-  for (int iteration = 0; iteration < 100; ++iteration) {
+  for (int iteration = 0; iteration < 200; ++iteration) {
     const double power_n = factor * std::pow(s, n);
     const double residual = s + power_n - s0;
     (residual > 0.0 ? high : low) = s;
     double next = s - residual / (1.0 + n * power_n / s);
+    if (std::abs(next - s) <= 1e-15 * s) return s;
     if (!(next > low && next < high)) next = 0.5 * (low + high);
-    if (std::abs(next - s) <= 1e-15 * s0 || residual == 0.0) return next;
+    if (next == s) return s;
     s = next;
   }
   return s;
