@@ -29,7 +29,7 @@ class Noise {
   /// standard deviation 0.40.
   [[nodiscard]] float value(float x, float y, float z) const;
   /// Fractional Brownian motion: sum of `octaves` of gradient noise, frequency doubled and
-  /// amplitude times `gain` each (gain = 2^-H), divided by the sum of amplitudes. Within [-1, 1]
+  /// amplitude times `gain` each (gain = 2^-H), divided by the sum of amplitudes. About [-1, 1]
   /// and of zero mean for any `octaves` >= 0; no octaves give 0.
   [[nodiscard]] float fbm(const std::array<double, 3>& position, double frequency, int octaves,
                           double gain = 0.5) const;
