@@ -1,0 +1,245 @@
+#include "geo/io/config.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <optional>
+#include <sstream>
+
+#include <toml++/toml.h>
+
+#include "geo/core/error.hpp"
+
+namespace geo::io {
+namespace {
+
+std::string_view section_of(std::string_view name) { return name.substr(0, name.find('.')); }
+
+std::vector<std::string_view> names_of(std::span<const Parameter> parameters) {
+  std::vector<std::string_view> names;
+  for (const Parameter& parameter : parameters) names.push_back(parameter.name);
+  return names;
+}
+
+std::vector<std::string_view> sections_of(std::span<const Parameter> parameters) {
+  std::vector<std::string_view> sections;
+  for (const Parameter& parameter : parameters) {
+    const auto section = section_of(parameter.name);
+    if (std::find(sections.begin(), sections.end(), section) == sections.end()) {
+      sections.push_back(section);
+    }
+  }
+  return sections;
+}
+
+std::string one_line(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  std::replace(text.begin(), text.end(), '\r', ' ');
+  return text;
+}
+
+toml::table parse(std::string_view text, const std::string& source_name) {
+  try {
+    return toml::parse(text, source_name);
+  } catch (const toml::parse_error& error) {
+    throw ConfigurationError(fmt::format("{}:{}: {}", source_name, error.source().begin.line,
+                                         one_line(std::string(error.description()))));
+  }
+}
+
+/// The value of a node, or nothing where it is no plain value (array, table, date).
+std::optional<ParameterValue> plain_value(const toml::node& node) {
+  if (const auto* whole = node.as_integer()) return ParameterValue(whole->get());
+  if (const auto* number = node.as_floating_point()) return ParameterValue(number->get());
+  if (const auto* truth = node.as_boolean()) return ParameterValue(truth->get());
+  if (const auto* words = node.as_string()) return ParameterValue(words->get());
+  return std::nullopt;
+}
+
+std::string_view kind_of(const toml::node& node) {
+  if (node.is_array()) return "an array";
+  if (node.is_table()) return "a table";
+  return "a date or time";
+}
+
+[[noreturn]] void refuse_unknown(const std::string& where, std::string_view name,
+                                 std::span<const Parameter> parameters) {
+  const auto section = section_of(name);
+  const auto sections = sections_of(parameters);
+  if (std::find(sections.begin(), sections.end(), section) == sections.end()) {
+    throw ConfigurationError(
+        fmt::format("{}unknown section [{}]{}", where, section, suggestion(section, sections)));
+  }
+  std::vector<std::string_view> siblings;
+  for (const auto candidate : names_of(parameters)) {
+    if (section_of(candidate) == section) siblings.push_back(candidate);
+  }
+  auto hint = suggestion(name, siblings);
+  if (hint.empty()) hint = fmt::format("; terrane params {} lists what there is", section);
+  throw ConfigurationError(fmt::format("{}unknown key {}{}", where, name, hint));
+}
+
+void apply_node(const toml::node& node, const std::string& name, const std::string& where,
+                std::span<const Parameter> parameters) {
+  const Parameter* parameter = find_parameter(parameters, name);
+  if (parameter == nullptr) refuse_unknown(where, name, parameters);
+  const auto value = plain_value(node);
+  if (!value) {
+    throw ConfigurationError(fmt::format("{}{}: is {}, must be a plain {} value", where, name,
+                                         kind_of(node), parameter->type_name()));
+  }
+  try {
+    parameter->set(*value);
+  } catch (const ConfigurationError& error) {
+    throw ConfigurationError(where + error.what());
+  }
+}
+
+/// Top-level keys in the order of the text, not of the alphabet.
+template <class Visit>
+void visit_in_text_order(const toml::table& table, Visit visit) {
+  std::vector<std::pair<const toml::key*, const toml::node*>> entries;
+  for (const auto& [key, node] : table) entries.emplace_back(&key, &node);
+  std::stable_sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) {
+    return a.first->source().begin < b.first->source().begin;
+  });
+  for (const auto& [key, node] : entries) visit(*key, *node);
+}
+
+}  // namespace
+
+std::string suggestion(std::string_view word, std::span<const std::string_view> candidates,
+                       std::string_view separator) {
+  const std::string near = nearest_word(word, candidates);
+  return near.empty() ? std::string() : fmt::format("{}did you mean {}?", separator, near);
+}
+
+std::vector<std::string> apply_toml(std::string_view text, const std::string& source_name,
+                                    std::span<const Parameter> parameters) {
+  const toml::table root = parse(text, source_name);
+  std::vector<std::string> applied;
+  const auto where_of = [&](const toml::key& key) {
+    return fmt::format("{}:{}: ", source_name, key.source().begin.line);
+  };
+  visit_in_text_order(root, [&](const toml::key& section, const toml::node& node) {
+    const auto* table = node.as_table();
+    if (table == nullptr) {
+      const auto names = names_of(parameters);
+      const auto home = std::find_if(names.begin(), names.end(), [&](std::string_view name) {
+        return name.substr(name.find('.') + 1) == section.str();
+      });
+      throw ConfigurationError(fmt::format(
+          "{}key {} must stand in a section{}", where_of(section), section.str(),
+          home == names.end() ? "" : fmt::format("; did you mean [{}]?", section_of(*home))));
+    }
+    if (const auto sections = sections_of(parameters);
+        std::find(sections.begin(), sections.end(), section.str()) == sections.end()) {
+      refuse_unknown(where_of(section), section.str(), parameters);
+    }
+    visit_in_text_order(*table, [&](const toml::key& key, const toml::node& value) {
+      const std::string name = fmt::format("{}.{}", section.str(), key.str());
+      apply_node(value, name, where_of(key), parameters);
+      applied.push_back(name);
+    });
+  });
+  return applied;
+}
+
+std::string read_text(const std::filesystem::path& path) {
+  if (std::filesystem::is_directory(path)) {
+    throw IoError(fmt::format("{}: is a folder, must be a file", path.string()));
+  }
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw IoError(fmt::format("{}: {}", path.string(), std::strerror(errno)));
+  std::ostringstream text;
+  text << file.rdbuf();
+  if (file.bad())
+    throw IoError(fmt::format("{}: could not read: {}", path.string(), std::strerror(errno)));
+  return text.str();
+}
+
+std::vector<std::string> apply_config_file(const std::filesystem::path& path,
+                                           std::span<const Parameter> parameters) {
+  return apply_toml(read_text(path), path.string(), parameters);
+}
+
+std::string apply_assignment(std::string_view assignment, std::span<const Parameter> parameters) {
+  const auto equals = assignment.find('=');
+  if (equals == std::string_view::npos || equals == 0) {
+    throw ConfigurationError(
+        fmt::format("--set {}: must be section.key=value", one_line(std::string(assignment))));
+  }
+  const auto trimmed = [](std::string_view text) {
+    const auto first = text.find_first_not_of(" \t");
+    if (first == std::string_view::npos) return std::string_view();
+    return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+  };
+  const auto name = trimmed(assignment.substr(0, equals));
+  const Parameter* parameter = find_parameter(parameters, name);
+  if (parameter == nullptr) refuse_unknown("--set: ", name, parameters);
+  try {
+    parameter->set_text(trimmed(assignment.substr(equals + 1)));
+  } catch (const ConfigurationError& error) {
+    throw ConfigurationError(fmt::format("--set: {}", error.what()));
+  }
+  return std::string(name);
+}
+
+std::string write_config(std::span<const Parameter> parameters, std::string_view heading) {
+  std::string text = fmt::format("# {}\n", heading);
+  for (const auto section : sections_of(parameters)) {
+    text += fmt::format("\n[{}]\n", section);
+    for (const Parameter& parameter : parameters) {
+      if (section_of(parameter.name) != section) continue;
+      const bool has_unit = !parameter.units.empty() && parameter.units != "1";
+      text += fmt::format(
+          "# {}; {}{}{}\n{} = {}\n", parameter.doc, parameter.type_name(),
+          has_unit ? fmt::format(" in {}", parameter.units) : "",
+          parameter.range_text() == "any" ? "" : fmt::format(", {}", parameter.range_text()),
+          parameter.name.substr(parameter.name.find('.') + 1), to_toml(parameter.value()));
+    }
+  }
+  return text;
+}
+
+std::string first_difference(std::string_view before, std::string_view after,
+                             std::span<const std::string> sections,
+                             std::span<const std::string_view> ignored_names) {
+  const toml::table old_root = parse(before, "config.toml");
+  const toml::table new_root = parse(after, "the present configuration");
+  std::string found;
+  const auto compare = [&](const toml::table& from, const toml::table& other, bool forward) {
+    visit_in_text_order(from, [&](const toml::key& section, const toml::node& node) {
+      if (!sections.empty() &&
+          std::find(sections.begin(), sections.end(), section.str()) == sections.end()) {
+        return;
+      }
+      if (node.as_table() == nullptr) return;
+      visit_in_text_order(*node.as_table(), [&](const toml::key& key, const toml::node& here) {
+        const std::string name = fmt::format("{}.{}", section.str(), key.str());
+        if (!found.empty() ||
+            std::find(ignored_names.begin(), ignored_names.end(), name) != ignored_names.end()) {
+          return;
+        }
+        const toml::node* there = other[section.str()][key.str()].node();
+        const auto shown = [](const toml::node* value) {
+          const auto plain = value == nullptr ? std::nullopt : plain_value(*value);
+          return plain ? to_toml(*plain) : std::string("absent");
+        };
+        const std::string one = shown(&here);
+        const std::string two = shown(there);
+        if (one != two) {
+          found = fmt::format("{} is {}, was {}", name, forward ? one : two, forward ? two : one);
+        }
+      });
+    });
+  };
+  compare(new_root, old_root, true);
+  if (found.empty()) compare(old_root, new_root, false);
+  return found;
+}
+
+}  // namespace geo::io

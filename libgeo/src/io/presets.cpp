@@ -1,0 +1,47 @@
+#include "geo/io/presets.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "geo/core/error.hpp"
+#include "geo/io/config.hpp"
+
+namespace geo::io {
+
+// Made by the build from data/presets.
+extern const std::span<const std::pair<std::string_view, std::string_view>> kEmbeddedPresets;
+
+namespace {
+
+std::string_view summary_of(std::string_view toml) {
+  const auto line = toml.substr(0, toml.find('\n'));
+  const auto first = line.find_first_not_of("# ");
+  return first == std::string_view::npos ? std::string_view() : line.substr(first);
+}
+
+}  // namespace
+
+std::span<const Preset> presets() {
+  static const std::vector<Preset> kPresets = [] {
+    std::vector<Preset> all;
+    for (const auto& [name, toml] : kEmbeddedPresets) all.push_back({name, summary_of(toml), toml});
+    std::stable_partition(all.begin(), all.end(),
+                          [](const Preset& preset) { return preset.name == "earth"; });
+    return all;
+  }();
+  return kPresets;
+}
+
+const Preset& find_preset(std::string_view name) {
+  std::vector<std::string_view> names;
+  for (const Preset& preset : presets()) {
+    if (preset.name == name) return preset;
+    names.push_back(preset.name);
+  }
+  throw ConfigurationError(fmt::format("unknown preset {}: must be one of {}{}", name,
+                                       fmt::join(names, ", "), suggestion(name, names)));
+}
+
+}  // namespace geo::io
