@@ -57,7 +57,7 @@ class Treeline {
     // Between onset and treeline: patches, the denser the higher.
     const double share =
         (elevation_m - p_.treeline_onset_m) / std::max(top_m - p_.treeline_onset_m, 1.0);
-    return 0.5 + 0.5 * noise_.fbm(grid_.unit_vector(i, j), 4 * frequency_, 2) < share;
+    return 0.5 + 1.2 * noise_.fbm(grid_.unit_vector(i, j), 4 * frequency_, 2) < share;
   }
   [[nodiscard]] double noise(int i, int j) const {
     return noise_.fbm(grid_.unit_vector(i, j), frequency_, 3);
