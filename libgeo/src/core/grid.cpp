@@ -66,6 +66,7 @@ Grid Grid::plane(int nx, int ny, double dx_m, double dy_m, Edges edges,
                  std::optional<Centre> centre, Ellipsoid figure) {
   Grid grid(Topology::plane, edges, nx, ny, figure);
   grid.set_plane_metric(dx_m, dy_m);
+  grid.centre_ = centre;
   if (centre) {
     const double degree_m = figure.radius_m * kRadiansPerDegree;
     const double parallel_m =

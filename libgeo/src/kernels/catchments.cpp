@@ -4,16 +4,10 @@
 #include <array>
 #include <atomic>
 #include <limits>
-#include <span>
-#include <utility>
 
 namespace geo::detail {
 namespace {
 
-/// Directions that visit every pair of neighbours once (twice where a step crosses the north pole).
-constexpr std::array<int, 4> kForward{kNorth, kNorthEast, kEast, kNorthWest};
-/// What they leave out: steps over the south pole.
-constexpr std::array<int, 3> kOverSouthPole{kSouth, kSouthEast, kSouthWest};
 constexpr std::int32_t kUnknown = std::numeric_limits<std::int32_t>::min();
 
 std::int32_t load(const std::int32_t& value) {
@@ -24,112 +18,119 @@ void store(std::int32_t& value, std::int32_t to) {
   std::atomic_ref<std::int32_t>(value).store(to, std::memory_order_relaxed);
 }
 
-/// Makes and reads keys. Of several passes over the same cell the steepest way down comes first.
-class Keys {
- public:
-  Keys(const Grid& grid, const float* z) : grid_(grid), z_(z) {}
+PassKey make_key(float height, Index higher, int down) {
+  return (PassKey{ordered_bits(height)} << 32) |
+         (static_cast<std::uint32_t>(higher) * 8U + static_cast<std::uint32_t>(down));
+}
+float height_of(PassKey key) { return from_ordered_bits(static_cast<std::uint32_t>(key >> 32)); }
+Index higher_cell(PassKey key) { return static_cast<Index>(static_cast<std::uint32_t>(key) / 8U); }
+int direction_down(PassKey key) { return static_cast<int>(key % 8U); }
 
-  /// The pass between a cell of row j and its neighbour `to` in direction k.
-  [[nodiscard]] PassKey make(Index cell, int j, Index to, int k) const {
-    const bool descends = z_[cell] >= z_[to];
-    const Index higher = descends ? cell : to;
-    const int down = descends ? k : grid_.back_direction(j, k);
-    return (PassKey{ordered_bits(z_[higher])} << 32) |
-           (static_cast<std::uint32_t>(higher) * 8U + static_cast<std::uint32_t>(down));
-  }
-  [[nodiscard]] std::pair<Index, Index> cells(PassKey key) const {
-    const auto edge = static_cast<std::uint32_t>(key);
-    const auto higher = static_cast<Index>(edge / 8U);
-    return {higher, grid_.neighbour(higher, static_cast<int>(edge % 8U))};
-  }
-  [[nodiscard]] static bool same_cell(PassKey a, PassKey b) { return (a >> 3) == (b >> 3); }
-  /// Total order of passes.
-  [[nodiscard]] bool before(PassKey a, PassKey b) const {
-    if (!same_cell(a, b)) return a < b;
-    const double slope_a = slope(a), slope_b = slope(b);
-    return slope_a != slope_b ? slope_a > slope_b : a < b;
-  }
-
- private:
-  [[nodiscard]] double slope(PassKey key) const {
-    const auto [higher, lower] = cells(key);
-    return (static_cast<double>(z_[higher]) - z_[lower]) /
-           grid_.distances_m(grid_.row(higher))[key % 8U];
-  }
-  const Grid& grid_;
-  const float* z_;
-};
-
-/// A small direct-mapped table from pairs of catchments to their lowest pass so far. Pairs that
-/// meet lie close together in raster order, so few are evicted twice; what is evicted goes to the
-/// list, and a pair that stands there twice does no harm.
-class PassCollector {
- public:
-  explicit PassCollector(const Keys& keys) : keys_(keys), slots_(kSlots) {}
-
-  void offer(std::int32_t a, std::int32_t b, PassKey key) {
-    const auto low = static_cast<std::uint32_t>(std::min(a, b));
-    const auto high = static_cast<std::uint32_t>(std::max(a, b));
-    Slot& slot = slots_[((low * 0x9E37'79B1U) ^ (high * 0x85EB'CA77U)) >> (32 - kBits)];
-    if (slot.low == low && slot.high == high) {
-      if (Keys::same_cell(key, slot.key) ? keys_.before(key, slot.key) : key < slot.key) {
-        slot.key = key;
-      }
-      return;
+/// Cells can only be the higher one of a lowest pass if they are saddles: if their lower neighbours
+/// fall into two or more groups around them. (Within one group the water has a way round, lower
+/// than the cell.) One bit per direction in, whether there are two groups out; orthogonal
+/// neighbours 90 degrees apart touch.
+constexpr std::array<bool, 256> make_saddle_table() {
+  std::array<bool, 256> saddle{};
+  for (int lower = 0; lower < 256; ++lower) {
+    int group[kDirections]{};
+    int groups = 0;
+    for (int k = 0; k < kDirections; ++k) {
+      group[k] = (lower >> k & 1) != 0 ? k + 1 : 0;
+      groups += lower >> k & 1;
     }
-    if (slot.key != kEmpty) passes_.push_back(slot.key);
-    slot = {low, high, key};
-  }
-  std::vector<PassKey> finish() {
-    for (const Slot& slot : slots_) {
-      if (slot.key != kEmpty) passes_.push_back(slot.key);
+    const auto join = [&](int k, int l) {
+      if (group[k] == 0 || group[l] == 0 || group[k] == group[l]) return;
+      const int from = group[l], to = group[k];
+      for (int& g : group) g = g == from ? to : g;
+      --groups;
+    };
+    for (int k = 0; k < kDirections; ++k) {
+      join(k, (k + 1) % kDirections);
+      if (k % 2 == 0) join(k, (k + 2) % kDirections);
     }
-    return std::move(passes_);
+    saddle[lower] = groups > 1;
   }
+  return saddle;
+}
+constexpr std::array<bool, 256> kSaddle = make_saddle_table();
 
- private:
-  static constexpr int kBits = 15;
-  static constexpr std::size_t kSlots = std::size_t{1} << kBits;
-  static constexpr PassKey kEmpty = ~PassKey{0};
-  struct Slot {
-    std::uint32_t low = 0, high = 0;
-    PassKey key = kEmpty;
-  };
-  const Keys& keys_;
-  std::vector<Slot> slots_;
-  std::vector<PassKey> passes_;
-};
+/// What the search for passes needs to know of a cell: which neighbours are lower (8 bits), whether
+/// one is equal, whether one that is not above it lies in another catchment.
+constexpr std::int32_t kHasEqual = 1 << 8, kDivides = 1 << 9;
 
-/// Passes between the cells of one row and their forward neighbours.
-void collect_row(const Grid& grid, const std::int32_t* leaf, int j, const Keys& keys,
-                 PassCollector& collector) {
+/// Codes of the interior cells of a row. Branch-free, so that the compiler vectorises it.
+__attribute__((target_clones("avx2", "default"))) void survey_row(
+    const float* __restrict z, const std::int32_t* __restrict leaf, Index begin, Index end,
+    const std::array<Index, kDirections>& offset, std::int32_t* __restrict code) {
+  for (Index cell = begin; cell < end; ++cell) {
+    std::int32_t bits = 0;
+#pragma GCC unroll 8
+    for (int k = 0; k < kDirections; ++k) {
+      const Index to = cell + offset[k];
+      bits |= z[to] < z[cell] ? 1 << k : 0;
+      bits |= z[to] == z[cell] ? kHasEqual : 0;
+      const std::int32_t differs = leaf[to] != leaf[cell] ? kDivides : 0;
+      bits |= z[to] <= z[cell] ? differs : 0;
+    }
+    code[cell - begin] = bits;
+  }
+}
+
+/// Passes of which one cell is the higher one: to each catchment around it the steepest way down.
+/// `neighbour(k)` gives the cells around it.
+template <class Neighbour>
+void passes_over(const float* z, const std::int32_t* leaf, Index cell,
+                 const std::array<float, kDirections>& inverse_distance, Neighbour&& neighbour,
+                 std::vector<PassKey>& keys) {
+  std::array<std::int32_t, kDirections> others;
+  std::array<float, kDirections> slopes;
+  std::array<int, kDirections> directions;
+  int count = 0;
+  for (int k = 0; k < kDirections; ++k) {
+    const Index to = neighbour(k);
+    if (to == kNoCell || leaf[to] == leaf[cell] || z[to] > z[cell]) continue;
+    const float slope = (z[cell] - z[to]) * inverse_distance[k];
+    int at = 0;
+    while (at < count && others[at] != leaf[to]) ++at;
+    if (at < count && slopes[at] >= slope) continue;
+    others[at] = leaf[to];
+    slopes[at] = slope;
+    directions[at] = k;
+    count = std::max(count, at + 1);
+  }
+  for (int at = 0; at < count; ++at) keys.push_back(make_key(z[cell], cell, directions[at]));
+}
+
+void passes_of_row(const Grid& grid, const float* z, const std::uint8_t* outlets,
+                   const std::int32_t* leaf, int j, std::vector<std::int32_t>& code,
+                   std::vector<PassKey>& keys) {
   const int nx = grid.nx();
-  const auto at_edge = [&](int i, std::span<const int> directions) {
-    const Index cell = grid.cell(i, j);
-    for (const int k : directions) {
-      const Index to = grid.neighbour(i, j, k);
-      if (to == kNoCell || leaf[to] == leaf[cell]) continue;
-      collector.offer(leaf[cell], leaf[to], keys.make(cell, j, to, k));
-    }
-  };
-  if (j == 0 && grid.topology() == Topology::sphere) {
-    for (int i = 0; i < nx; ++i) at_edge(i, kOverSouthPole);
+  const Index row = grid.cell(0, j);
+  const auto offset = grid.offsets();
+  std::array<float, kDirections> inverse{};
+  for (int k = 0; k < kDirections; ++k) {
+    inverse[k] = static_cast<float>(1.0 / grid.distances_m(j)[k]);
   }
-  if (j == grid.ny() - 1) {
-    for (int i = 0; i < nx; ++i) at_edge(i, kForward);
+  const auto at_edge = [&](int i) {
+    passes_over(
+        z, leaf, row + i, inverse, [&](int k) { return grid.neighbour(i, j, k); }, keys);
+  };
+  if (j == 0 || j == grid.ny() - 1) {
+    for (int i = 0; i < nx; ++i) at_edge(i);
     return;
   }
-  at_edge(0, kForward);
-  const auto offset = grid.offsets();
-  const Index end = grid.cell(nx - 1, j);
-  for (Index cell = grid.cell(1, j); cell < end; ++cell) {
-    const std::int32_t here = leaf[cell];
-    for (const int k : kForward) {
-      const Index to = cell + offset[k];
-      if (leaf[to] != here) collector.offer(here, leaf[to], keys.make(cell, j, to, k));
+  at_edge(0);
+  survey_row(z, leaf, row + 1, row + nx - 1, offset, code.data());
+  for (Index cell = row + 1; cell < row + nx - 1; ++cell) {
+    const std::int32_t bits = code[cell - row - 1];
+    if ((bits & kDivides) == 0) continue;
+    if (kSaddle[bits & 255] || (bits & kHasEqual) != 0 || outlets[cell] != 0) {
+      passes_over(
+          z, leaf, cell, inverse, [&](int k) { return cell + offset[k]; }, keys);
     }
   }
-  at_edge(nx - 1, kForward);
+  at_edge(nx - 1);
 }
 
 /// Least-significant-digit radix sort: linear, and stable whatever the number of threads.
@@ -219,17 +220,19 @@ Catchments find_catchments(const Grid& grid, std::span<const std::uint8_t> outle
 }
 
 std::vector<Pass> spanning_passes(const Grid& grid, std::span<const float> elevation_m,
+                                  std::span<const std::uint8_t> outlets,
                                   const Catchments& catchments) {
   if (catchments.pits.empty()) return {};
-  const Keys order(grid, elevation_m.data());
   const std::int32_t* leaf = catchments.leaf_of_cell.data();
   std::vector<PassKey> keys;
 #pragma omp parallel
   {
-    PassCollector collector(order);
+    std::vector<PassKey> own;
+    std::vector<std::int32_t> code(grid.nx());
 #pragma omp for schedule(static)
-    for (int j = 0; j < grid.ny(); ++j) collect_row(grid, leaf, j, order, collector);
-    const std::vector<PassKey> own = collector.finish();
+    for (int j = 0; j < grid.ny(); ++j) {
+      passes_of_row(grid, elevation_m.data(), outlets.data(), leaf, j, code, own);
+    }
 #pragma omp critical
     keys.insert(keys.end(), own.begin(), own.end());
   }
@@ -238,17 +241,26 @@ std::vector<Pass> spanning_passes(const Grid& grid, std::span<const float> eleva
   std::vector<Pass> passes;
   passes.reserve(catchments.pits.size());
   Sets sets(catchments.pits.size());
+  const auto slope = [&](PassKey key) {
+    const Index cell = higher_cell(key);
+    const int k = direction_down(key);
+    return (static_cast<double>(elevation_m[cell]) - elevation_m[grid.neighbour(cell, k)]) /
+           grid.distances_m(grid.row(cell))[k];
+  };
+  const auto same_cell = [](PassKey a, PassKey b) { return (a >> 3) == (b >> 3); };
   for (auto group = keys.begin(); group != keys.end();) {
+    // Of several passes over one cell the steepest way down comes first.
     auto end = group + 1;
-    while (end != keys.end() && Keys::same_cell(*end, *group)) ++end;
+    while (end != keys.end() && same_cell(*end, *group)) ++end;
     if (end - group > 1) {
-      std::sort(group, end, [&](PassKey a, PassKey b) { return order.before(a, b); });
+      std::stable_sort(group, end, [&](PassKey a, PassKey b) { return slope(a) > slope(b); });
     }
     for (; group != end; ++group) {
-      const auto [a, b] = order.cells(*group);
+      constexpr std::ptrdiff_t kAhead = 32;  // sorted by height, the cells lie all over the grid
+      if (keys.end() - group > kAhead) __builtin_prefetch(leaf + higher_cell(group[kAhead]));
+      const Index a = higher_cell(*group), b = grid.neighbour(a, direction_down(*group));
       if (!sets.join(leaf[a] + 1, leaf[b] + 1)) continue;
-      const auto height = static_cast<std::uint32_t>(*group >> 32);
-      passes.push_back({a, b, leaf[a], leaf[b], from_ordered_bits(height)});
+      passes.push_back({a, b, leaf[a], leaf[b], height_of(*group)});
     }
     if (passes.size() == catchments.pits.size()) break;
   }

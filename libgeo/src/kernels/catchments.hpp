@@ -42,6 +42,7 @@ Catchments find_catchments(const Grid& grid, std::span<const std::uint8_t> outle
 /// (Kruskal). Each one is the first to join its two sides: water levels rising everywhere at the
 /// same pace would meet there.
 std::vector<Pass> spanning_passes(const Grid& grid, std::span<const float> elevation_m,
+                                  std::span<const std::uint8_t> outlets,
                                   const Catchments& catchments);
 
 /// Way of each catchment to a root: the sea, or a leaf that keeps its water.

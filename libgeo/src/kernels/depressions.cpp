@@ -68,19 +68,55 @@ void build_unions(const Catchments& catchments, std::span<const Pass> passes,
   }
 }
 
+/// Finds the lowest ancestor whose sill stands above a level in O(log n) steps, however lopsided
+/// the hierarchy: skew-binary jump pointers (Myers 1983).
+class Ancestors {
+ public:
+  explicit Ancestors(const std::vector<Depression>& nodes)
+      : nodes_(nodes), jump_(nodes.size()), depth_(nodes.size()) {
+    for (auto at = static_cast<std::int32_t>(nodes.size()) - 1; at >= 0; --at) {
+      const std::int32_t parent = nodes[at].parent;
+      if (parent == kSea) {
+        jump_[at] = kSea;
+        continue;
+      }
+      depth_[at] = depth_[parent] + 1;
+      const std::int32_t first = jump_[parent], second = first == kSea ? kSea : jump_[first];
+      const bool level = first != kSea && second != kSea &&
+                         depth_[parent] - depth_[first] == depth_[first] - depth_[second];
+      jump_[at] = level ? second : parent;
+    }
+  }
+  [[nodiscard]] std::int32_t lowest_above(std::int32_t at, float level) const {
+    while (at != kSea && level >= nodes_[at].sill_m) {
+      const std::int32_t jump = jump_[at];
+      at = jump != kSea && level >= nodes_[jump].sill_m ? jump : nodes_[at].parent;
+    }
+    return at;
+  }
+
+ private:
+  const std::vector<Depression>& nodes_;
+  std::vector<std::int32_t> jump_, depth_;
+};
+
 /// Areas and volumes: each flooded cell counts for the lowest depression whose sill stands above
 /// it, then children add to their parents.
 void measure(const Grid& grid, std::span<const float> z, DepressionHierarchy& hierarchy) {
   auto& nodes = hierarchy.depressions;
+  const Ancestors ancestors(nodes);
+  std::vector<std::int32_t> holder(grid.size());
+#pragma omp parallel for schedule(static)
+  for (Index cell = 0; cell < grid.size(); ++cell) {
+    holder[cell] = ancestors.lowest_above(hierarchy.leaf_of_cell[cell], z[cell]);
+  }
   std::vector<double> height_area_m3(nodes.size(), 0.0);
   for (int j = 0; j < grid.ny(); ++j) {
     const double area = grid.area_m2(j);
     for (Index cell = grid.cell(0, j); cell < grid.cell(0, j) + grid.nx(); ++cell) {
-      std::int32_t at = hierarchy.leaf_of_cell[cell];
-      while (at != kSea && z[cell] >= nodes[at].sill_m) at = nodes[at].parent;
-      if (at == kSea) continue;
-      nodes[at].area_m2 += area;
-      height_area_m3[at] += area * z[cell];
+      if (holder[cell] == kSea) continue;
+      nodes[holder[cell]].area_m2 += area;
+      height_area_m3[holder[cell]] += area * z[cell];
     }
   }
   for (std::size_t at = 0; at < nodes.size(); ++at) {  // children stand before parents
@@ -119,7 +155,7 @@ struct Spills {
     steepest_receivers(grid, z, outlets, receiver);
     catchments = detail::find_catchments(grid, outlets, receiver);
     spill = detail::spill_towards_roots(static_cast<std::int32_t>(catchments.pits.size()),
-                                        detail::spanning_passes(grid, z, catchments));
+                                        detail::spanning_passes(grid, z, outlets, catchments));
   }
   void fill(std::span<const float> z, std::span<float> filled_m) const {
 #pragma omp parallel for schedule(static)
@@ -136,7 +172,7 @@ DepressionHierarchy build_depression_hierarchy(const Grid& grid, std::span<const
                                                std::span<const std::uint8_t> outlets,
                                                std::span<const Index> receiver) {
   Catchments catchments = detail::find_catchments(grid, outlets, receiver);
-  const std::vector<Pass> passes = detail::spanning_passes(grid, elevation_m, catchments);
+  const std::vector<Pass> passes = detail::spanning_passes(grid, elevation_m, outlets, catchments);
   DepressionHierarchy hierarchy;
   hierarchy.leaves = static_cast<std::int32_t>(catchments.pits.size());
   build_unions(catchments, passes, elevation_m, hierarchy);

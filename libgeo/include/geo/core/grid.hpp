@@ -139,6 +139,10 @@ class Grid {
   }
   /// Outer edges in degrees (latitude-longitude grids).
   [[nodiscard]] const Window& window() const noexcept { return window_; }
+  /// Geographic centre of a plane that was given one.
+  [[nodiscard]] const std::optional<Centre>& centre() const noexcept { return centre_; }
+  /// Row step of a metric plane or torus, m.
+  [[nodiscard]] double step_north_m() const noexcept { return step_north_m_; }
 
   /// Position for coherent noise: on the unit sphere where cells are geographic (geodetic
   /// latitude), in units of the planet's radius on a plane, on a ring torus (seamless, not
@@ -156,6 +160,7 @@ class Grid {
   int nx_, ny_;
   Ellipsoid figure_;
   Window window_{};
+  std::optional<Centre> centre_;
   bool latitude_longitude_ = false;
   double step_north_m_ = 0.0;
   double total_area_m2_ = 0.0;

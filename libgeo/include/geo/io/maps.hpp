@@ -1,23 +1,52 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
-#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "geo/core/state.hpp"
 
 namespace geo::io {
 
-/// Draws the PNG maps that the fields of a state allow (elevation, temperature, precipitation,
-/// rivers, biomes …) into a folder, with title, legend and graticule. `width_px` is the width of
-/// the map itself. Returns the paths written. Throws IoError.
+/// One picture that was drawn, as a report shows it.
+struct MapFile {
+  std::filesystem::path path;
+  std::string title;    ///< "Annual precipitation"
+  std::string caption;  ///< one sentence on what the picture shows and how
+  int width_px = 0, height_px = 0;
+};
+
+/// Size of a picture and where the map itself lies in it, pixels from the upper left corner.
+struct MapLayout {
+  int width_px, height_px;
+  int map_left, map_top, map_width, map_height;
+};
+
+/// Layout of every map of that grid. The whole planet is drawn as plate carrée, 2:1; windows of it
+/// as an equirectangular map true to scale along their middle parallel; planes and tori to scale.
+/// Maps higher than `width_px` are narrowed so that their height equals it. `width_px` must be
+/// 300 to 20000; throws ConfigurationError.
+MapLayout map_layout(const Grid& grid, int width_px = 1800);
+
+/// Draws the PNG maps that the fields of a state allow into a folder (created when absent), with
+/// title, units, legend and graticule: elevation, temperature, precipitation, wind, rivers, biomes,
+/// koppen, productivity, settlement. `width_px` is the width of the map itself, `note` a short
+/// remark for the upper right corner (seed, version). Maps are drawn at the same time on as many
+/// threads as OpenMP has; the pictures do not depend on how many. Each appears under its name only
+/// when it is whole. Throws IoError.
+std::vector<MapFile> draw_map_files(const State& state, const std::filesystem::path& folder,
+                                    int width_px = 1800, std::string_view note = {});
+
+/// The same; returns the paths alone.
 std::vector<std::filesystem::path> draw_maps(const State& state,
                                              const std::filesystem::path& folder,
-                                             int width_px = 1800);
+                                             int width_px = 1800, std::string_view note = {});
 
-/// Hypsometric curve of a relief beside Earth's (hypsometry.png).
+/// Area-weighted hypsometric curve of a relief beside Earth's, and the share of the area per 250 m
+/// (hypsometry.png). Throws Bug when the state has no elevation, IoError.
+MapFile draw_hypsometry_file(const State& state, const std::filesystem::path& folder,
+                             std::string_view note = {});
 std::filesystem::path draw_hypsometry(const State& state, const std::filesystem::path& folder);
 
 }  // namespace geo::io

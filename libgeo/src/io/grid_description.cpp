@@ -1,0 +1,208 @@
+#include "grid_description.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "geo/core/error.hpp"
+#include "geo/kernels/resample.hpp"
+
+namespace geo::io {
+namespace {
+
+constexpr const char* kTopology = "terrane_grid";
+constexpr const char* kEdges = "terrane_grid_edges";
+constexpr const char* kSpacing = "terrane_grid_spacing_m";
+constexpr const char* kWindow = "terrane_grid_window_deg";
+constexpr const char* kCentre = "terrane_grid_centre_deg";
+constexpr const char* kRadius = "terrane_grid_radius_m";
+constexpr const char* kFlattening = "terrane_grid_flattening";
+
+struct CoordinateNames {
+  const char *name, *bounds, *standard_name, *long_name, *units;
+};
+constexpr CoordinateNames kLatitude{"lat", "lat_bnds", "latitude", "latitude of cell centres",
+                                    "degrees_north"};
+constexpr CoordinateNames kLongitude{"lon", "lon_bnds", "longitude", "longitude of cell centres",
+                                     "degrees_east"};
+// No standard name and no axis: the plane has no map projection, and clients that take it for one
+// would wrap it onto a sphere.
+constexpr CoordinateNames kY{"y", "y_bnds", "", "distance northwards from the middle", "m"};
+constexpr CoordinateNames kX{"x", "x_bnds", "", "distance eastwards from the middle", "m"};
+
+CoordinateNames row_names(const Grid& grid) {
+  return grid.is_latitude_longitude() ? kLatitude : kY;
+}
+CoordinateNames column_names(const Grid& grid) {
+  return grid.is_latitude_longitude() ? kLongitude : kX;
+}
+
+void define_coordinate(const nc::File& file, const CoordinateNames& names, int dimension,
+                       int bounds_dimension) {
+  const int variable = file.define_variable(names.name, NC_DOUBLE, std::array{dimension});
+  file.put(variable, "standard_name", names.standard_name);
+  file.put(variable, "long_name", names.long_name);
+  file.put(variable, "units", names.units);
+  file.put(variable, "bounds", names.bounds);
+  file.define_variable(names.bounds, NC_DOUBLE, std::array{dimension, bounds_dimension});
+}
+
+void define_mapping(const nc::File& file, const Ellipsoid& figure) {
+  const int crs = file.define_variable(kMapping, NC_INT, {});
+  file.put(crs, "grid_mapping_name", "latitude_longitude");
+  file.put(crs, "longitude_of_prime_meridian", 0.0);
+  if (figure.flattening == 0.0) {
+    file.put(crs, "earth_radius", figure.radius_m);
+  } else {
+    file.put(crs, "semi_major_axis", figure.radius_m);
+    file.put(crs, "inverse_flattening", 1.0 / figure.flattening);
+  }
+}
+
+void define_plane_positions(const nc::File& file, const GridVariables& ids) {
+  for (const CoordinateNames& names : {kLatitude, kLongitude}) {
+    const int variable = file.define_variable(names.name, NC_DOUBLE,
+                                              std::array{ids.row_dimension, ids.column_dimension});
+    file.put(variable, "standard_name", names.standard_name);
+    file.put(variable, "long_name", names.long_name);
+    file.put(variable, "units", names.units);
+    nc::check(nc_def_var_deflate(file.id(), variable, 1, 1, 1));
+  }
+}
+
+void put_rebuilding_attributes(const nc::File& file, const Grid& grid) {
+  const auto put = [&](const char* name, auto... values) {
+    const std::array<double, sizeof...(values)> array{values...};
+    file.put(NC_GLOBAL, name, array);
+  };
+  const bool window = grid.topology() == Topology::plane && grid.is_latitude_longitude();
+  file.put(NC_GLOBAL, kTopology,
+           window                                ? "window"
+           : grid.topology() == Topology::plane  ? "plane"
+           : grid.topology() == Topology::sphere ? "sphere"
+                                                 : "torus");
+  if (grid.topology() == Topology::plane) {
+    file.put(NC_GLOBAL, kEdges, grid.edges() == Edges::open ? "open" : "closed");
+  }
+  if (window) {
+    const Window& w = grid.window();
+    put(kWindow, w.south_deg, w.north_deg, w.west_deg, w.east_deg);
+  }
+  if (!grid.is_latitude_longitude()) {
+    put(kSpacing, grid.spacing_east_m(0), grid.step_north_m());
+  }
+  if (const auto& centre = grid.centre()) put(kCentre, centre->latitude_deg, centre->longitude_deg);
+  put(kRadius, grid.figure().radius_m);
+  put(kFlattening, grid.figure().flattening);
+}
+
+void write_axis(const nc::File& file, const CoordinateNames& names, const Axis& axis) {
+  std::vector<double> bounds;
+  for (int i = 0; i < axis.size(); ++i) {
+    bounds.push_back(axis.edges[i]);
+    bounds.push_back(axis.edges[i + 1]);
+  }
+  nc::check(nc_put_var_double(file.id(), *file.find_variable(names.name), axis.centres.data()));
+  nc::check(nc_put_var_double(file.id(), *file.find_variable(names.bounds), bounds.data()));
+}
+
+void write_plane_positions(const nc::File& file, const Grid& grid) {
+  std::vector<double> latitudes(grid.size()), longitudes(grid.size());
+  for (Index cell = 0; cell < grid.size(); ++cell) {
+    latitudes[cell] = grid.latitude_deg(grid.row(cell));
+    longitudes[cell] = grid.longitude_deg(grid.column(cell));
+  }
+  nc::check(nc_put_var_double(file.id(), *file.find_variable("lat"), latitudes.data()));
+  nc::check(nc_put_var_double(file.id(), *file.find_variable("lon"), longitudes.data()));
+}
+
+std::vector<double> required_numbers(const nc::File& file, const char* name, std::size_t count) {
+  auto values = file.numbers(NC_GLOBAL, name);
+  if (values.size() != count) {
+    throw InputError(fmt::format("global attribute {} must hold {} number(s), it holds {}", name,
+                                 count, values.size()));
+  }
+  return values;
+}
+
+int dimension_size(const nc::File& file, const char* name) {
+  int dimension = -1;
+  if (nc_inq_dimid(file.id(), name, &dimension) != NC_NOERR) {
+    throw InputError(fmt::format("dimension {} is missing", name));
+  }
+  return static_cast<int>(file.dimension_size(dimension));
+}
+
+}  // namespace
+
+DimensionNames dimension_names(const Grid& grid) {
+  return {row_names(grid).name, column_names(grid).name};
+}
+
+GridVariables define_grid(const nc::File& file, const Grid& grid) {
+  GridVariables ids;
+  ids.row_dimension = file.define_dimension(row_names(grid).name, grid.ny());
+  ids.column_dimension = file.define_dimension(column_names(grid).name, grid.nx());
+  const int bounds = file.define_dimension("bnds", 2);
+  define_coordinate(file, row_names(grid), ids.row_dimension, bounds);
+  define_coordinate(file, column_names(grid), ids.column_dimension, bounds);
+  ids.has_mapping = grid.is_latitude_longitude();
+  ids.has_coordinates = grid.is_geographic() && !grid.is_latitude_longitude();
+  if (ids.has_mapping) define_mapping(file, grid.figure());
+  if (ids.has_coordinates) define_plane_positions(file, ids);
+  put_rebuilding_attributes(file, grid);
+  return ids;
+}
+
+void write_coordinates(const nc::File& file, const Grid& grid) {
+  const Raster raster = grid.is_latitude_longitude() ? raster_of(grid) : metric_raster_of(grid);
+  write_axis(file, row_names(grid), raster.rows);
+  write_axis(file, column_names(grid), raster.columns);
+  if (grid.is_geographic() && !grid.is_latitude_longitude()) write_plane_positions(file, grid);
+}
+
+std::vector<double> cell_areas(const Grid& grid) {
+  std::vector<double> areas(grid.size());
+#pragma omp parallel for
+  for (int j = 0; j < grid.ny(); ++j) {
+    std::fill_n(areas.begin() + static_cast<std::ptrdiff_t>(j) * grid.nx(), grid.nx(),
+                grid.area_m2(j));
+  }
+  return areas;
+}
+
+Grid read_grid(const nc::File& file) {
+  const auto topology = file.text(NC_GLOBAL, kTopology);
+  if (!topology) {
+    throw InputError(fmt::format("not a stage file: global attribute {} is missing", kTopology));
+  }
+  const bool latitude_longitude = *topology == "sphere" || *topology == "window";
+  const int ny = dimension_size(file, latitude_longitude ? "lat" : "y");
+  const int nx = dimension_size(file, latitude_longitude ? "lon" : "x");
+  const Ellipsoid figure{required_numbers(file, kRadius, 1)[0],
+                         required_numbers(file, kFlattening, 1)[0]};
+  const Edges edges =
+      file.text(NC_GLOBAL, kEdges).value_or("open") == "closed" ? Edges::closed : Edges::open;
+  try {
+    if (*topology == "sphere") return Grid::sphere(nx, ny, figure);
+    if (*topology == "window") {
+      const auto w = required_numbers(file, kWindow, 4);
+      return Grid::window(nx, ny, {w[0], w[1], w[2], w[3]}, figure, edges);
+    }
+    const auto step = required_numbers(file, kSpacing, 2);
+    if (*topology == "torus") return Grid::torus(nx, ny, step[0], step[1]);
+    if (*topology == "plane") {
+      const auto c = file.numbers(NC_GLOBAL, kCentre);
+      const auto centre = c.size() == 2 ? std::optional(Centre{c[0], c[1]}) : std::nullopt;
+      return Grid::plane(nx, ny, step[0], step[1], edges, centre, figure);
+    }
+  } catch (const ConfigurationError& error) {
+    throw InputError(error.what());
+  }
+  throw InputError(
+      fmt::format("global attribute {} is \"{}\", must be sphere, window, plane or "
+                  "torus",
+                  kTopology, *topology));
+}
+
+}  // namespace geo::io

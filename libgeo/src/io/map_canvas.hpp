@@ -1,0 +1,109 @@
+#pragma once
+
+#include <cairo.h>
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "geo/io/maps.hpp"
+#include "map_colours.hpp"
+
+namespace geo::io {
+
+inline constexpr Rgb kInk{0.13F, 0.15F, 0.18F};
+inline constexpr Rgb kFaintInk{0.40F, 0.43F, 0.47F};
+
+enum class Align { left, centre, right };
+
+/// A sheet of paper with Cairo's pen: pixels, lines and type.
+class Canvas {
+ public:
+  Canvas(int width_px, int height_px);
+
+  [[nodiscard]] cairo_t* pen() const { return pen_.get(); }
+  void set_pixel(int x, int y, Rgb colour);
+  /// Pixels were set; tells Cairo before it draws on.
+  void pixels_done();
+  void colour(Rgb colour, double alpha = 1.0);
+  void rectangle(double x, double y, double width, double height);
+
+  void font(double size_px, bool bold = false);
+  [[nodiscard]] double text_width(const std::string& text) const;
+  /// Text whose baseline is at y.
+  void text(double x, double y, const std::string& text, Align align = Align::left);
+
+  void save(const std::filesystem::path& path) const;
+
+ private:
+  struct Destroy {
+    void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
+    void operator()(cairo_t* pen) const { cairo_destroy(pen); }
+  };
+  std::unique_ptr<cairo_surface_t, Destroy> surface_;
+  std::unique_ptr<cairo_t, Destroy> pen_;
+};
+
+/// A canvas with a map in its frame.
+class MapCanvas : public Canvas {
+ public:
+  MapCanvas(const Grid& grid, const MapLayout& layout);
+
+  /// Sets each pixel of the map to `colour_of(x, y)`.
+  template <class ColourOf>
+  void paint(const ColourOf& colour_of) {
+    for (int y = 0; y < layout_.map_height; ++y) {
+      for (int x = 0; x < layout_.map_width; ++x) {
+        set_pixel(layout_.map_left + x, layout_.map_top + y, colour_of(x, y));
+      }
+    }
+    pixels_done();
+  }
+  /// Runs `draw` with the origin at the map's upper left corner, clipped to the map.
+  template <class Draw>
+  void inside(const Draw& draw) {
+    cairo_save(pen());
+    cairo_translate(pen(), layout_.map_left, layout_.map_top);
+    rectangle(0, 0, layout_.map_width, layout_.map_height);
+    cairo_clip(pen());
+    draw();
+    cairo_restore(pen());
+  }
+  /// Title, units beside it, remark at the right.
+  void title(const std::string& title, const std::string& units, std::string_view note);
+  /// Graticule or kilometre ticks with labels, scale bar where it has one, border.
+  void frame();
+
+  /// Colour bar below the map: the stops of the colour maps one after the other, equally wide.
+  void colour_bar(std::span<const ColourMap* const> maps, bool classed);
+  /// Swatches and names of categories below the map.
+  void category_legend(const std::vector<std::pair<Rgb, std::string>>& items);
+
+  /// Size of type and lines relative to a map 1800 px wide.
+  [[nodiscard]] double unit() const { return unit_; }
+  [[nodiscard]] const MapLayout& layout() const { return layout_; }
+
+ private:
+  void graticule();
+  void kilometre_ticks();
+  void scale_bar();
+
+  const Grid* grid_;
+  MapLayout layout_;
+  double unit_;
+};
+
+/// Size of type and lines of a map of that width, relative to one of 1800 px.
+double map_unit(int map_width_px);
+
+/// The largest of 1, 2, 2.5, 5 times a power of ten that is at most `value`.
+double round_down_nicely(double value);
+
+/// "−50", "0.25", "11000": a number for a label, without exponent and trailing zeros.
+std::string label_of(double value);
+
+}  // namespace geo::io

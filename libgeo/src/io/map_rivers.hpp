@@ -1,0 +1,33 @@
+#pragma once
+
+#include <vector>
+
+#include "geo/core/state.hpp"
+#include "map_canvas.hpp"
+#include "map_raster.hpp"
+
+namespace geo::io {
+
+struct RiverPoint {
+  double x, y;  ///< pixels from the map's upper left corner; x runs on beyond the map's edges
+  float flow;   ///< discharge, or drainage area where that is not known
+};
+
+/// The larger rivers of a map, from source to mouth or to the junction with one drawn before.
+struct RiverNetwork {
+  std::vector<std::vector<RiverPoint>> lines;
+  float least_flow = 0.0F, most_flow = 0.0F;
+};
+
+/// True where the state has what rivers are drawn from.
+bool has_rivers(const State& state);
+
+/// Traces rivers along `flow_receiver`. Only those above a flow that leaves about the same length
+/// of line per area of map at any scale are kept. Lines are smoothed over a few cells; one that
+/// crosses the date line runs on, one that crosses a pole is cut.
+RiverNetwork trace_rivers(const MapFrame& frame, const State& state);
+
+/// Draws them, as wide as the square root of the flow, at both edges where they run across one.
+void draw_rivers(MapCanvas& canvas, const RiverNetwork& rivers, Rgb colour);
+
+}  // namespace geo::io

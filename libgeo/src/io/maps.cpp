@@ -1,0 +1,285 @@
+#include "geo/io/maps.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <functional>
+#include <limits>
+#include <numbers>
+
+#include "map_canvas.hpp"
+#include "map_relief.hpp"
+#include "map_rivers.hpp"
+#include "map_wind.hpp"
+
+namespace geo::io {
+namespace {
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr Rgb kPaleSea{0.85F, 0.90F, 0.925F};
+constexpr Rgb kPaleLand{0.945F, 0.935F, 0.905F};
+constexpr Rgb kRiver{0.16F, 0.39F, 0.62F};
+constexpr Rgb kLake{0.49F, 0.68F, 0.82F};
+
+/// What every map is drawn from.
+struct Scene {
+  const State& state;
+  const MapFrame& frame;
+  const MapBase& base;
+};
+
+/// A map that can be drawn: its words and how.
+struct Plan {
+  std::string file, title, units, caption;
+  std::function<void(const Scene&, MapCanvas&)> draw;
+};
+
+/// A map of one field in the colours of one colour map.
+struct FieldMap {
+  const Field<float>* field;
+  const char *file, *title, *units, *colours, *caption;
+  bool land_only;
+};
+
+constexpr std::array<FieldMap, 4> kFieldMaps{{
+    {&field::temperature, "temperature", "Temperature", "annual mean near the surface, °C",
+     "temperature", "Annual mean air temperature near the surface in classes, over shaded relief.",
+     false},
+    {&field::precipitation, "precipitation", "Precipitation", "annual, mm per year",
+     "precipitation", "Annual precipitation in classes, over shaded relief.", false},
+    {&field::net_primary_productivity, "productivity", "Net primary productivity",
+     "dry matter, g per m² and year", "net_primary_productivity",
+     "Dry matter that plants build up in a year (Miami model).", true},
+    {&field::settlement_suitability, "settlement", "Suitability for settlement",
+     "0 (none) to 1 (best)", "settlement_suitability",
+     "Suitability for agriculture and settlement, from climate, slope and water.", true},
+}};
+
+struct CategoryMap {
+  const Field<std::int8_t>* field;
+  const char *file, *title, *units, *caption;
+};
+
+constexpr std::array<CategoryMap, 2> kCategoryMaps{{
+    {&field::biome, "biomes", "Biomes", "after Whittaker", "Biomes by temperature and moisture."},
+    {&field::koppen_class, "koppen", "Climate classes", "after Köppen and Geiger",
+     "Climate classes after Köppen and Geiger."},
+}};
+
+Rgb with_coast(const MapBase& base, int x, int y, Rgb colour) {
+  return mix(colour, kInk, 0.6F * base.coast.at(x, y));
+}
+
+Rgb with_lakes(const MapBase& base, int x, int y, Rgb colour) {
+  return base.lake_cover.values.empty() ? colour : mix(colour, kLake, base.lake_cover.at(x, y));
+}
+
+void draw_elevation(const Scene& scene, MapCanvas& canvas) {
+  const ColourMap land("land_elevation"), sea("sea_depth");
+  const MapBase& base = scene.base;
+  canvas.paint([&](int x, int y) {
+    const float cover = base.land_cover.at(x, y);
+    const Rgb tint = mix(sea.smooth(base.sea_m.at(x, y)), land.smooth(base.land_m.at(x, y)), cover);
+    const Rgb shaded = lit(tint, base.shade.at(x, y), 0.42F + 0.36F * cover);
+    return with_lakes(base, x, y, mix(shaded, kInk, 0.25F * base.coast.at(x, y)));
+  });
+  canvas.frame();
+  const std::array<const ColourMap*, 2> maps{&sea, &land};
+  canvas.colour_bar(maps, false);
+}
+
+void draw_field(const FieldMap& map, const Scene& scene, MapCanvas& canvas) {
+  const ColourMap colours(map.colours);
+  const auto values = scene.state.read(*map.field);
+  std::span<const float> elevation;
+  if (map.land_only && scene.state.has(field::elevation)) {
+    elevation = scene.state.read(field::elevation);
+  }
+  const MapBase& base = scene.base;
+  Raster position = sample(scene.frame, Filter::linear, [&](Index i) {
+                      return elevation.empty() || elevation[i] >= 0.0F ? values[i] : kNaN;
+                    }).mean;
+  for (float& value : position.values) {
+    if (value == value) value = colours.position(value);
+  }
+  canvas.paint([&](int x, int y) {
+    const float at = position.at(x, y), cover = base.land_cover.at(x, y);
+    const float shade = base.shade.at(x, y);
+    Rgb colour = kPaleSea;
+    if (at == at) {
+      colour = colours.classed(at, change_per_pixel(position, x, y));
+      colour = lit(colour, shade, 0.06F + 0.32F * cover);
+      if (map.land_only) colour = mix(kPaleSea, colour, cover);
+    }
+    return with_coast(base, x, y, colour);
+  });
+  canvas.frame();
+  const std::array<const ColourMap*, 1> maps{&colours};
+  canvas.colour_bar(maps, true);
+}
+
+void draw_categories(const CategoryMap& map, const Scene& scene, MapCanvas& canvas) {
+  const ColourMap colours(map.field->name);
+  const auto colour_of = [&](int value) {
+    const auto* stop = colours.category(value);
+    return stop != nullptr ? stop->colour : kFaintInk;
+  };
+  const Raster category = sample_majority(scene.frame, scene.state.read(*map.field));
+  const MapBase& base = scene.base;
+  canvas.paint([&](int x, int y) {
+    const Rgb colour = colour_of(static_cast<int>(category.at(x, y)));
+    return lit(colour, base.shade.at(x, y), 0.34F * base.land_cover.at(x, y));
+  });
+  canvas.frame();
+  std::vector<std::pair<Rgb, std::string>> items;
+  for (const Flag& flag : map.field->flags) {
+    std::string name(flag.meaning);
+    std::replace(name.begin(), name.end(), '_', ' ');
+    items.emplace_back(colour_of(flag.value), name);
+  }
+  canvas.category_legend(items);
+}
+
+void draw_river_map(const Scene& scene, MapCanvas& canvas) {
+  const ColourMap sea("sea_depth");
+  const MapBase& base = scene.base;
+  canvas.paint([&](int x, int y) {
+    const float cover = base.land_cover.at(x, y), shade = base.shade.at(x, y);
+    const Rgb water = lit(mix(sea.smooth(base.sea_m.at(x, y)), {1, 1, 1}, 0.55F), shade, 0.15F);
+    const Rgb land = lit(kPaleLand, shade, 0.5F);
+    return with_lakes(base, x, y, with_coast(base, x, y, mix(water, land, cover)));
+  });
+  const RiverNetwork rivers = trace_rivers(scene.frame, scene.state);
+  draw_rivers(canvas, rivers, kRiver);
+  canvas.frame();
+}
+
+void draw_wind(const Scene& scene, MapCanvas& canvas) {
+  const ColourMap colours("wind_speed");
+  const WindRasters wind = sample_wind(scene.frame, scene.state);
+  const MapBase& base = scene.base;
+  canvas.paint([&](int x, int y) {
+    const Rgb colour = colours.smooth(wind.speed.at(x, y));
+    return with_coast(base, x, y,
+                      lit(colour, base.shade.at(x, y), 0.25F * base.land_cover.at(x, y)));
+  });
+  draw_wind_arrows(canvas, wind, scene.frame.wraps_east());
+  canvas.frame();
+  const std::array<const ColourMap*, 1> maps{&colours};
+  canvas.colour_bar(maps, false);
+}
+
+std::vector<Plan> plan_maps(const State& state) {
+  std::vector<Plan> plans;
+  if (state.has(field::elevation)) {
+    plans.push_back({"elevation", "Elevation", "metres above and below sea level",
+                     "Elevation in colours over relief shaded from the north-west.",
+                     draw_elevation});
+  }
+  const auto add_field = [&](const FieldMap& map) {
+    if (!state.has(*map.field)) return;
+    plans.push_back(
+        {map.file, map.title, map.units, map.caption,
+         [&map](const Scene& scene, MapCanvas& canvas) { draw_field(map, scene, canvas); }});
+  };
+  add_field(kFieldMaps[0]);
+  add_field(kFieldMaps[1]);
+  if (state.has(field::wind_east) && state.has(field::wind_north)) {
+    plans.push_back({"wind", "Wind", "annual mean near the surface, m per s",
+                     "Speed in colours; arrows show where the air goes.", draw_wind});
+  }
+  if (has_rivers(state)) {
+    plans.push_back({"rivers", "Rivers and lakes", "line width grows with discharge",
+                     "The larger rivers and lakes; lines widen with the square root of the flow.",
+                     draw_river_map});
+  }
+  for (const auto& map : kCategoryMaps) {
+    if (!state.has(*map.field)) continue;
+    plans.push_back(
+        {map.file, map.title, map.units, map.caption,
+         [&map](const Scene& scene, MapCanvas& canvas) { draw_categories(map, scene, canvas); }});
+  }
+  add_field(kFieldMaps[2]);
+  add_field(kFieldMaps[3]);
+  return plans;
+}
+
+double height_over_width(const Grid& grid) {
+  if (!grid.is_latitude_longitude()) {
+    return grid.ny() * grid.spacing_north_m(0) / (grid.nx() * grid.spacing_east_m(0));
+  }
+  const Window& window = grid.window();
+  const double degrees =
+      (window.north_deg - window.south_deg) / (window.east_deg - window.west_deg);
+  if (grid.topology() == Topology::sphere) return degrees;
+  const double middle = 0.5 * (window.south_deg + window.north_deg) * std::numbers::pi / 180.0;
+  return degrees / std::max(std::cos(middle), 0.05);
+}
+
+}  // namespace
+
+MapLayout map_layout(const Grid& grid, int width_px) {
+  if (width_px < 300 || width_px > 20000) {
+    throw ConfigurationError(
+        fmt::format("map width {} px: must be between 300 and 20000", width_px));
+  }
+  const double aspect = height_over_width(grid);
+  MapLayout layout{};
+  layout.map_width = aspect > 1.0 ? static_cast<int>(std::lround(width_px / aspect)) : width_px;
+  layout.map_width = std::max(layout.map_width, 100);
+  layout.map_height = std::max(static_cast<int>(std::lround(layout.map_width * aspect)), 100);
+  const double unit = map_unit(layout.map_width);
+  const auto scaled = [&](double pixels) { return static_cast<int>(std::lround(pixels * unit)); };
+  layout.map_left = scaled(84);
+  layout.map_top = scaled(84);
+  layout.width_px = layout.map_left + layout.map_width + scaled(50);
+  layout.height_px = layout.map_top + layout.map_height + scaled(126);
+  return layout;
+}
+
+std::vector<MapFile> draw_map_files(const State& state, const std::filesystem::path& folder,
+                                    int width_px, std::string_view note) {
+  const MapLayout layout = map_layout(state.grid(), width_px);
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw IoError("cannot create folder " + folder.string() + ": " + error.message());
+  const MapFrame frame(state.grid(), layout.map_width, layout.map_height);
+  const MapBase base = make_base(frame, state);
+  const Scene scene{state, frame, base};
+  const auto plans = plan_maps(state);
+
+  std::vector<MapFile> files(plans.size());
+  std::vector<std::exception_ptr> failures(plans.size());
+#pragma omp parallel for schedule(dynamic, 1)
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    try {
+      const Plan& plan = plans[i];
+      MapCanvas canvas(state.grid(), layout);
+      canvas.title(plan.title, plan.units, note);
+      plan.draw(scene, canvas);
+      files[i] = {folder / (plan.file + ".png"), plan.title, plan.caption, layout.width_px,
+                  layout.height_px};
+      canvas.save(files[i].path);
+    } catch (...) {
+      failures[i] = std::current_exception();
+    }
+  }
+  for (const auto& failure : failures) {
+    if (failure) std::rethrow_exception(failure);
+  }
+  return files;
+}
+
+std::vector<std::filesystem::path> draw_maps(const State& state,
+                                             const std::filesystem::path& folder, int width_px,
+                                             std::string_view note) {
+  std::vector<std::filesystem::path> paths;
+  for (auto& file : draw_map_files(state, folder, width_px, note)) {
+    paths.push_back(std::move(file.path));
+  }
+  return paths;
+}
+
+}  // namespace geo::io

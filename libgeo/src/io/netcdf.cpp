@@ -1,0 +1,145 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "geo/core/error.hpp"
+#include "geo/io/atomic_file.hpp"
+#include "geo/io/stage_file.hpp"
+#include "grid_description.hpp"
+#include "netcdf_file.hpp"
+
+namespace geo::io {
+namespace {
+
+constexpr int kDeflateLevel = 1;
+constexpr int kChunk = 512;
+
+/// Chunk length near `kChunk` that leaves the last chunk nearly full.
+std::size_t chunk_length(int cells) {
+  const int chunks = (cells + kChunk - 1) / kChunk;
+  return static_cast<std::size_t>((cells + chunks - 1) / chunks);
+}
+
+int define_raster(const nc::File& file, const Grid& grid, const GridVariables& ids,
+                  std::string_view name, nc_type type) {
+  const int variable =
+      file.define_variable(name, type, std::array{ids.row_dimension, ids.column_dimension});
+  const std::array chunks{chunk_length(grid.ny()), chunk_length(grid.nx())};
+  nc::check(nc_def_var_chunking(file.id(), variable, NC_CHUNKED, chunks.data()));
+  nc::check(nc_def_var_deflate(file.id(), variable, 1, 1, kDeflateLevel));
+  return variable;
+}
+
+int define_cell_area(const nc::File& file, const Grid& grid, const GridVariables& ids) {
+  const int variable = define_raster(file, grid, ids, kCellArea, NC_DOUBLE);
+  file.put(variable, "standard_name", "cell_area");
+  file.put(variable, "long_name", "area of the cell");
+  file.put(variable, "units", "m2");
+  if (ids.has_coordinates) file.put(variable, "coordinates", "lat lon");
+  return variable;
+}
+
+template <class T>
+void put_integers(const nc::File& file, int variable, const char* name, nc_type type,
+                  const std::vector<T>& values) {
+  nc::check(nc_put_att(file.id(), variable, name, type, values.size(), values.data()));
+}
+
+/// `_FillValue`, and flags in the variable's own type.
+template <class T>
+void put_typed_attributes(const nc::File& file, int variable, const FieldSpec& spec) {
+  T fill{};
+  if constexpr (std::is_floating_point_v<T>) {
+    fill = std::numeric_limits<T>::quiet_NaN();
+  } else {
+    fill = static_cast<T>(spec.missing);
+  }
+  nc::check(nc_def_var_fill(file.id(), variable, NC_FILL, &fill));
+  if (spec.flags.empty()) return;
+  std::vector<T> values;
+  std::string meanings;
+  for (const Flag& flag : spec.flags) {
+    values.push_back(static_cast<T>(flag.value));
+    if (!meanings.empty()) meanings += ' ';
+    meanings += flag.meaning;
+  }
+  put_integers(file, variable, "flag_values", nc::type_of(spec.type), values);
+  file.put(variable, "flag_meanings", meanings);
+}
+
+int define_field(const nc::File& file, const Grid& grid, const GridVariables& ids,
+                 const FieldSpec& spec, const Values& values) {
+  const int variable = define_raster(file, grid, ids, spec.name, nc::type_of(spec.type));
+  std::visit([&]<class T>(const std::vector<T>&) { put_typed_attributes<T>(file, variable, spec); },
+             values);
+  file.put(variable, "standard_name", spec.standard_name);
+  file.put(variable, "long_name", spec.doc);
+  if (spec.flags.empty()) file.put(variable, "units", spec.units);
+  file.put(variable, "cell_methods", spec.cell_methods);
+  file.put(variable, "cell_measures", "area: cell_area");
+  if (ids.has_mapping) file.put(variable, "grid_mapping", kMapping);
+  if (ids.has_coordinates) file.put(variable, "coordinates", "lat lon");
+  return variable;
+}
+
+void put_provenance(const nc::File& file, const Snapshot& snapshot, const Provenance& provenance) {
+  file.put(NC_GLOBAL, "Conventions", "CF-1.10");
+  file.put(NC_GLOBAL, "title", provenance.title);
+  file.put(NC_GLOBAL, "source", "terrane " + provenance.version);
+  file.put(NC_GLOBAL, "history", provenance.history);
+  file.put(NC_GLOBAL, "references", provenance.references);
+  file.put(NC_GLOBAL, "terrane_version", provenance.version);
+  file.put(NC_GLOBAL, "terrane_stage", snapshot.stage);
+  // As text: not every client reads unsigned 64-bit attributes.
+  file.put(NC_GLOBAL, "terrane_seed", std::to_string(provenance.seed));
+  file.put(NC_GLOBAL, "terrane_config", provenance.config_toml);
+}
+
+void check_snapshot(const Snapshot& snapshot) {
+  for (const auto& [spec, values] : snapshot.fields) {
+    const auto size = std::visit([](const auto& array) { return array.size(); }, *values);
+    if (size != static_cast<std::size_t>(snapshot.grid->size()) ||
+        values->index() != static_cast<std::size_t>(spec->type)) {
+      throw Bug("field " + std::string(spec->name) + " does not fit its file");
+    }
+  }
+}
+
+void write_contents(const nc::File& file, const Snapshot& snapshot, const Provenance& provenance) {
+  const Grid& grid = *snapshot.grid;
+  put_provenance(file, snapshot, provenance);
+  const GridVariables ids = define_grid(file, grid);
+  const int area = define_cell_area(file, grid, ids);
+  std::vector<int> variables;
+  for (const auto& [spec, values] : snapshot.fields) {
+    variables.push_back(define_field(file, grid, ids, *spec, *values));
+  }
+  nc::check(nc_enddef(file.id()));
+  write_coordinates(file, grid);
+  nc::check(nc_put_var_double(file.id(), area, cell_areas(grid).data()));
+  for (std::size_t k = 0; k < variables.size(); ++k) {
+    std::visit(
+        [&](const auto& array) { nc::check(nc_put_var(file.id(), variables[k], array.data())); },
+        *snapshot.fields[k].second);
+  }
+}
+
+}  // namespace
+
+void write_netcdf(const std::filesystem::path& path, const Snapshot& snapshot,
+                  const Provenance& provenance) {
+  check_snapshot(snapshot);
+  AtomicFile whole(path);
+  try {
+    auto file = nc::File::create(whole.temporary());
+    write_contents(file, snapshot, provenance);
+    file.close();
+  } catch (const nc::Failure& failure) {
+    whole.fail(failure.what());
+  }
+  whole.commit();
+}
+
+}  // namespace geo::io

@@ -1,0 +1,149 @@
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <charconv>
+#include <system_error>
+
+#include "geo/core/error.hpp"
+#include "geo/io/stage_file.hpp"
+#include "grid_description.hpp"
+#include "netcdf_file.hpp"
+#include "open_input.hpp"
+
+namespace geo::io {
+namespace {
+
+Values empty_values(Type type, std::size_t size) {
+  switch (type) {
+    case Type::float32:
+      return std::vector<float>(size);
+    case Type::float64:
+      return std::vector<double>(size);
+    case Type::int8:
+      return std::vector<std::int8_t>(size);
+    case Type::int16:
+      return std::vector<std::int16_t>(size);
+    case Type::int32:
+      return std::vector<std::int32_t>(size);
+  }
+  throw Bug("unknown type of field");
+}
+
+bool lies_on_grid(const nc::File& file, int variable, const Grid& grid) {
+  const auto dimensions = file.dimensions_of(variable);
+  const auto names = dimension_names(grid);
+  return dimensions.size() == 2 && file.dimension_name(dimensions[0]) == names.row &&
+         file.dimension_name(dimensions[1]) == names.column;
+}
+
+std::shared_ptr<const Values> read_field(const nc::File& file, int variable, const FieldSpec& spec,
+                                         const Grid& grid) {
+  const std::string name(spec.name);
+  if (!lies_on_grid(file, variable, grid)) {
+    throw InputError(fmt::format("variable {}: dimensions are not those of the grid", name));
+  }
+  if (file.variable_type(variable) != nc::type_of(spec.type)) {
+    throw InputError(
+        fmt::format("variable {}: stored as another type than this version of "
+                    "terrane writes",
+                    name));
+  }
+  const std::string units = file.text(variable, "units").value_or("");
+  if (spec.flags.empty() && units != spec.units) {
+    throw InputError(
+        fmt::format("variable {}: units are \"{}\", must be \"{}\"", name, units, spec.units));
+  }
+  Values values = empty_values(spec.type, grid.size());
+  try {
+    std::visit([&](auto& array) { nc::check(nc_get_var(file.id(), variable, array.data())); },
+               values);
+  } catch (const nc::Failure& failure) {
+    throw InputError(fmt::format("variable {}: truncated or damaged ({})", name, failure.what()));
+  }
+  return std::make_shared<const Values>(std::move(values));
+}
+
+std::string required_text(const nc::File& file, const char* name) {
+  auto text = file.text(NC_GLOBAL, name);
+  if (!text) {
+    throw InputError(fmt::format("not a stage file: global attribute {} is missing", name));
+  }
+  return *text;
+}
+
+std::uint64_t read_seed(const nc::File& file) {
+  const std::string text = required_text(file, "terrane_seed");
+  std::uint64_t seed = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  if (error != std::errc{} || end != text.data() + text.size()) {
+    throw InputError(
+        fmt::format("global attribute terrane_seed is \"{}\", must be a whole number", text));
+  }
+  return seed;
+}
+
+/// Opens a file, runs `read` on it, and puts the path before what goes wrong.
+template <class Read>
+auto read_stage_file(const std::filesystem::path& path, const Read& read) {
+  const nc::File file = open_input(path);
+  try {
+    return read(file);
+  } catch (const nc::Failure& failure) {
+    throw InputError(fmt::format("{}: truncated or damaged ({})", path.string(), failure.what()));
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", path.string(), error.what()));
+  }
+}
+
+}  // namespace
+
+nc::File open_input(const std::filesystem::path& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (error || !std::filesystem::exists(status)) {
+    throw IoError(fmt::format("cannot read {}: {}", path.string(),
+                              error ? error.message() : "No such file or directory"));
+  }
+  if (std::filesystem::is_directory(status)) {
+    throw IoError(fmt::format("cannot read {}: Is a directory", path.string()));
+  }
+  try {
+    return nc::File::open(path);
+  } catch (const nc::Failure& failure) {
+    if (failure.status == EACCES || failure.status == EPERM) {
+      throw IoError(fmt::format("cannot read {}: Permission denied", path.string()));
+    }
+    throw InputError(
+        fmt::format("{}: not a NetCDF file, or truncated ({})", path.string(), failure.what()));
+  }
+}
+
+Snapshot read_netcdf(const std::filesystem::path& path) {
+  return read_stage_file(path, [](const nc::File& file) {
+    Snapshot snapshot;
+    snapshot.grid = std::make_shared<const Grid>(read_grid(file));
+    snapshot.stage = required_text(file, "terrane_stage");
+    for (int variable = 0; variable < file.variables(); ++variable) {
+      const FieldSpec* const spec = field::find(file.variable_name(variable));
+      if (spec == nullptr) continue;
+      snapshot.fields.emplace_back(spec, read_field(file, variable, *spec, *snapshot.grid));
+    }
+    if (snapshot.fields.empty()) throw InputError("holds no field that terrane knows");
+    return snapshot;
+  });
+}
+
+Provenance read_provenance(const std::filesystem::path& path) {
+  return read_stage_file(path, [](const nc::File& file) {
+    Provenance provenance;
+    provenance.title = file.text(NC_GLOBAL, "title").value_or("");
+    provenance.config_toml = required_text(file, "terrane_config");
+    provenance.seed = read_seed(file);
+    provenance.version = required_text(file, "terrane_version");
+    provenance.history = file.text(NC_GLOBAL, "history").value_or("");
+    provenance.references = file.text(NC_GLOBAL, "references").value_or("");
+    return provenance;
+  });
+}
+
+}  // namespace geo::io

@@ -1,0 +1,214 @@
+#include "geo/kernels/diffusion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "geo/core/error.hpp"
+#include "tridiagonal.hpp"
+
+namespace geo {
+namespace {
+
+constexpr int kRows = 4;      // rows solved side by side
+constexpr int kColumns = 16;  // columns solved side by side: one cache line of floats
+constexpr double kGamma = 1.0 - 1.0 / std::numbers::sqrt2;
+
+// Rows and columns of one diffusion problem, cut into directions.
+class SplitDiffusion {
+ public:
+  SplitDiffusion(const Grid& grid, std::span<float> field, double diffusivity_m2_yr,
+                 const DiffusionOptions& options)
+      : grid_(grid), field_(field), diffusivity_m2_yr_(diffusivity_m2_yr), options_(options) {}
+
+  void solve_rows(double dt_yr) {
+    const int nx = grid_.nx(), ny = grid_.ny(), blocks = (ny + kRows - 1) / kRows;
+    const bool periodic = grid_.topology() != Topology::plane;
+    const double strength = stage_strength(dt_yr);
+#pragma omp parallel
+    {
+      TridiagonalBlock<kRows> system(nx, periodic);
+      std::vector<double> value(std::size_t(nx) * kRows), stage(value.size());
+#pragma omp for schedule(static)
+      for (int b = 0; b < blocks; ++b) {
+        const int row = b * kRows;
+        couple_rows(system, row, strength);
+        for (int k = 0; k < kRows; ++k) {
+          const float* from = &field_[std::size_t(std::min(row + k, ny - 1)) * nx];
+          for (int i = 0; i < nx; ++i) value[i * kRows + k] = from[i];
+        }
+        step(system, value, stage);
+        for (int k = 0; k < std::min(kRows, ny - row); ++k) {
+          float* to = &field_[std::size_t(row + k) * nx];
+          for (int i = 0; i < nx; ++i) to[i] = static_cast<float>(value[i * kRows + k]);
+        }
+      }
+    }
+  }
+
+  void solve_columns(double dt_yr) {
+    const int nx = grid_.nx(), ny = grid_.ny(), blocks = (nx + kColumns - 1) / kColumns;
+    const bool periodic = grid_.topology() == Topology::torus;
+    const double strength = stage_strength(dt_yr);
+#pragma omp parallel
+    {
+      TridiagonalBlock<kColumns> system(ny, periodic);
+      std::vector<double> value(std::size_t(ny) * kColumns), stage(value.size());
+      // Without marked cells all columns are one and the same system.
+      if (!has_marks()) couple_columns(system, 0, strength);
+#pragma omp for schedule(static)
+      for (int b = 0; b < blocks; ++b) {
+        const int column = b * kColumns, width = std::min(kColumns, nx - column);
+        if (has_marks()) couple_columns(system, column, strength);
+        for (int j = 0; j < ny; ++j) {
+          const float* from = &field_[std::size_t(j) * nx + column];
+          for (int k = 0; k < width; ++k) value[j * kColumns + k] = from[k];
+        }
+        step(system, value, stage);
+        for (int j = 0; j < ny; ++j) {
+          float* to = &field_[std::size_t(j) * nx + column];
+          for (int k = 0; k < width; ++k) to[k] = static_cast<float>(value[j * kColumns + k]);
+        }
+      }
+    }
+  }
+
+ private:
+  [[nodiscard]] bool has_marks() const {
+    return !options_.fixed.empty() || !options_.excluded.empty();
+  }
+
+  [[nodiscard]] double stage_strength(double dt_yr) const {
+    const bool second = options_.scheme == DiffusionScheme::second_order;
+    return (second ? kGamma : 1.0) * diffusivity_m2_yr_ * dt_yr;
+  }
+
+  // Whether `cell` reacts to `neighbour`.
+  [[nodiscard]] bool coupled(std::size_t cell, std::size_t neighbour) const {
+    if (!options_.fixed.empty() && options_.fixed[cell] != 0) return false;
+    if (options_.excluded.empty()) return true;
+    return options_.excluded[cell] == 0 && options_.excluded[neighbour] == 0;
+  }
+
+  void couple_rows(TridiagonalBlock<kRows>& system, int first_row, double strength) const {
+    const int nx = grid_.nx(), ny = grid_.ny();
+    const bool periodic = grid_.topology() != Topology::plane;
+    double coupling[kRows];
+    for (int k = 0; k < kRows; ++k) {
+      const int row = std::min(first_row + k, ny - 1);
+      coupling[k] =
+          strength * grid_.face_east_m(row) / (grid_.spacing_east_m(row) * grid_.area_m2(row));
+    }
+    for (int i = 0; i < nx; ++i) {
+      const int west = i > 0 ? i - 1 : nx - 1, east = i < nx - 1 ? i + 1 : 0;
+      double* lower = system.lower(i);
+      double* upper = system.upper(i);
+      for (int k = 0; k < kRows; ++k) lower[k] = upper[k] = coupling[k];
+      if (has_marks()) {
+        for (int k = 0; k < kRows; ++k) {
+          const std::size_t row = std::size_t(std::min(first_row + k, ny - 1)) * nx;
+          if (!coupled(row + i, row + west)) lower[k] = 0.0;
+          if (!coupled(row + i, row + east)) upper[k] = 0.0;
+        }
+      }
+    }
+    if (!periodic) {
+      std::fill_n(system.lower(0), kRows, 0.0);
+      std::fill_n(system.upper(nx - 1), kRows, 0.0);
+    }
+    system.factorise();
+  }
+
+  void couple_columns(TridiagonalBlock<kColumns>& system, int first_column, double strength) const {
+    const int nx = grid_.nx(), ny = grid_.ny();
+    const bool periodic = grid_.topology() == Topology::torus;
+    for (int j = 0; j < ny; ++j) {
+      const int south = j > 0 ? j - 1 : ny - 1, north = j < ny - 1 ? j + 1 : 0;
+      const double per_area = strength / grid_.area_m2(j);
+      const double down = per_area * grid_.face_north_m(j - 1) / grid_.spacing_north_m(south);
+      const double up = per_area * grid_.face_north_m(j) / grid_.spacing_north_m(j);
+      double* lower = system.lower(j);
+      double* upper = system.upper(j);
+      for (int k = 0; k < kColumns; ++k) {
+        lower[k] = down;
+        upper[k] = up;
+      }
+      if (has_marks()) {
+        for (int k = 0; k < kColumns; ++k) {
+          const std::size_t i = std::min(first_column + k, nx - 1);
+          const std::size_t here = std::size_t(j) * nx + i;
+          if (!coupled(here, std::size_t(south) * nx + i)) lower[k] = 0.0;
+          if (!coupled(here, std::size_t(north) * nx + i)) upper[k] = 0.0;
+        }
+      }
+    }
+    if (!periodic) {
+      std::fill_n(system.lower(0), kColumns, 0.0);
+      std::fill_n(system.upper(ny - 1), kColumns, 0.0);
+    }
+    system.factorise();
+  }
+
+  template <int kLanes>
+  void step(const TridiagonalBlock<kLanes>& system, std::vector<double>& value,
+            std::vector<double>& stage) const {
+    system.solve(value.data());
+    if (options_.scheme == DiffusionScheme::positive) return;
+    std::copy(value.begin(), value.end(), stage.begin());
+    system.solve(stage.data());
+    // The weights sum to 1, which keeps constants and mass.
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      value[i] = stage[i] + std::numbers::sqrt2 * (stage[i] - value[i]);
+    }
+  }
+
+  const Grid& grid_;
+  std::span<float> field_;
+  double diffusivity_m2_yr_;
+  const DiffusionOptions& options_;
+};
+
+// Where meridians converge, rows and columns do not commute: a step must not carry far beyond the
+// scale on which their lengths change. Steps of 0.5 cells of latitude need no cutting, as the cell
+// blurs more than the splitting does.
+int choose_substeps(const Grid& grid, double variance_m2) {
+  if (!grid.is_latitude_longitude()) return 1;
+  const double spread_cells = std::sqrt(variance_m2) / grid.face_east_m(grid.ny() / 2);
+  constexpr int kMost = 8;
+  return std::clamp(static_cast<int>(std::ceil(2.0 * spread_cells)), 1, kMost);
+}
+
+void check(const Grid& grid, std::span<const float> field, double diffusivity_m2_yr, double dt_yr,
+           const DiffusionOptions& options) {
+  const auto cells = static_cast<std::size_t>(grid.size());
+  const auto fits = [cells](std::size_t size) { return size == 0 || size == cells; };
+  if (field.size() != cells || !fits(options.fixed.size()) || !fits(options.excluded.size())) {
+    throw InputError("diffusion: field and masks must have " + std::to_string(cells) + " cells");
+  }
+  const double product = diffusivity_m2_yr * dt_yr;
+  if (!(diffusivity_m2_yr >= 0.0 && dt_yr >= 0.0 && std::isfinite(product))) {
+    throw InputError("diffusion: diffusivity and time step must be finite and not negative");
+  }
+}
+
+}  // namespace
+
+void diffuse(const Grid& grid, std::span<float> field, double diffusivity_m2_yr, double dt_yr,
+             const DiffusionOptions& options) {
+  check(grid, field, diffusivity_m2_yr, dt_yr, options);
+  if (diffusivity_m2_yr * dt_yr == 0.0) return;
+  const int steps = options.substeps > 0 ? options.substeps
+                                         : choose_substeps(grid, 2.0 * diffusivity_m2_yr * dt_yr);
+  const double step_yr = dt_yr / steps;
+  SplitDiffusion diffusion(grid, field, diffusivity_m2_yr, options);
+  diffusion.solve_rows(0.5 * step_yr);
+  for (int s = 0; s < steps; ++s) {
+    diffusion.solve_columns(step_yr);
+    // Half-steps of rows that follow each other are one.
+    diffusion.solve_rows(s + 1 < steps ? step_yr : 0.5 * step_yr);
+  }
+}
+
+}  // namespace geo

@@ -1,0 +1,260 @@
+#include "geo/io/stage_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <netcdf.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#include <csignal>
+#include <fstream>
+#include <sstream>
+
+#include "geo/core/error.hpp"
+#include "geo/io/atomic_file.hpp"
+#include "io/sample_snapshot.hpp"
+#include "io/temporary_folder.hpp"
+
+namespace geo::io {
+namespace {
+
+using testing::HasSubstr;
+
+std::string bytes_of(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+template <class Action>
+std::string message_of(ErrorKind kind, const Action& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), kind) << error.what();
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << "one line";
+    return error.what();
+  }
+  ADD_FAILURE() << "nothing was thrown";
+  return {};
+}
+
+std::vector<Grid> all_topologies() {
+  return {Grid::sphere(64, 32),
+          Grid::sphere(46, 23, {3.3962e6, 0.00589}),
+          Grid::window(33, 21, {-7.3, 61.9, 100.1, 245.0}, {6378137.0, 1 / 298.257223563},
+                       Edges::closed),
+          Grid::plane(30, 17, 30.5, 29.9),
+          Grid::plane(31, 18, 100.0, 90.1, Edges::closed, Centre{47.1, -121.7}, {3.4e6, 0.0}),
+          Grid::torus(24, 12, 1500.0, 1499.0)};
+}
+
+void expect_same_grid(const Grid& a, const Grid& b) {
+  ASSERT_EQ(a.nx(), b.nx());
+  ASSERT_EQ(a.ny(), b.ny());
+  EXPECT_EQ(a.topology(), b.topology());
+  EXPECT_EQ(a.edges(), b.edges());
+  EXPECT_EQ(a.figure().radius_m, b.figure().radius_m);
+  EXPECT_EQ(a.figure().flattening, b.figure().flattening);
+  EXPECT_EQ(a.is_latitude_longitude(), b.is_latitude_longitude());
+  ASSERT_EQ(a.is_geographic(), b.is_geographic());
+  for (int j = 0; j < a.ny(); ++j) {
+    ASSERT_EQ(a.area_m2(j), b.area_m2(j)) << "row " << j;
+    ASSERT_EQ(a.distances_m(j), b.distances_m(j)) << "row " << j;
+    if (a.is_geographic()) {
+      ASSERT_EQ(a.latitude_deg(j), b.latitude_deg(j));
+    }
+  }
+  for (int i = 0; i < a.nx(); ++i) ASSERT_EQ(a.unit_vector(i, 3), b.unit_vector(i, 3));
+}
+
+TEST(StageFile, RoundTripKeepsEveryBitOnEveryTopology) {
+  const TemporaryFolder folder;
+  int number = 0;
+  for (Grid& grid : all_topologies()) {
+    SCOPED_TRACE(number);
+    const auto path = folder / (std::to_string(number++) + ".nc");
+    const Snapshot written = sample_snapshot(std::move(grid));
+    write_netcdf(path, written, sample_provenance());
+    const Snapshot read = read_netcdf(path);
+    EXPECT_EQ(read.stage, "sample");
+    expect_same_grid(*written.grid, *read.grid);
+    ASSERT_EQ(read.fields.size(), written.fields.size());
+    for (std::size_t k = 0; k < read.fields.size(); ++k) {
+      EXPECT_EQ(read.fields[k].first, written.fields[k].first);
+      EXPECT_TRUE(same_bits(*read.fields[k].second, *written.fields[k].second))
+          << read.fields[k].first->name;
+    }
+  }
+}
+
+TEST(StageFile, RoundTripKeepsValuesAcrossManyChunks) {
+  const TemporaryFolder folder;
+  const Snapshot written = sample_snapshot(Grid::sphere(1030, 515));
+  write_netcdf(folder / "a.nc", written, sample_provenance());
+  const Snapshot read = read_netcdf(folder / "a.nc");
+  ASSERT_EQ(read.fields.size(), written.fields.size());
+  for (std::size_t k = 0; k < read.fields.size(); ++k) {
+    EXPECT_TRUE(same_bits(*read.fields[k].second, *written.fields[k].second));
+  }
+}
+
+TEST(StageFile, KeepsProvenance) {
+  const TemporaryFolder folder;
+  const Provenance written = sample_provenance();
+  write_netcdf(folder / "a.nc", sample_snapshot(Grid::sphere(16, 8)), written);
+  const Provenance read = read_provenance(folder / "a.nc");
+  EXPECT_EQ(read.title, written.title);
+  EXPECT_EQ(read.config_toml, written.config_toml);
+  EXPECT_EQ(read.seed, written.seed);
+  EXPECT_EQ(read.version, written.version);
+  EXPECT_EQ(read.history, written.history);
+  EXPECT_EQ(read.references, written.references);
+}
+
+TEST(StageFile, SameContentGivesTheSameBytes) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a.nc", "b.nc"}) {
+    write_netcdf(folder / name, sample_snapshot(Grid::sphere(640, 320)), sample_provenance());
+  }
+  for (const char* name : {"a.vti", "b.vti"}) {
+    write_vti(folder / name, sample_snapshot(Grid::sphere(640, 320)), sample_provenance());
+  }
+  EXPECT_TRUE(bytes_of(folder / "a.nc") == bytes_of(folder / "b.nc"));
+  EXPECT_TRUE(bytes_of(folder / "a.vti") == bytes_of(folder / "b.vti"));
+}
+
+/// Lets no file of this process grow beyond a size, as a full disk would.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    rlimit limit = before_;
+    limit.rlim_cur = bytes;
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() { ::setrlimit(RLIMIT_FSIZE, &before_); }
+
+ private:
+  rlimit before_{};
+};
+
+TEST(StageFile, DiskFailureNamesPathAndReasonAndLeavesNothing) {
+  const TemporaryFolder folder;
+  const Snapshot snapshot = sample_snapshot(Grid::sphere(512, 256));
+  const FileSizeLimit limit(200'000);
+  testing::internal::CaptureStderr();
+  const std::string nc = message_of(
+      ErrorKind::io, [&] { write_netcdf(folder / "a.nc", snapshot, sample_provenance()); });
+  const std::string vti = message_of(
+      ErrorKind::io, [&] { write_vti(folder / "a.vti", snapshot, sample_provenance()); });
+  const std::string text = message_of(
+      ErrorKind::io, [&] { write_text_file(folder / "a.txt", std::string(300'000, 'x')); });
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << "libraries must keep quiet";
+  EXPECT_THAT(nc, HasSubstr((folder / "a.nc").string()));
+  EXPECT_THAT(vti, HasSubstr((folder / "a.vti").string()));
+  for (const auto& message : {nc, vti, text}) EXPECT_THAT(message, HasSubstr("File too large"));
+  EXPECT_TRUE(folder.is_empty());
+}
+
+TEST(StageFile, FailedWriteKeepsTheOldFile) {
+  const TemporaryFolder folder;
+  write_netcdf(folder / "a.nc", sample_snapshot(Grid::sphere(16, 8)), sample_provenance());
+  const std::string before = bytes_of(folder / "a.nc");
+  {
+    const FileSizeLimit limit(200'000);
+    EXPECT_THROW(
+        write_netcdf(folder / "a.nc", sample_snapshot(Grid::sphere(512, 256)), sample_provenance()),
+        IoError);
+  }
+  EXPECT_TRUE(bytes_of(folder / "a.nc") == before);
+}
+
+TEST(StageFile, MissingFolderIsAnIoError) {
+  const TemporaryFolder folder;
+  const std::string message = message_of(ErrorKind::io, [&] {
+    write_netcdf(folder / "none/a.nc", sample_snapshot(Grid::sphere(16, 8)), sample_provenance());
+  });
+  EXPECT_THAT(message, HasSubstr("none/a.nc"));
+  EXPECT_THAT(message, HasSubstr("No such file or directory"));
+}
+
+TEST(StageFile, AbsentFileIsAnIoError) {
+  const std::string message =
+      message_of(ErrorKind::io, [] { read_netcdf("/nowhere/01-erosion.nc"); });
+  EXPECT_THAT(message, HasSubstr("/nowhere/01-erosion.nc"));
+  EXPECT_THAT(message, HasSubstr("No such file"));
+}
+
+TEST(StageFile, TruncatedFileIsAnInputErrorAtAnyLength) {
+  const TemporaryFolder folder;
+  write_netcdf(folder / "a.nc", sample_snapshot(Grid::sphere(512, 256)), sample_provenance());
+  const std::string whole = bytes_of(folder / "a.nc");
+  testing::internal::CaptureStderr();
+  for (const double share : {0.0, 0.001, 0.1, 0.5, 0.9, 0.9999}) {
+    SCOPED_TRACE(share);
+    std::ofstream(folder / "cut.nc", std::ios::binary)
+        << whole.substr(0, static_cast<std::size_t>(share * whole.size()));
+    const std::string message =
+        message_of(ErrorKind::input, [&] { read_netcdf(folder / "cut.nc"); });
+    EXPECT_THAT(message, HasSubstr((folder / "cut.nc").string()));
+    EXPECT_THAT(message, HasSubstr("truncated"));
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST(StageFile, DamagedValuesAreAnInputError) {
+  const TemporaryFolder folder;
+  write_netcdf(folder / "a.nc", sample_snapshot(Grid::sphere(512, 256)), sample_provenance());
+  std::string bytes = bytes_of(folder / "a.nc");
+  // Compressed streams fill most of the file: no stretch of this length escapes them.
+  for (std::size_t k = bytes.size() / 2; k < bytes.size() / 2 + 60'000; ++k) bytes[k] = '\0';
+  std::ofstream(folder / "bad.nc", std::ios::binary) << bytes;
+  const std::string message = message_of(ErrorKind::input, [&] { read_netcdf(folder / "bad.nc"); });
+  EXPECT_THAT(message, HasSubstr("variable "));
+}
+
+TEST(StageFile, ForeignFileIsAnInputErrorThatNamesWhatIsMissing) {
+  const TemporaryFolder folder;
+  int id = 0;
+  ASSERT_EQ(nc_create((folder / "a.nc").c_str(), NC_NETCDF4, &id), NC_NOERR);
+  nc_close(id);
+  const std::string message = message_of(ErrorKind::input, [&] { read_netcdf(folder / "a.nc"); });
+  EXPECT_THAT(message, HasSubstr("not a stage file"));
+  EXPECT_THAT(message, HasSubstr("terrane_grid"));
+}
+
+TEST(StageFile, OtherUnitsAreAnInputErrorThatNamesTheVariable) {
+  const TemporaryFolder folder;
+  write_netcdf(folder / "a.nc", sample_snapshot(Grid::sphere(16, 8)), sample_provenance());
+  int id = 0, variable = 0;
+  ASSERT_EQ(nc_open((folder / "a.nc").c_str(), NC_WRITE, &id), NC_NOERR);
+  nc_inq_varid(id, "temperature", &variable);
+  nc_put_att_text(id, variable, "units", 1, "K");
+  nc_close(id);
+  const std::string message = message_of(ErrorKind::input, [&] { read_netcdf(folder / "a.nc"); });
+  EXPECT_THAT(message, HasSubstr("temperature"));
+  EXPECT_THAT(message, HasSubstr("degC"));
+}
+
+TEST(StageFile, CollectionEscapesNamesAndKeepsOrder) {
+  const TemporaryFolder folder;
+  write_pvd(folder / "planet.pvd", {folder / "01 <a>&\"b\".vti", folder / "02-climate.vti"});
+  const std::string text = bytes_of(folder / "planet.pvd");
+  EXPECT_THAT(text, HasSubstr("file=\"01 &lt;a&gt;&amp;&quot;b&quot;.vti\""));
+  EXPECT_LT(text.find("01 "), text.find("02-climate"));
+}
+
+TEST(AtomicFile, LeftoversOfKilledRunsCanBeRemoved) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / ".01-erosion.nc.4242.tmp") << "half";
+  std::ofstream(folder / "02-climate.nc") << "whole";
+  remove_leftovers(folder.path());
+  EXPECT_FALSE(std::filesystem::exists(folder / ".01-erosion.nc.4242.tmp"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "02-climate.nc"));
+}
+
+}  // namespace
+}  // namespace geo::io
