@@ -1,0 +1,48 @@
+#pragma once
+
+#include <span>
+
+#include "geo/core/grid.hpp"
+
+namespace geo {
+
+/// Direction of the three-cell winds at a latitude, as where the air goes: easterlies to 30 deg,
+/// westerlies to 60 deg, polar easterlies beyond, blended linearly over `blend_deg` centred on each
+/// boundary; `north` is the part that friction turns towards low pressure, 0.35 |sin(lat)| (towards
+/// the equator in easterlies, away from it in westerlies). Peixoto & Oort (1992).
+struct WindDirection {
+  double east, north;
+};
+[[nodiscard]] WindDirection three_cell_wind(double latitude_deg, double deflection = 0.35,
+                                            double blend_deg = 10.0);
+
+/// Near-surface winds from pressure with linear drag (Lindzen & Nigam 1987):
+///   r u - f v = -dp/dx / rho,   r v + f u = -dp/dy / rho.
+struct Circulation {
+  double rotation_period_h = 23.934;
+  double air_density_kg_m3 = 1.2;
+  double drag_ocean_s = 2.6e-5;  ///< r over the sea, s-1
+  double drag_land_s = 3.0e-5;
+  double subtropical_high_hpa = 3.0;  ///< above the equatorial trough
+  double subpolar_low_hpa = 8.0;     ///< below the subtropical high
+  double polar_high_hpa = 4.0;        ///< above the subpolar low
+  double thermal_low_hpa_k = 0.8;     ///< fall of pressure per kelvin of heat anomaly
+};
+
+/// Pressure of the three cells at a latitude, hPa relative to the equatorial trough: half cosines
+/// between the trough, the high at 30, the low at 60 and the high at 90 deg.
+[[nodiscard]] double three_cell_pressure_hpa(double latitude_deg, const Circulation& model);
+/// Its derivative, hPa per radian of latitude.
+[[nodiscard]] double three_cell_gradient_hpa(double latitude_deg, const Circulation& model);
+
+/// Winds of one season on a sphere or torus.
+/// @param latitude_deg     per row
+/// @param itcz_deg         latitude about which the tropical cells are centred
+/// @param heat_anomaly_k   temperature minus what the cells already stand for, per cell
+/// @param[out] wind_east, wind_north  m s-1, where the air goes
+void thermal_winds(const Grid& grid, const Circulation& model, std::span<const double> latitude_deg,
+                   double itcz_deg, std::span<const float> land_fraction,
+                   std::span<const float> heat_anomaly_k, std::span<float> wind_east,
+                   std::span<float> wind_north);
+
+}  // namespace geo

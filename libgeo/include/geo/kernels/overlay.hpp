@@ -1,0 +1,66 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "geo/core/grid.hpp"
+
+namespace geo {
+
+/// A coarse raster laid over a fine one: averages relief onto it and interpolates fields back, so
+/// that smooth physics costs nothing per fine cell and does not depend on the fine resolution.
+///
+/// Either both grids cover the same area (sphere on sphere, torus on torus, plane on plane), or the
+/// fine one is a part of the planet (a window, or a plane that knows or is given its latitude)
+/// embedded in a coarse sphere.
+class Overlay {
+ public:
+  /// Same area, same topology.
+  Overlay(const Grid& fine, const Grid& coarse);
+  /// A part of the planet, by the latitude of its row edges (ny + 1) and the longitude of its
+  /// column edges (nx + 1), ascending, degrees.
+  Overlay(const Grid& fine, const Grid& coarse_sphere, std::span<const double> row_edge_deg,
+          std::span<const double> column_edge_deg);
+
+  [[nodiscard]] const Grid& fine() const noexcept { return fine_; }
+  [[nodiscard]] const Grid& coarse() const noexcept { return coarse_; }
+
+  /// Area-weighted means of the land fraction (elevation >= 0) and of the elevation above sea
+  /// level, and the share of each coarse cell that the fine grid covers (0..1).
+  void average_relief(std::span<const float> elevation, std::span<float> land_fraction,
+                      std::span<float> height_m, std::span<float> coverage) const;
+
+ private:
+  friend class Interpolator;
+  const Grid& fine_;
+  const Grid& coarse_;
+  std::vector<double> column_edge_, row_edge_;  ///< in coarse cells from the coarse corner
+};
+
+/// Uniform cubic B-spline through an overlay: twice differentiable, never beyond the range of the
+/// coarse values, smooths over about one coarse cell. Crosses the poles of a coarse sphere; a
+/// component of a vector changes its sign there.
+class Interpolator {
+ public:
+  enum class Kind { scalar, vector_component };
+  Interpolator(const Overlay& overlay, std::span<const float> coarse_values,
+               Kind kind = Kind::scalar);
+
+  /// Values along one fine row. `scratch` holds at least scratch_size() floats.
+  void row(int fine_row, std::span<float> out, std::span<float> scratch) const;
+  [[nodiscard]] std::size_t scratch_size() const noexcept { return padded_nx_; }
+
+ private:
+  static constexpr int kPad = 2;
+  struct Taps {
+    int first;
+    std::array<float, 4> weight;
+  };
+  static Taps taps(double position, int count, bool wraps);
+  int padded_nx_, padded_ny_;
+  std::vector<float> padded_;
+  std::vector<Taps> column_taps_, row_taps_;
+};
+
+}  // namespace geo

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "geo/core/grid.hpp"
+#include "geo/kernels/circulation.hpp"
+#include "geo/kernels/energy_balance.hpp"
+#include "geo/kernels/moisture.hpp"
+
+namespace geo {
+
+/// Constants of the seasonal climate: energy balance, winds, eddies, moisture.
+struct SeasonalClimate {
+  EnergyBalance energy;
+  Circulation circulation;
+  MoistureBudget moisture;
+  double itcz_share = 1.15;  ///< of the thermal equator's excursion that the cells follow
+  double base_diffusivity_m2_s = 1.7e6;
+  double eddy_diffusivity_m2_s = 5.0e5;  ///< at the reference temperature gradient
+  double eddy_rain = 3.0;                ///< extra rain-out activity there
+  double eddy_gradient_k_1000km = 7.0;   ///< the reference gradient
+  double orographic_share = 0.2;  ///< of the mean height by which moist air is lifted over a cell
+  double blocking_height_m = 2700.0;  ///< height at which relief halves the moist flow
+  double land_transpiration = 1.0;    ///< share of Budyko's evaporation that returns to the air
+};
+
+/// Fields of a coarse grid, one value per cell.
+struct SeasonalFields {
+  std::vector<float> temperature_c;                   ///< annual mean at sea level
+  std::vector<float> harmonic_cos_k, harmonic_sin_k;  ///< T(L) = mean + cos * cos L - sin * sin L
+  std::vector<float> precipitation_mm_yr;
+  std::vector<float> boreal_rain_share;  ///< July-phased annual harmonic of rain over its mean
+  std::vector<float> wind_east, wind_north;
+  std::vector<float> humidity;  ///< annual mean relative humidity of the column
+};
+
+/// Twelve months of climate of a sphere or torus from its relief: sea-level temperature from the
+/// energy balance, winds from cells and heat lows, rain from the moisture budget with evaporation
+/// from the land by Budyko (1974). Months run in parallel; the same bits for any number of threads.
+SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& model,
+                                      std::span<const double> latitude_deg,
+                                      std::span<const float> land_fraction,
+                                      std::span<const float> height_m);
+
+}  // namespace geo

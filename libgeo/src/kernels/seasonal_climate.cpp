@@ -1,0 +1,200 @@
+#include "geo/kernels/seasonal_climate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "geo/kernels/evaporation.hpp"
+#include "geo/kernels/insolation.hpp"
+#include "geo/kernels/thermodynamics.hpp"
+
+namespace geo {
+namespace {
+
+constexpr double kRadians = std::numbers::pi / 180.0;
+constexpr double kDaysPerYear = 365.25;
+
+std::vector<double> row_means(const Grid& grid, std::span<const double> values) {
+  std::vector<double> means(grid.ny(), 0.0);
+  for (int j = 0; j < grid.ny(); ++j) {
+    for (int i = 0; i < grid.nx(); ++i) means[j] += values[grid.cell(i, j)];
+    means[j] /= grid.nx();
+  }
+  return means;
+}
+
+/// Latitude of the warmest parallels: their mean, weighted by exp(T / 1.5 K).
+double thermal_equator_deg(std::span<const double> latitude_deg,
+                           std::span<const double> zonal_temperature) {
+  constexpr double kSharpness_k = 1.5;
+  const double warmest = *std::max_element(zonal_temperature.begin(), zonal_temperature.end());
+  double weight = 0.0, moment = 0.0;
+  for (std::size_t j = 0; j < latitude_deg.size(); ++j) {
+    const double w = std::cos(latitude_deg[j] * kRadians) *
+                     std::exp((zonal_temperature[j] - warmest) / kSharpness_k);
+    weight += w;
+    moment += w * latitude_deg[j];
+  }
+  return moment / weight;
+}
+
+/// Strength of eddies per row: the zonal-mean temperature gradient over the reference one, taken
+/// over about 10 degrees.
+std::vector<double> eddy_strength(const Grid& grid, std::span<const double> latitude_deg,
+                                  std::span<const double> zonal_temperature,
+                                  double reference_k_1000km) {
+  const int ny = grid.ny();
+  std::vector<double> strength(ny, 0.0);
+  if (latitude_deg[0] == latitude_deg[ny - 1]) return strength;  // a torus at one latitude
+  const int reach = std::max(1, ny / 36);
+  const double radius_1000km = grid.figure().radius_m / 1.0e6;
+  for (int j = 0; j < ny; ++j) {
+    const int south = std::max(0, j - reach), north = std::min(ny - 1, j + reach);
+    const double distance = (latitude_deg[north] - latitude_deg[south]) * kRadians * radius_1000km;
+    strength[j] = std::abs(zonal_temperature[north] - zonal_temperature[south]) / distance /
+                  reference_k_1000km;
+  }
+  return strength;
+}
+
+struct Month {
+  std::vector<float> wind_east, wind_north, diffusivity, eddies, saturated_mm, evaporation_mm_d,
+      land_evaporation_mm_d;
+  std::vector<double> column_mm, rain_mm_d;
+};
+
+}  // namespace
+
+SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& model,
+                                      std::span<const double> latitude_deg,
+                                      std::span<const float> land_fraction,
+                                      std::span<const float> height_m) {
+  const int nx = grid.nx(), ny = grid.ny();
+  const std::size_t size = static_cast<std::size_t>(grid.size());
+  std::vector<double> mean_c(size);
+  std::vector<std::complex<double>> harmonic_k(size);
+  solve_energy_balance(grid, model.energy, latitude_deg, land_fraction, height_m, mean_c,
+                       harmonic_k);
+  const std::vector<double> zonal_mean_c = row_means(grid, mean_c);
+
+  std::vector<float> water_fraction(size);
+  for (std::size_t cell = 0; cell < size; ++cell) water_fraction[cell] = 1.0F - land_fraction[cell];
+
+  std::vector<Month> months(kMonths);
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int m = 0; m < kMonths; ++m) {
+    Month& month = months[m];
+    const auto phase = std::polar(1.0, month_solar_longitude_deg(m) * kRadians);
+    std::vector<double> temperature_c(size);
+    for (std::size_t cell = 0; cell < size; ++cell) {
+      temperature_c[cell] = mean_c[cell] + (harmonic_k[cell] * phase).real();
+    }
+    const auto zonal_c = row_means(grid, temperature_c);
+    const double itcz_deg = model.itcz_share * thermal_equator_deg(latitude_deg, zonal_c);
+    const auto eddies = eddy_strength(grid, latitude_deg, zonal_c, model.eddy_gradient_k_1000km);
+    std::vector<float> anomaly_k(size);
+    month.diffusivity.resize(size);
+    month.eddies.resize(size);
+    month.saturated_mm.resize(size);
+    month.evaporation_mm_d.resize(size);
+    month.column_mm.resize(size);
+    month.rain_mm_d.resize(size);
+    month.land_evaporation_mm_d.resize(size);
+    month.wind_east.resize(size);
+    month.wind_north.resize(size);
+    for (int j = 0; j < ny; ++j) {
+      const double insolation =
+          daily_insolation_w_m2(latitude_deg[j], month_solar_longitude_deg(m),
+                                model.energy.obliquity_deg, model.energy.solar_constant_w_m2);
+      for (int i = 0; i < nx; ++i) {
+        const Index here = grid.cell(i, j);
+        const double surface_c = temperature_c[here] - model.energy.lapse_k_m * height_m[here];
+        anomaly_k[here] = static_cast<float>(temperature_c[here] - zonal_mean_c[j]);
+        month.diffusivity[here] = static_cast<float>(model.base_diffusivity_m2_s +
+                                                     model.eddy_diffusivity_m2_s * eddies[j]);
+        month.eddies[here] = static_cast<float>(1.0 + model.eddy_rain * eddies[j]);
+        const double lifted_c =
+            temperature_c[here] - model.energy.lapse_k_m * model.orographic_share * height_m[here];
+        const double saturated = saturated_column_mm(lifted_c);
+        month.saturated_mm[here] = static_cast<float>(saturated);
+        month.evaporation_mm_d[here] =
+            static_cast<float>(oudin_evaporation_mm_d(insolation, surface_c));
+        month.column_mm[here] = 0.7 * saturated;
+      }
+    }
+    thermal_winds(grid, model.circulation, latitude_deg, itcz_deg, land_fraction, anomaly_k,
+                  month.wind_east, month.wind_north);
+    for (std::size_t cell = 0; cell < size; ++cell) {
+      const double relative = height_m[cell] / model.blocking_height_m;
+      const auto open = static_cast<float>(1.0 / (1.0 + relative * relative));
+      month.wind_east[cell] *= open;
+      month.wind_north[cell] *= open;
+      month.diffusivity[cell] *= open;
+    }
+  }
+
+  // Land returns what Budyko's curve says of the rain that the last round gave it.
+  constexpr int kRounds = 4;
+  std::vector<float> evaporative_share(size, 0.5F);
+  for (int round = 0; round < kRounds; ++round) {
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int m = 0; m < kMonths; ++m) {
+      Month& month = months[m];
+      for (std::size_t cell = 0; cell < size; ++cell) {
+        month.land_evaporation_mm_d[cell] =
+            static_cast<float>(model.land_transpiration * land_fraction[cell] *
+                               evaporative_share[cell] * month.evaporation_mm_d[cell]);
+      }
+      solve_moisture(grid, model.moisture,
+                     {month.wind_east, month.wind_north, month.diffusivity, month.eddies,
+                      month.saturated_mm, water_fraction, month.land_evaporation_mm_d},
+                     month.column_mm);
+      for (std::size_t cell = 0; cell < size; ++cell) {
+        month.rain_mm_d[cell] = rain_mm_d(model.moisture, month.column_mm[cell],
+                                          month.saturated_mm[cell], month.eddies[cell]);
+      }
+    }
+    for (std::size_t cell = 0; cell < size; ++cell) {
+      double rain = 0.0, potential = 0.0;
+      for (const Month& month : months) {
+        rain += month.rain_mm_d[cell];
+        potential += month.evaporation_mm_d[cell];
+      }
+      evaporative_share[cell] =
+          potential > 0.0
+              ? static_cast<float>(rain / potential *
+                                   budyko_evaporated_share(rain > 0.0 ? potential / rain : 0.0))
+              : 0.0F;
+    }
+  }
+
+  SeasonalFields fields;
+  for (auto* values : {&fields.temperature_c, &fields.harmonic_cos_k, &fields.harmonic_sin_k,
+                       &fields.precipitation_mm_yr, &fields.boreal_rain_share, &fields.wind_east,
+                       &fields.wind_north, &fields.humidity}) {
+    values->resize(size);
+  }
+  for (std::size_t cell = 0; cell < size; ++cell) {
+    double rain = 0.0, boreal = 0.0, east = 0.0, north = 0.0, humidity = 0.0;
+    for (int m = 0; m < kMonths; ++m) {
+      const Month& month = months[m];
+      rain += month.rain_mm_d[cell];
+      boreal += month.rain_mm_d[cell] * std::cos((m - 6) * 30.0 * kRadians);
+      east += month.wind_east[cell];
+      north += month.wind_north[cell];
+      humidity += month.column_mm[cell] / month.saturated_mm[cell];
+    }
+    fields.temperature_c[cell] = static_cast<float>(mean_c[cell]);
+    fields.harmonic_cos_k[cell] = static_cast<float>(harmonic_k[cell].real());
+    fields.harmonic_sin_k[cell] = static_cast<float>(harmonic_k[cell].imag());
+    fields.precipitation_mm_yr[cell] = static_cast<float>(rain / kMonths * kDaysPerYear);
+    fields.boreal_rain_share[cell] = static_cast<float>(rain > 0.0 ? 2.0 * boreal / rain : 0.0);
+    fields.wind_east[cell] = static_cast<float>(east / kMonths);
+    fields.wind_north[cell] = static_cast<float>(north / kMonths);
+    fields.humidity[cell] = static_cast<float>(humidity / kMonths);
+  }
+  return fields;
+}
+
+}  // namespace geo

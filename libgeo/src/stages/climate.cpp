@@ -1,0 +1,299 @@
+#include "geo/stages/climate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "climate_frame.hpp"
+#include "geo/kernels/circulation.hpp"
+#include "geo/kernels/distance_to_coast.hpp"
+#include "geo/kernels/evaporation.hpp"
+#include "geo/kernels/insolation.hpp"
+#include "geo/kernels/noise.hpp"
+#include "geo/kernels/orography.hpp"
+#include "geo/kernels/overlay.hpp"
+
+namespace geo {
+namespace {
+
+constexpr double kRadians = std::numbers::pi / 180.0;
+constexpr double kDaysPerMonth = 365.25 / kMonths;
+
+/// The outputs of the stage.
+struct Outputs {
+  std::span<float> temperature, temperature_range, precipitation, seasonality, wind_east,
+      wind_north, coast, evaporation;
+};
+
+/// Coherent noise on annual means; free where the amplitudes are 0.
+class ClimateNoise {
+ public:
+  ClimateNoise(const ClimateParameters& p, const Grid& grid, std::uint64_t seed)
+      : temperature_(seed, "climate.temperature"),
+        rain_(seed, "climate.precipitation"),
+        grid_(grid),
+        frequency_(grid.figure().radius_m / (1000.0 * p.noise_wavelength_km)),
+        temperature_k_(p.temperature_noise_k),
+        rain_mm_yr_(p.precipitation_noise_mm_yr) {}
+  [[nodiscard]] double temperature_k(int i, int j) const {
+    return temperature_k_ == 0.0 ? 0.0 : temperature_k_ * sample(temperature_, i, j);
+  }
+  [[nodiscard]] double rain_mm_yr(int i, int j) const {
+    return rain_mm_yr_ == 0.0 ? 0.0 : rain_mm_yr_ * sample(rain_, i, j);
+  }
+
+ private:
+  [[nodiscard]] double sample(const Noise& noise, int i, int j) const {
+    constexpr int kOctaves = 4;
+    return noise.fbm(grid_.unit_vector(i, j), frequency_, kOctaves);
+  }
+  Noise temperature_, rain_;
+  const Grid& grid_;
+  double frequency_, temperature_k_, rain_mm_yr_;
+};
+
+/// The model's constants on this planet: its sun's path, its air.
+SeasonalClimate on_planet(SeasonalClimate model, const Planet& planet, double greenhouse_k) {
+  model.energy.obliquity_deg = planet.obliquity_deg;
+  const double warming_k = greenhouse_k * (std::log1p(planet.pressure_bar) - std::log1p(1.0));
+  model.energy.outgoing_w_m2 -= model.energy.outgoing_slope_w_m2_k * warming_k;
+  model.energy.diffusivity_w_m2_k *= planet.pressure_bar;  // the mass that carries the heat
+  return model;
+}
+
+/// Limits of temperature: the blueprint's on Earth, wider where the air is much thicker or thinner.
+struct TemperatureLimits {
+  explicit TemperatureLimits(double pressure_bar) {
+    const double wider_k = 40.0 * std::abs(std::log(pressure_bar));
+    lowest_c = static_cast<float>(std::max(-270.0, -70.0 - wider_k));
+    highest_c = static_cast<float>(55.0 + wider_k);
+  }
+  float lowest_c, highest_c;
+};
+
+/// Interpolated fields of the coarse planet along one row of the stage's grid.
+class PlanetRows {
+ public:
+  PlanetRows(const Overlay& overlay, const SeasonalFields& fields)
+      : temperature(overlay, fields.temperature_c),
+        harmonic_cos(overlay, fields.harmonic_cos_k),
+        harmonic_sin(overlay, fields.harmonic_sin_k),
+        rain(overlay, fields.precipitation_mm_yr),
+        boreal(overlay, fields.boreal_rain_share),
+        wind_east(overlay, fields.wind_east, Interpolator::Kind::vector_component),
+        wind_north(overlay, fields.wind_north, Interpolator::Kind::vector_component),
+        humidity(overlay, fields.humidity) {}
+  Interpolator temperature, harmonic_cos, harmonic_sin, rain, boreal, wind_east, wind_north,
+      humidity;
+};
+
+/// How high the air is lifted at the scale of single ranges, m, on the relief grid.
+std::vector<float> relief_lift(const ClimateFrame& frame, const SeasonalFields& fields,
+                               std::span<const float> height_m, double reach_km) {
+  const Grid& relief = frame.relief();
+  std::vector<float> east(height_m.size()), north(height_m.size()), lift(height_m.size());
+  const Interpolator east_of(frame.relief_on_planet(), fields.wind_east,
+                             Interpolator::Kind::vector_component);
+  const Interpolator north_of(frame.relief_on_planet(), fields.wind_north,
+                              Interpolator::Kind::vector_component);
+#pragma omp parallel
+  {
+    std::vector<float> scratch(east_of.scratch_size());
+#pragma omp for schedule(static)
+    for (int j = 0; j < relief.ny(); ++j) {
+      const std::size_t begin = static_cast<std::size_t>(j) * relief.nx();
+      east_of.row(j, std::span(east).subspan(begin, relief.nx()), scratch);
+      north_of.row(j, std::span(north).subspan(begin, relief.nx()), scratch);
+    }
+  }
+  upwind_lift(relief, height_m, east, north, 1000.0 * reach_km, lift);
+  return lift;
+}
+
+/// How much more sun than on average reaches the ground under a column of this humidity
+/// (Angstrom-Prescott, sunshine falling with humidity).
+float clearness(float humidity) {
+  const float sunshine = std::clamp(1.25F - humidity, 0.1F, 0.9F);
+  return (0.25F + 0.5F * sunshine) / 0.5F;
+}
+
+/// Potential evaporation of Oudin et al. (2005) over the year along one row.
+void add_up_evaporation(double latitude_deg, const SeasonalClimate& model,
+                        std::span<const float> temperature, std::span<const float> cosine,
+                        std::span<const float> sine, std::span<const float> humidity,
+                        std::span<float> evaporation) {
+  const auto insolation = monthly_insolation_w_m2(latitude_deg, model.energy.obliquity_deg,
+                                                  model.energy.solar_constant_w_m2);
+  std::fill(evaporation.begin(), evaporation.end(), 0.0F);
+  for (int month = 0; month < kMonths; ++month) {
+    const double longitude = month_solar_longitude_deg(month) * kRadians;
+    const auto c = static_cast<float>(std::cos(longitude)),
+               s = static_cast<float>(std::sin(longitude));
+    // Oudin's formula is linear in T + 5 degC above its threshold.
+    const auto per_kelvin =
+        static_cast<float>(oudin_evaporation_mm_d(insolation[month], -4.0) * kDaysPerMonth);
+    for (std::size_t i = 0; i < evaporation.size(); ++i) {
+      const float above = temperature[i] + c * cosine[i] - s * sine[i] + 5.0F;
+      evaporation[i] += per_kelvin * std::max(0.0F, above);
+    }
+  }
+  for (std::size_t i = 0; i < evaporation.size(); ++i) evaporation[i] *= clearness(humidity[i]);
+}
+
+class ClimateStage final : public Stage {
+ public:
+  explicit ClimateStage(ClimateParameters parameters) : p_(std::move(parameters)) {}
+  [[nodiscard]] const StageInfo& info() const override { return info_; }
+  [[nodiscard]] std::vector<Parameter> parameters() override { return p_.declarations(); }
+
+  void run(StageIo& io, Context& context) const override {
+    const auto elevation = io.read(field::elevation);
+    const Outputs out{
+        io.write(field::temperature),       io.write(field::temperature_range),
+        io.write(field::precipitation),     io.write(field::precipitation_seasonality),
+        io.write(field::wind_east),         io.write(field::wind_north),
+        io.write(field::distance_to_coast), io.write(field::potential_evaporation)};
+    distance_to_coast(io.grid(), elevation, out.coast);
+    context.advance(0.2);
+
+    const ClimateFrame frame(io.grid(), p_, context.planet);
+    const auto size = static_cast<std::size_t>(frame.planet().size());
+    std::vector<float> land(size), height_m(size);
+    frame.planet_relief(elevation, land, height_m);
+    const auto model = on_planet(p_.seasonal, context.planet, p_.blueprint.greenhouse_k);
+    const SeasonalFields fields =
+        solve_seasonal_climate(frame.planet(), model, frame.planet_latitudes_deg(), land, height_m);
+    context.advance(0.5);
+
+    const auto relief_size = static_cast<std::size_t>(frame.relief().size());
+    std::vector<float> relief_land(relief_size), relief_height(relief_size), coverage(relief_size);
+    frame.on_relief().average_relief(elevation, relief_land, relief_height, coverage);
+    if (p_.model == "blueprint") {
+      std::vector<float> rain(relief_size);
+      blueprint_relief_precipitation(frame.relief(), p_.blueprint, frame.relief_latitudes_deg(),
+                                     relief_land, relief_height, rain);
+      finish_blueprint(frame, model, fields, rain, elevation, context, out);
+    } else {
+      const auto lift = relief_lift(frame, fields, relief_height, p_.lift_reach_km);
+      finish_energy_balance(frame, model, fields, lift, elevation, context, out);
+    }
+    context.advance(1.0);
+  }
+
+ private:
+  void finish_energy_balance(const ClimateFrame& frame, const SeasonalClimate& model,
+                             const SeasonalFields& fields, std::span<const float> lift,
+                             std::span<const float> elevation, const Context& context,
+                             const Outputs& out) const {
+    const Grid& grid = frame.on_planet().fine();
+    const PlanetRows planet(frame.on_planet(), fields);
+    const Interpolator lift_of(frame.on_relief(), lift);
+    const ClimateNoise noise(p_, grid, context.seed);
+    const TemperatureLimits limits(context.planet.pressure_bar);
+    const auto lapse = static_cast<float>(model.energy.lapse_k_m);
+    const auto per_lift = static_cast<float>(1.0 / p_.lift_height_m);
+#pragma omp parallel
+    {
+      const auto nx = static_cast<std::size_t>(grid.nx());
+      std::vector<float> scratch(std::max(planet.rain.scratch_size(), lift_of.scratch_size()));
+      std::vector<float> cosine(nx), sine(nx), lifted(nx), humidity(nx);
+#pragma omp for schedule(static)
+      for (int j = 0; j < grid.ny(); ++j) {
+        const std::size_t begin = static_cast<std::size_t>(j) * nx;
+        const auto row = [&](std::span<float> field) { return field.subspan(begin, nx); };
+        const auto temperature = row(out.temperature), rain = row(out.precipitation);
+        const auto range = row(out.temperature_range), seasonality = row(out.seasonality);
+        planet.temperature.row(j, temperature, scratch);
+        planet.harmonic_cos.row(j, cosine, scratch);
+        planet.harmonic_sin.row(j, sine, scratch);
+        planet.rain.row(j, rain, scratch);
+        planet.boreal.row(j, seasonality, scratch);
+        planet.wind_east.row(j, row(out.wind_east), scratch);
+        planet.wind_north.row(j, row(out.wind_north), scratch);
+        planet.humidity.row(j, humidity, scratch);
+        lift_of.row(j, lifted, scratch);
+        const float summer = frame.latitudes_deg()[j] < 0.0 ? -1.0F : 1.0F;
+        for (std::size_t i = 0; i < nx; ++i) {
+          const float above = std::max(0.0F, elevation[begin + i]);
+          const auto shake = static_cast<float>(noise.temperature_k(static_cast<int>(i), j));
+          temperature[i] =
+              std::clamp(temperature[i] - lapse * above + shake, limits.lowest_c, limits.highest_c);
+          range[i] = 2.0F * std::sqrt(cosine[i] * cosine[i] + sine[i] * sine[i]);
+          const float ascent = std::exp(std::clamp(lifted[i] * per_lift, -1.0F, 1.0F));
+          rain[i] = std::max(0.0F, rain[i] * ascent + static_cast<float>(noise.rain_mm_yr(
+                                                          static_cast<int>(i), j)));
+          seasonality[i] = std::clamp(summer * seasonality[i], -1.0F, 1.0F);
+        }
+        add_up_evaporation(frame.latitudes_deg()[j], model, temperature, cosine, sine, humidity,
+                           row(out.evaporation));
+      }
+    }
+  }
+
+  void finish_blueprint(const ClimateFrame& frame, const SeasonalClimate& model,
+                        const SeasonalFields& fields, std::span<const float> relief_rain,
+                        std::span<const float> elevation, const Context& context,
+                        const Outputs& out) const {
+    const Grid& grid = frame.on_planet().fine();
+    const PlanetRows planet(frame.on_planet(), fields);
+    const Interpolator relief_of(frame.on_relief(), relief_rain);
+    const ClimateNoise noise(p_, grid, context.seed);
+    const double pressure_bar = context.planet.pressure_bar;
+#pragma omp parallel
+    {
+      const auto nx = static_cast<std::size_t>(grid.nx());
+      std::vector<float> scratch(std::max(planet.rain.scratch_size(), relief_of.scratch_size()));
+      std::vector<float> cosine(nx), sine(nx), humidity(nx);
+#pragma omp for schedule(static)
+      for (int j = 0; j < grid.ny(); ++j) {
+        const std::size_t begin = static_cast<std::size_t>(j) * nx;
+        const auto row = [&](std::span<float> field) { return field.subspan(begin, nx); };
+        const auto temperature = row(out.temperature), rain = row(out.precipitation);
+        const auto range = row(out.temperature_range), seasonality = row(out.seasonality);
+        planet.harmonic_cos.row(j, cosine, scratch);
+        planet.harmonic_sin.row(j, sine, scratch);
+        planet.boreal.row(j, seasonality, scratch);
+        planet.humidity.row(j, humidity, scratch);
+        relief_of.row(j, rain, scratch);
+        const double latitude = frame.latitudes_deg()[j];
+        const double hadley = hadley_precipitation_mm_yr(latitude);
+        const WindDirection wind = three_cell_wind(latitude);
+        const float summer = latitude < 0.0 ? -1.0F : 1.0F;
+        for (std::size_t i = 0; i < nx; ++i) {
+          const double h = elevation[begin + i], coast_km = 1.0e-3 * out.coast[begin + i];
+          const int column = static_cast<int>(i);
+          temperature[i] = static_cast<float>(std::clamp(
+              blueprint_temperature_c(p_.blueprint, latitude, h, coast_km, pressure_bar) +
+                  noise.temperature_k(column, j),
+              -70.0, 55.0));
+          rain[i] = static_cast<float>(blueprint_precipitation_mm_yr(p_.blueprint, hadley, rain[i],
+                                                                     h, coast_km, pressure_bar,
+                                                                     noise.rain_mm_yr(column, j)));
+          range[i] = 2.0F * std::sqrt(cosine[i] * cosine[i] + sine[i] * sine[i]);
+          seasonality[i] = std::clamp(summer * seasonality[i], -1.0F, 1.0F);
+          out.wind_east[begin + i] = static_cast<float>(p_.wind_speed_m_s * wind.east);
+          out.wind_north[begin + i] = static_cast<float>(p_.wind_speed_m_s * wind.north);
+        }
+        add_up_evaporation(latitude, model, temperature, cosine, sine, humidity,
+                           row(out.evaporation));
+      }
+    }
+  }
+
+  ClimateParameters p_;
+  StageInfo info_{"climate",
+                  "temperature, winds and rain from insolation, relief and the sea",
+                  {&field::elevation},
+                  {},
+                  {&field::temperature, &field::temperature_range, &field::precipitation,
+                   &field::precipitation_seasonality, &field::wind_east, &field::wind_north,
+                   &field::distance_to_coast, &field::potential_evaporation}};
+};
+
+}  // namespace
+
+std::unique_ptr<Stage> make_climate_stage(ClimateParameters parameters) {
+  return std::make_unique<ClimateStage>(std::move(parameters));
+}
+
+}  // namespace geo

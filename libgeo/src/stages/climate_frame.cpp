@@ -1,0 +1,159 @@
+#include "climate_frame.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace geo {
+namespace {
+
+constexpr double kRadians = std::numbers::pi / 180.0;
+
+int even(double count) { return 2 * static_cast<int>(std::lround(0.5 * count)); }
+
+/// A grid over the same area as `fine` with cells of about `spacing_m`, never finer than `fine`.
+Grid coarsened(const Grid& fine, double spacing_m) {
+  const double middle_dx_m = fine.spacing_east_m(fine.ny() / 2), dy_m = fine.face_east_m(0);
+  const auto fewer = [&](int cells, double size_m) {
+    return std::clamp(static_cast<int>(std::lround(cells * size_m / spacing_m)), 4, cells);
+  };
+  const int nx = fewer(fine.nx(), middle_dx_m);
+  const int ny = std::min(fine.ny(), std::max(3, fewer(fine.ny(), dy_m)));
+  switch (fine.topology()) {
+    case Topology::sphere: {
+      const int rows = std::max(
+          3, std::min(fine.ny(), static_cast<int>(std::lround(
+                                     180.0 * kRadians * fine.figure().radius_m / spacing_m))));
+      return Grid::sphere(std::min(even(2.0 * rows), fine.nx()), rows, fine.figure());
+    }
+    case Topology::torus:
+      return Grid::torus(nx, ny, middle_dx_m * fine.nx() / nx, dy_m * fine.ny() / ny);
+    case Topology::plane:
+      break;
+  }
+  if (fine.is_latitude_longitude()) {
+    return Grid::window(nx, ny, fine.window(), fine.figure(), fine.edges());
+  }
+  return Grid::plane(nx, ny, middle_dx_m * fine.nx() / nx, dy_m * fine.ny() / ny, fine.edges());
+}
+
+/// Latitude of each row's centre; `fallback_deg` for grids that do not know theirs.
+std::vector<double> row_latitudes(const Grid& grid, double fallback_deg, double radius_m) {
+  std::vector<double> latitude(grid.ny(), fallback_deg);
+  for (int j = 0; j < grid.ny(); ++j) {
+    if (grid.is_geographic()) {
+      latitude[j] = grid.latitude_deg(j);
+    } else if (grid.topology() == Topology::plane) {
+      latitude[j] = std::clamp(fallback_deg + grid.y_m(j) / radius_m / kRadians, -90.0, 90.0);
+    }
+  }
+  return latitude;
+}
+
+std::vector<double> edges_between(std::span<const double> centres) {
+  const double half = 0.5 * (centres[1] - centres[0]);
+  std::vector<double> edges{centres[0] - half};
+  for (std::size_t k = 0; k < centres.size(); ++k) edges.push_back(centres[k] + half);
+  return edges;
+}
+
+std::vector<double> column_longitudes(const Grid& grid, double latitude_deg, double radius_m) {
+  std::vector<double> longitude(grid.nx());
+  const double parallel_m = radius_m * kRadians * std::max(0.01, std::cos(latitude_deg * kRadians));
+  for (int i = 0; i < grid.nx(); ++i) {
+    longitude[i] = grid.is_geographic() ? grid.longitude_deg(i) : grid.x_m(i) / parallel_m;
+  }
+  return longitude;
+}
+
+}  // namespace
+
+ClimateFrame::ClimateFrame(const Grid& grid, const ClimateParameters& parameters,
+                           const Planet& planet)
+    : edge_continues_(parameters.surroundings == "edge") {
+  const double radius_m = grid.figure().radius_m;
+  const double relief_m = 1000.0 * parameters.relief_resolution_km;
+  latitude_deg_ = row_latitudes(grid, parameters.latitude_deg, radius_m);
+  const int rows = std::max(12, static_cast<int>(std::lround(180.0 / parameters.resolution_deg)));
+  switch (grid.topology()) {
+    case Topology::sphere:
+    case Topology::plane:
+      planet_ = std::make_unique<Grid>(Grid::sphere(2 * rows, rows, planet.figure()));
+      break;
+    case Topology::torus:
+      planet_ =
+          std::make_unique<Grid>(coarsened(grid, parameters.resolution_deg * kRadians * radius_m));
+      break;
+  }
+  // Small planes keep enough cells to show their own ranges.
+  const double extent_m = grid.face_east_m(0) * grid.ny();
+  relief_ = std::make_unique<Grid>(coarsened(
+      grid, grid.topology() == Topology::sphere ? relief_m : std::min(relief_m, extent_m / 64.0)));
+  planet_latitude_deg_ = row_latitudes(*planet_, parameters.latitude_deg, radius_m);
+  on_relief_ = std::make_unique<Overlay>(grid, *relief_);
+  if (grid.topology() == Topology::plane) {
+    // The relief grid spans the same rows: its latitudes lie evenly between theirs.
+    const auto edges = edges_between(latitude_deg_);
+    const double step = (edges.back() - edges.front()) / relief_->ny();
+    for (int j = 0; j < relief_->ny(); ++j) {
+      relief_latitude_deg_.push_back(edges.front() + (j + 0.5) * step);
+    }
+    const auto longitudes =
+        edges_between(column_longitudes(grid, parameters.latitude_deg, radius_m));
+    std::vector<double> relief_rows{edges.front()}, relief_columns{longitudes.front()};
+    const double step_east = (longitudes.back() - longitudes.front()) / relief_->nx();
+    for (int j = 1; j <= relief_->ny(); ++j) relief_rows.push_back(edges.front() + j * step);
+    for (int i = 1; i <= relief_->nx(); ++i) {
+      relief_columns.push_back(longitudes.front() + i * step_east);
+    }
+    on_planet_ = std::make_unique<Overlay>(grid, *planet_, edges, longitudes);
+    relief_on_planet_ = std::make_unique<Overlay>(*relief_, *planet_, relief_rows, relief_columns);
+  } else {
+    relief_latitude_deg_ = row_latitudes(*relief_, parameters.latitude_deg, radius_m);
+    on_planet_ = std::make_unique<Overlay>(grid, *planet_);
+    relief_on_planet_ = std::make_unique<Overlay>(*relief_, *planet_);
+  }
+}
+
+void ClimateFrame::planet_relief(std::span<const float> elevation, std::span<float> land_fraction,
+                                 std::span<float> height_m) const {
+  std::vector<float> coverage(land_fraction.size());
+  on_planet_->average_relief(elevation, land_fraction, height_m, coverage);
+  if (on_planet_->fine().topology() == Topology::plane && edge_continues_) {
+    continue_edge(coverage, land_fraction, height_m);
+  }
+}
+
+void ClimateFrame::continue_edge(std::span<float> coverage, std::span<float> land_fraction,
+                                 std::span<float> height_m) const {
+  constexpr double kReach_m = 1.0e6;
+  constexpr float kKnown = 1.0e-6F;
+  const Grid& grid = *planet_;
+  const int passes = std::max(1, static_cast<int>(std::lround(kReach_m / grid.face_east_m(0))));
+  for (int pass = 0; pass < passes; ++pass) {
+    std::vector<Index> reached;
+    std::vector<float> land, height;
+    for (Index cell = 0; cell < grid.size(); ++cell) {
+      if (coverage[cell] > kKnown) continue;
+      float known = 0.0F, land_sum = 0.0F, height_sum = 0.0F;
+      for (int k = 0; k < kDirections; ++k) {
+        const Index from = grid.neighbour(cell, k);
+        if (coverage[from] <= kKnown) continue;
+        known += 1.0F;
+        land_sum += land_fraction[from];
+        height_sum += height_m[from];
+      }
+      if (known == 0.0F) continue;
+      reached.push_back(cell);
+      land.push_back(land_sum / known);
+      height.push_back(height_sum / known);
+    }
+    for (std::size_t k = 0; k < reached.size(); ++k) {
+      coverage[reached[k]] = 1.0F;
+      land_fraction[reached[k]] = land[k];
+      height_m[reached[k]] = height[k];
+    }
+  }
+}
+
+}  // namespace geo
