@@ -89,6 +89,9 @@ double round_down_nicely(double value) {
 std::string label_of(double value) {
   std::string text = fmt::format("{:.4g}", std::abs(value));
   if (std::abs(value) >= 1000.0) text = fmt::format("{:.0f}", std::abs(value));
+  if (std::abs(value) >= 10000.0) {
+    for (auto at = static_cast<int>(text.size()) - 3; at > 0; at -= 3) text.insert(at, "\u2009");
+  }
   return value < 0.0 ? fmt::format("\u2212{}", text) : text;
 }
 

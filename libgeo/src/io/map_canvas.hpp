@@ -109,7 +109,7 @@ double map_unit(int map_width_px);
 /// The largest of 1, 2, 2.5, 5 times a power of ten that is at most `value`.
 double round_down_nicely(double value);
 
-/// "−50", "0.25", "11000": a number for a label, without exponent and trailing zeros.
+/// "−50", "0.25", "4000", "11 000": a number for a label, without exponent and trailing zeros.
 std::string label_of(double value);
 
 }  // namespace geo::io

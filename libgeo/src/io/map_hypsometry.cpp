@@ -206,10 +206,12 @@ void words(Canvas& canvas, const Hypsometry& planet, const Hypsometry& earth, do
            std::string_view note) {
   canvas.colour(kInk);
   canvas.font(30, true);
-  canvas.text(110, 52, "Hypsometry");
+  const std::string title = "Hypsometry";
+  canvas.text(110, 52, title);
+  const double after_title = 110 + canvas.text_width(title) + 18;
   canvas.colour(kFaintInk);
   canvas.font(18);
-  canvas.text(320, 52, "share of the true area by elevation");
+  canvas.text(after_title, 52, "share of the true area by elevation");
   canvas.text(right, 52, std::string(note), Align::right);
   cairo_set_line_width(canvas.pen(), 2.6);
   const auto line = [&](double y, Rgb colour, bool dashed, const std::string& text) {

@@ -94,7 +94,8 @@ void MapCanvas::category_legend(const std::vector<std::pair<Rgb, std::string>>& 
 
 void MapCanvas::line_legend(Rgb rgb, const std::vector<std::pair<double, std::string>>& lines,
                             Rgb swatch_colour, const std::string& swatch_label) {
-  const double y = layout_.map_top + layout_.map_height + (kLegendTop + 14) * unit_;
+  const double y =
+      std::floor(layout_.map_top + layout_.map_height + (kLegendTop + 14) * unit_) + 0.5;
   const double sample = 64 * unit_, gap = 12 * unit_, between = 46 * unit_;
   double x = layout_.map_left;
   font(18 * unit_);

@@ -71,13 +71,13 @@ Raster shade_of(const MapFrame& frame, const Raster& height_m) {
 }
 
 // Where pixels are finer than cells, the coast is the zero line of the interpolated relief, drawn
-// half a pixel to either side.
+// half a pixel to either side. Level ground at exactly 0 is land.
 void split_fine(const Raster& relief, MapBase& base) {
   for (int y = 0; y < relief.height; ++y) {
     for (int x = 0; x < relief.width; ++x) {
       const float elevation = relief.at(x, y);
       const float width = std::max(change_per_pixel(relief, x, y), 1e-3F);
-      base.land_cover.at(x, y) = std::clamp(0.5F + elevation / width, 0.0F, 1.0F);
+      base.land_cover.at(x, y) = std::clamp(0.5F + (elevation + 1e-3F) / width, 0.0F, 1.0F);
       base.land_m.at(x, y) = std::max(elevation, 0.0F);
       base.sea_m.at(x, y) = std::min(elevation, 0.0F);
     }

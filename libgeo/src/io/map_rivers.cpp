@@ -9,8 +9,8 @@
 namespace geo::io {
 namespace {
 
-// Pixels of line per square pixel of land: about one river every 22 pixels.
-constexpr double kLineDensity = 0.045;
+// Pixels of line per square pixel of land: about one river every 18 pixels.
+constexpr double kLineDensity = 0.055;
 
 // Sixteen bins per factor of two, straight from the bits of a positive float.
 constexpr int kBins = 1 << 12;
