@@ -15,6 +15,7 @@
 #include "geo/core/error.hpp"
 #include "geo/io/build_info.hpp"
 #include "geo/io/config.hpp"
+#include "geo/io/manifest.hpp"
 #include "log.hpp"
 #include "signals.hpp"
 
@@ -22,9 +23,11 @@ namespace {
 
 std::string version_text() {
   const auto& build = geo::io::build_info();
-  std::string text = fmt::format("terrane {} (commit {}, {})\n", build.version, build.commit,
-                                 build.compiler);
-  for (const auto& [name, version] : build.libraries) text += fmt::format("{} {}\n", name, version);
+  std::string text =
+      fmt::format("terrane {} (commit {}, {})\n", build.version, build.commit, build.compiler);
+  for (const auto& [name, version] : geo::io::library_versions()) {
+    text += fmt::format("{} {}\n", name, version);
+  }
   text += fmt::format("CLI11 {}", CLI11_VERSION);
   return text;
 }

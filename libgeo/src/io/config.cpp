@@ -205,6 +205,12 @@ std::string write_config(std::span<const Parameter> parameters, std::string_view
   return text;
 }
 
+std::string configured_text(std::string_view toml, std::string_view name) {
+  const toml::table root = parse(toml, "config.toml");
+  const auto dot = name.find('.');
+  return root[name.substr(0, dot)][name.substr(dot + 1)].value_or(std::string());
+}
+
 std::string first_difference(std::string_view before, std::string_view after,
                              std::span<const std::string> sections,
                              std::span<const std::string_view> ignored_names) {

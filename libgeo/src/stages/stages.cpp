@@ -24,16 +24,16 @@ namespace geo {
 std::span<const StageEntry> stage_table() {
   static const std::vector<StageEntry> kStages{
 #ifdef TERRANE_EROSION
-      {3, "erosion", make_erosion_stage},
+      {3, "erosion", [] { return make_erosion_stage(); }},
 #endif
 #ifdef TERRANE_CLIMATE
-      {4, "climate", make_climate_stage},
+      {4, "climate", [] { return make_climate_stage(); }},
 #endif
 #ifdef TERRANE_HYDROLOGY
-      {5, "hydrology", make_hydrology_stage},
+      {5, "hydrology", [] { return make_hydrology_stage(); }},
 #endif
 #ifdef TERRANE_BIOMES
-      {6, "biomes", make_biomes_stage},
+      {6, "biomes", [] { return make_biomes_stage(); }},
 #endif
   };
   return kStages;
