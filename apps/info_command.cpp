@@ -51,12 +51,9 @@ void print_json(const geo::io::Snapshot& snapshot, const geo::io::Provenance& pr
                             {"mean", summary.mean},       {"max", summary.max},
                             {"missing", summary.missing}, {"digest", summary.digest}};
   }
-  const nlohmann::ordered_json json{{"stage", snapshot.stage},
-                                    {"nx", snapshot.grid->nx()},
-                                    {"ny", snapshot.grid->ny()},
-                                    {"version", provenance.version},
-                                    {"seed", provenance.seed},
-                                    {"history", provenance.history},
+  const nlohmann::ordered_json json{{"stage", snapshot.stage},   {"nx", snapshot.grid->nx()},
+                                    {"ny", snapshot.grid->ny()}, {"version", provenance.version},
+                                    {"seed", provenance.seed},   {"history", provenance.history},
                                     {"fields", fields}};
   fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }

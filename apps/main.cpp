@@ -60,16 +60,15 @@ void refuse_extras(const CLI::App& program) {
   const std::vector<std::string_view> candidates(known.begin(), known.end());
   const bool at_top = place == &program;
   const auto hint = geo::io::suggestion(word, candidates);
-  const std::string remedy =
-      !hint.empty() ? hint
-                    : fmt::format("; {} --help lists what there is",
-                                  at_top ? "terrane" : "terrane " + place->get_name());
-  throw geo::ConfigurationError(
-      fmt::format("unknown {} {}{}",
-                  is_option ? "option"
-                  : at_top  ? "command"
-                            : "argument",
-                  word, remedy));
+  const std::string remedy = !hint.empty()
+                                 ? hint
+                                 : fmt::format("; {} --help lists what there is",
+                                               at_top ? "terrane" : "terrane " + place->get_name());
+  throw geo::ConfigurationError(fmt::format("unknown {} {}{}",
+                                            is_option ? "option"
+                                            : at_top  ? "command"
+                                                      : "argument",
+                                            word, remedy));
 }
 
 void run_program(int argc, char** argv) {
@@ -112,8 +111,8 @@ int main(int argc, char** argv) {
     }
     return 0;
   } catch (const geo::Bug& error) {
-    terrane::log_error(fmt::format("{} (a bug in terrane: please report it with the command line)",
-                                   error.what()));
+    terrane::log_error(
+        fmt::format("{} (a bug in terrane: please report it with the command line)", error.what()));
     return static_cast<int>(error.kind());
   } catch (const geo::Error& error) {
     terrane::log_error(error.what());

@@ -24,7 +24,8 @@ void add_maps_command(CLI::App& program, Action& action) {
       "maps", "Draws the PNG maps and the HTML report again from the files of a run");
   const auto options = std::make_shared<Options>();
   command->add_option("DIR", options->folder, "Folder of a run");
-  command->add_option("--width", options->width, "Width of the maps in pixels (default: as the run)")
+  command
+      ->add_option("--width", options->width, "Width of the maps in pixels (default: as the run)")
       ->type_name("PX");
   command->callback([&action, options] {
     action = [options] {

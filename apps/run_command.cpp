@@ -174,9 +174,10 @@ void add_run_command(CLI::App& program, Action& action) {
   command->add_option("--grid", o.grid, "Cells of the grid")->type_name("WIDTHxHEIGHT");
   command->add_option("--dem", o.dem, "A real relief takes the place of plates and isostasy")
       ->type_name("FILE[:VARIABLE]");
-  command->add_option("--from", o.from,
-                      "First stage. In a new folder it starts from the relief itself; with "
-                      "--overwrite the folder's earlier stages stay")
+  command
+      ->add_option("--from", o.from,
+                   "First stage. In a new folder it starts from the relief itself; with "
+                   "--overwrite the folder's earlier stages stay")
       ->type_name("STAGE");
   command->add_option("--to", o.to, "Last stage")->type_name("STAGE");
   command->add_flag("--resume", o.resume, "Go on after the last complete stage of the folder");
@@ -185,8 +186,9 @@ void add_run_command(CLI::App& program, Action& action) {
       ->type_name("N");
   command->add_flag("--no-vtk", o.no_vtk, "Write no files for ParaView");
   command->add_flag("--no-maps", o.no_maps, "Draw no maps and no report");
-  command->add_flag("--dry-run", o.dry_run, "Check everything, predict memory and time, write "
-                                            "nothing");
+  command->add_flag("--dry-run", o.dry_run,
+                    "Check everything, predict memory and time, write "
+                    "nothing");
   command->add_flag("--quiet", o.quiet, "Say nothing but warnings and errors");
   command->add_flag("--log-json", o.log_json, "Log one JSON object a line");
   command->callback([&action, options] { action = [options] { run(*options); }; });

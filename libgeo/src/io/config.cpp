@@ -1,6 +1,7 @@
 #include "geo/io/config.hpp"
 
 #include <fmt/format.h>
+#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -8,8 +9,6 @@
 #include <fstream>
 #include <optional>
 #include <sstream>
-
-#include <toml++/toml.h>
 
 #include "geo/core/error.hpp"
 

@@ -82,6 +82,9 @@ class MapCanvas : public Canvas {
   void colour_bar(std::span<const ColourMap* const> maps, bool classed);
   /// Swatches and names of categories below the map.
   void category_legend(const std::vector<std::pair<Rgb, std::string>>& items);
+  /// Lines of several widths (px at unit 1) with labels, and one swatch, below the map.
+  void line_legend(Rgb colour, const std::vector<std::pair<double, std::string>>& lines,
+                   Rgb swatch_colour, const std::string& swatch_label);
 
   /// Size of type and lines relative to a map 1800 px wide.
   [[nodiscard]] double unit() const { return unit_; }
@@ -96,6 +99,9 @@ class MapCanvas : public Canvas {
   MapLayout layout_;
   double unit_;
 };
+
+/// Creates a folder and those above it; throws IoError.
+void make_folder(const std::filesystem::path& folder);
 
 /// Size of type and lines of a map of that width, relative to one of 1800 px.
 double map_unit(int map_width_px);

@@ -151,25 +151,19 @@ class Tracer {
 // passed over.
 void draw_line(MapCanvas& canvas, const std::vector<RiverPoint>& line, double shift_px,
                const RiverNetwork& rivers) {
-  const double least = std::sqrt(rivers.least_flow);
-  const double span = std::max(std::sqrt(rivers.most_flow) - least, 1e-30);
-  const auto width_of = [&](float flow) {
-    const double relative = std::max(std::sqrt(flow) - least, 0.0) / span;
-    return std::round((0.85 + 3.6 * std::pow(relative, 0.8)) * 5.0) / 5.0;
-  };
   cairo_t* pen = canvas.pen();
   double width = 0.0, x = 0.0, y = 0.0;
   for (std::size_t i = 0; i < line.size(); ++i) {
     const auto& point = line[i];
     if (i == 0) {
       cairo_move_to(pen, x = point.x + shift_px, y = point.y);
-      width = width_of(point.flow);
+      width = river_width_px(rivers, point.flow);
       continue;
     }
     const bool last = i + 1 == line.size();
     if (!last && std::hypot(point.x + shift_px - x, point.y - y) < 0.9) continue;
     cairo_line_to(pen, x = point.x + shift_px, y = point.y);
-    const double next = width_of(point.flow);
+    const double next = river_width_px(rivers, point.flow);
     if (last || next != width) {
       cairo_set_line_width(pen, width * canvas.unit());
       cairo_stroke(pen);
@@ -189,6 +183,29 @@ bool has_rivers(const State& state) {
 
 RiverNetwork trace_rivers(const MapFrame& frame, const State& state) {
   return Tracer(frame, state).trace();
+}
+
+double river_width_px(const RiverNetwork& rivers, float flow) {
+  constexpr double kThin = 0.8, kThick = 4.6, kQuantum = 0.2;
+  const double least = std::sqrt(rivers.least_flow);
+  const double span = std::max(std::sqrt(rivers.most_flow) - least, 1e-30);
+  const double relative = std::clamp((std::sqrt(flow) - least) / span, 0.0, 1.0);
+  return std::round((kThin + (kThick - kThin) * relative) / kQuantum) * kQuantum;
+}
+
+std::vector<std::pair<double, std::string>> river_key(const RiverNetwork& rivers,
+                                                      const State& state) {
+  std::vector<std::pair<double, std::string>> key;
+  if (rivers.lines.empty()) return key;
+  const bool discharge = state.has(field::discharge);
+  const double unit = discharge ? 1.0 : 1e6;  // areas in km²
+  const auto first = std::ceil(std::log10(rivers.least_flow / unit));
+  for (double power = first; std::pow(10.0, power) * unit <= rivers.most_flow; power += 1.0) {
+    const double value = std::pow(10.0, power);
+    key.emplace_back(river_width_px(rivers, static_cast<float>(value * unit)),
+                     label_of(value) + (discharge ? " m³/s" : " km²"));
+  }
+  return key;
 }
 
 void draw_rivers(MapCanvas& canvas, const RiverNetwork& rivers, Rgb colour) {

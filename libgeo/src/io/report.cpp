@@ -3,146 +3,174 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <optional>
+#include <limits>
+#include <pugixml.hpp>
+#include <sstream>
 
-#include "geo/core/error.hpp"
+#include "embedded_data.hpp"
 #include "geo/io/atomic_file.hpp"
-#include "geo/io/config.hpp"
-#include "geo/io/stage_file.hpp"
 
 namespace geo::io {
 namespace {
 
-constexpr std::string_view kHead = R"(<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>terrane</title>
-<style>
-body { font: 15px/1.5 system-ui, sans-serif; color: #222; background: #fafaf8; margin: 0 auto;
-       max-width: 1200px; padding: 1.5rem; }
-h1 { font-weight: 600; } h2 { margin-top: 2.5rem; font-weight: 600; }
-figure { margin: 1.5rem 0; } figure img { width: 100%; height: auto; border: 1px solid #ddd; }
-figcaption { color: #555; }
-table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
-td, th { padding: .2rem .8rem .2rem 0; text-align: left; border-bottom: 1px solid #e4e4e0; }
-td.n, th.n { text-align: right; }
-pre { background: #f0f0ec; padding: 1rem; overflow-x: auto; font-size: 13px; }
-</style>
-</head>
-<body>
-)";
+pugi::xml_node add(pugi::xml_node parent, const char* tag, const std::string& text = {}) {
+  auto node = parent.append_child(tag);
+  if (!text.empty()) node.append_child(pugi::node_pcdata).set_value(text.c_str());
+  return node;
+}
 
-std::string escaped(std::string_view text) {
-  std::string safe;
-  for (const char c : text) {
-    switch (c) {
-      case '<':
-        safe += "&lt;";
-        break;
-      case '>':
-        safe += "&gt;";
-        break;
-      case '&':
-        safe += "&amp;";
-        break;
-      case '"':
-        safe += "&quot;";
-        break;
-      default:
-        safe += c;
+void add_head(pugi::xml_node html, const std::string& title) {
+  auto head = add(html, "head");
+  add(head, "meta").append_attribute("charset") = "utf-8";
+  auto viewport = add(head, "meta");
+  viewport.append_attribute("name") = "viewport";
+  viewport.append_attribute("content") = "width=device-width, initial-scale=1";
+  add(head, "title", title);
+  add(head, "style", std::string(embedded_file("report/report.css")));
+}
+
+void add_pictures(pugi::xml_node main, const std::filesystem::path& folder,
+                  const std::vector<MapFile>& maps) {
+  for (const auto& map : maps) {
+    auto figure = add(main, "figure");
+    const std::string path = map.path.lexically_proximate(folder).generic_string();
+    auto link = add(figure, "a");
+    link.append_attribute("href") = path.c_str();
+    auto image = add(link, "img");
+    image.append_attribute("src") = path.c_str();
+    image.append_attribute("alt") = map.title.c_str();
+    image.append_attribute("loading") = "lazy";
+    if (map.width_px > 0) {
+      image.append_attribute("width") = map.width_px;
+      image.append_attribute("height") = map.height_px;
+    }
+    auto caption = add(figure, "figcaption");
+    add(caption, "strong", map.title);
+    caption.append_child(pugi::node_pcdata).set_value((" " + map.caption).c_str());
+  }
+}
+
+std::string shown(double value) {
+  return std::isfinite(value) ? fmt::format("{:.5g}", value) : "–";
+}
+
+void add_fields(pugi::xml_node main, const std::vector<FieldSummary>& fields) {
+  add(main, "h2", "Fields");
+  auto scroll = add(main, "div");
+  scroll.append_attribute("class") = "wide";
+  auto table = add(scroll, "table");
+  auto heads = add(add(table, "thead"), "tr");
+  for (const char* head : {"field", "min", "mean", "max", "unit", "meaning"}) {
+    add(heads, "th", head).append_attribute("scope") = "col";
+  }
+  auto body = add(table, "tbody");
+  for (const auto& field : fields) {
+    auto row = add(body, "tr");
+    add(add(row, "td"), "code", field.name);
+    for (const double value : {field.min, field.mean, field.max}) {
+      add(row, "td", shown(value)).append_attribute("class") = "number";
+    }
+    add(row, "td", field.units);
+    add(row, "td", field.doc);
+  }
+}
+
+void add_provenance(pugi::xml_node main,
+                    const std::vector<std::pair<std::string, std::string>>& provenance) {
+  add(main, "h2", "Provenance");
+  auto list = add(main, "dl");
+  for (const auto& [name, value] : provenance) {
+    add(list, "dt", name);
+    add(list, "dd", value);
+  }
+}
+
+template <class T>
+bool is_value(T value, int missing) {
+  if constexpr (std::is_floating_point_v<T>) {
+    return std::isfinite(value);
+  } else {
+    return value != missing;
+  }
+}
+
+template <class T>
+FieldSummary summarise(const Grid& grid, const FieldSpec& spec, const std::vector<T>& values) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  struct Row {
+    double sum = 0.0, area = 0.0, min = kInfinity, max = -kInfinity;
+  };
+  std::vector<Row> rows(grid.ny());
+#pragma omp parallel for schedule(static)
+  for (int row = 0; row < grid.ny(); ++row) {
+    Row& here = rows[row];
+    for (int column = 0; column < grid.nx(); ++column) {
+      const T value = values[grid.cell(column, row)];
+      if (!is_value(value, spec.missing)) continue;
+      here.sum += static_cast<double>(value) * grid.area_m2(row);
+      here.area += grid.area_m2(row);
+      here.min = std::min(here.min, static_cast<double>(value));
+      here.max = std::max(here.max, static_cast<double>(value));
     }
   }
-  return safe;
-}
-
-std::string figure(double number) {
-  return std::isnan(number) ? std::string("none") : fmt::format("{:.5g}", number);
-}
-
-std::string pictures(const std::vector<MapFile>& maps, const std::filesystem::path& folder) {
-  std::string html;
-  for (const MapFile& map : maps) {
-    html += fmt::format(
-        "<figure><img src=\"{}\" alt=\"{}\" width=\"{}\" height=\"{}\" loading=\"lazy\">"
-        "<figcaption><b>{}.</b> {}</figcaption></figure>\n",
-        escaped(map.path.lexically_relative(folder).generic_string()), escaped(map.title),
-        map.width_px, map.height_px, escaped(map.title), escaped(map.caption));
+  Row all;
+  for (const Row& row : rows) {
+    all.sum += row.sum;
+    all.area += row.area;
+    all.min = std::min(all.min, row.min);
+    all.max = std::max(all.max, row.max);
   }
-  return html;
+  FieldSummary summary{std::string(spec.name), std::string(spec.units), std::string(spec.doc)};
+  const bool empty = !(all.area > 0.0);
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  summary.min = empty ? kNaN : all.min;
+  summary.mean = empty ? kNaN : all.sum / all.area;
+  summary.max = empty ? kNaN : all.max;
+  return summary;
 }
 
-std::string field_table(const StageRecord& stage) {
-  std::string html =
-      "<table><tr><th>field</th><th>unit</th><th class=n>min</th><th class=n>mean</th>"
-      "<th class=n>max</th></tr>\n";
-  for (const FieldSummary& field : stage.fields) {
-    html += fmt::format(
-        "<tr><td>{}</td><td>{}</td><td class=n>{}</td><td class=n>{}</td><td class=n>{}</td></tr>"
-        "\n",
-        escaped(field.name), escaped(field.units), figure(field.min), figure(field.mean),
-        figure(field.max));
-  }
-  return html + "</table>\n";
-}
-
-std::string budget_table(const StageRecord& stage) {
-  if (stage.budget.empty()) return {};
-  std::string html = "<table><tr><th>budget</th><th class=n>value</th></tr>\n";
-  for (const auto& [name, value] : stage.budget) {
-    html += fmt::format("<tr><td>{}</td><td class=n>{}</td></tr>\n", escaped(name), figure(value));
-  }
-  return html + "</table>\n";
+// Numbers of cells, lakes and basins are integers without flags.
+bool is_measured(const FieldSpec& spec) {
+  return spec.type == Type::float32 || spec.type == Type::float64;
 }
 
 }  // namespace
 
-void write_report(const std::filesystem::path& path, const Report& report) {
-  const Manifest& manifest = report.manifest;
-  std::string html(kHead);
-  html += fmt::format("<h1>A planet by terrane {}</h1>\n<p>Seed {}, commit {}.</p>\n",
-                      escaped(manifest.version), manifest.seed, escaped(manifest.commit));
-  html += pictures(report.maps, path.parent_path());
-  html += "<h2>Figures</h2>\n";
-  for (const StageRecord& stage : manifest.stages) {
-    html += fmt::format("<h3>{}</h3>\n", escaped(stage.name));
-    html += field_table(stage) + budget_table(stage);
-    for (const std::string& warning : stage.warnings) {
-      html += fmt::format("<p>{}</p>\n", escaped(warning));
-    }
+std::vector<FieldSummary> summarise_fields(const State& state) {
+  std::vector<FieldSummary> summaries;
+  for (const FieldSpec* spec : state.present()) {
+    if (!is_measured(*spec)) continue;
+    std::visit(
+        [&](const auto& values) { summaries.push_back(summarise(state.grid(), *spec, values)); },
+        *state.values(*spec));
   }
-  html += fmt::format("<h2>Parameters</h2>\n<pre>{}</pre>\n</body>\n</html>\n",
-                      escaped(report.config_toml));
-  write_text_file(path, html);
+  return summaries;
 }
 
-std::vector<std::filesystem::path> draw_run(const RunFolder& folder, int map_width_px) {
-  Report report{read_manifest(folder.manifest()), read_text(folder.config()), {}};
-  std::optional<State> state;
-  for (const StageRecord& stage : report.manifest.stages) {
-    for (const std::string& file : stage.files) {
-      if (std::filesystem::path(file).extension() != ".nc") continue;
-      Snapshot snapshot = read_netcdf(folder.path() / file);
-      if (!state) state.emplace(snapshot.grid);
-      for (const auto& [spec, values] : snapshot.fields) state->set(*spec, *values);
-    }
+std::filesystem::path write_report(const std::filesystem::path& folder, const Report& report) {
+  pugi::xml_document document;
+  document.append_child(pugi::node_doctype).set_value("html");
+  auto html = document.append_child("html");
+  html.append_attribute("lang") = "en";
+  add_head(html, report.title);
+  auto main = add(add(html, "body"), "main");
+  add(main, "h1", report.title);
+  if (!report.introduction.empty()) add(main, "p", report.introduction);
+  add_pictures(main, folder, report.maps);
+  if (!report.fields.empty()) add_fields(main, report.fields);
+  if (!report.parameters.empty()) {
+    auto details = add(main, "details");
+    add(details, "summary", "Parameters");
+    add(details, "pre", report.parameters);
   }
-  if (!state) {
-    throw InputError(
-        fmt::format("{}: holds no complete stage to draw", folder.path().string()));
-  }
-  const std::string note =
-      fmt::format("seed {}, terrane {}", report.manifest.seed, report.manifest.version);
-  report.maps = draw_map_files(*state, folder.maps(), map_width_px, note);
-  if (state->has(field::elevation)) {
-    report.maps.push_back(draw_hypsometry_file(*state, folder.maps(), note));
-  }
-  write_report(folder.report(), report);
-  std::vector<std::filesystem::path> written;
-  for (const MapFile& map : report.maps) written.push_back(map.path);
-  written.push_back(folder.report());
-  return written;
+  if (!report.provenance.empty()) add_provenance(main, report.provenance);
+
+  std::ostringstream text;
+  // As HTML wants it: no XML declaration, and no indentation that `pre` would show.
+  document.save(text, "", pugi::format_raw | pugi::format_no_declaration, pugi::encoding_utf8);
+  const auto path = folder / "report.html";
+  write_text_file(path, text.str() + "\n");
+  return path;
 }
 
 }  // namespace geo::io

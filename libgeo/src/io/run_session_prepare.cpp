@@ -208,7 +208,8 @@ void RunSession::load_complete_stages() {
 }
 
 void RunSession::read_initial_relief() {
-  const bool wanted = !state_ || (!state_->has(field::elevation) && is_still_read(field::elevation));
+  const bool wanted =
+      !state_ || (!state_->has(field::elevation) && is_still_read(field::elevation));
   if (!wanted) return;
   if (settings_.dem_file.empty()) {
     throw ConfigurationError(

@@ -2,27 +2,37 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "geo/io/manifest.hpp"
+#include "geo/core/state.hpp"
 #include "geo/io/maps.hpp"
-#include "geo/io/run_folder.hpp"
 
 namespace geo::io {
 
-/// What a report shows.
-struct Report {
-  Manifest manifest;
-  std::string config_toml;
-  std::vector<MapFile> maps;
+/// What a field holds, in three numbers. `mean` is weighted by true area; cells without a value do
+/// not count. NaN when there is no value at all.
+struct FieldSummary {
+  std::string name, units, doc;
+  double min = 0.0, mean = 0.0, max = 0.0;
 };
 
-/// One page of HTML: pictures, figures of each field, budgets, parameters. Needs no network, only
-/// the pictures beside it. Throws IoError.
-void write_report(const std::filesystem::path& path, const Report& report);
+/// Summaries of the fields of a state, in vocabulary order; enumerations and cell numbers, whose
+/// mean says nothing, are left out. Rows are summed in order: the same for any number of threads.
+std::vector<FieldSummary> summarise_fields(const State& state);
 
-/// Draws the maps and writes the report from the files of a run, by its manifest. Returns the paths
-/// written. Throws InputError or IoError when the folder holds no such run.
-std::vector<std::filesystem::path> draw_run(const RunFolder& folder, int map_width_px);
+/// What a report shows.
+struct Report {
+  std::string title;  ///< "terrane: planet of seed 1"
+  std::string introduction;
+  std::vector<MapFile> maps;
+  std::vector<FieldSummary> fields;
+  std::string parameters;  ///< the resolved configuration, as text
+  std::vector<std::pair<std::string, std::string>> provenance;  ///< ("seed", "1") …
+};
+
+/// Writes `folder`/report.html: one page without scripts that opens without a network. Pictures are
+/// referenced relative to the folder. Throws IoError. Returns its path.
+std::filesystem::path write_report(const std::filesystem::path& folder, const Report& report);
 
 }  // namespace geo::io
