@@ -1,12 +1,18 @@
 #include "netcdf_file.hpp"
 
+#include <hdf5.h>
+
 #include <utility>
 
 namespace geo::io::nc {
 
 std::unique_lock<std::recursive_mutex> lock_library() {
   static std::recursive_mutex mutex;
-  return std::unique_lock(mutex);
+  std::unique_lock lock(mutex);
+  // Each thread of HDF5 has an error stack of its own that prints itself unless told otherwise.
+  thread_local const bool kQuiet = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr) >= 0;
+  static_cast<void>(kQuiet);
+  return lock;
 }
 
 File File::create(const std::filesystem::path& path) {
