@@ -15,6 +15,7 @@
 #include "geo/core/error.hpp"
 #include "geo/io/build_info.hpp"
 #include "geo/io/config.hpp"
+#include "geo/io/manifest.hpp"
 #include "log.hpp"
 #include "signals.hpp"
 
@@ -22,9 +23,11 @@ namespace {
 
 std::string version_text() {
   const auto& build = geo::io::build_info();
-  std::string text = fmt::format("terrane {} (commit {}, {})\n", build.version, build.commit,
-                                 build.compiler);
-  for (const auto& [name, version] : build.libraries) text += fmt::format("{} {}\n", name, version);
+  std::string text =
+      fmt::format("terrane {} (commit {}, {})\n", build.version, build.commit, build.compiler);
+  for (const auto& [name, version] : geo::io::library_versions()) {
+    text += fmt::format("{} {}\n", name, version);
+  }
   text += fmt::format("CLI11 {}", CLI11_VERSION);
   return text;
 }
@@ -57,16 +60,15 @@ void refuse_extras(const CLI::App& program) {
   const std::vector<std::string_view> candidates(known.begin(), known.end());
   const bool at_top = place == &program;
   const auto hint = geo::io::suggestion(word, candidates);
-  const std::string remedy =
-      !hint.empty() ? hint
-                    : fmt::format("; {} --help lists what there is",
-                                  at_top ? "terrane" : "terrane " + place->get_name());
-  throw geo::ConfigurationError(
-      fmt::format("unknown {} {}{}",
-                  is_option ? "option"
-                  : at_top  ? "command"
-                            : "argument",
-                  word, remedy));
+  const std::string remedy = !hint.empty()
+                                 ? hint
+                                 : fmt::format("; {} --help lists what there is",
+                                               at_top ? "terrane" : "terrane " + place->get_name());
+  throw geo::ConfigurationError(fmt::format("unknown {} {}{}",
+                                            is_option ? "option"
+                                            : at_top  ? "command"
+                                                      : "argument",
+                                            word, remedy));
 }
 
 void run_program(int argc, char** argv) {
@@ -109,8 +111,8 @@ int main(int argc, char** argv) {
     }
     return 0;
   } catch (const geo::Bug& error) {
-    terrane::log_error(fmt::format("{} (a bug in terrane: please report it with the command line)",
-                                   error.what()));
+    terrane::log_error(
+        fmt::format("{} (a bug in terrane: please report it with the command line)", error.what()));
     return static_cast<int>(error.kind());
   } catch (const geo::Error& error) {
     terrane::log_error(error.what());

@@ -27,7 +27,7 @@ constexpr double kWriting_ns = 45.0;         // per value: deflate and digest, i
 constexpr double kCompression = 0.55;        // NetCDF values after deflate
 constexpr double kMaps_s = 12.0;             // all maps at their default width, one thread
 constexpr double kMaps_bytes = 12e6;
-constexpr double kParallelShare = 0.8;       // of the time, Amdahl
+constexpr double kParallelShare = 0.8;  // of the time, Amdahl
 
 double value_bytes(const FieldSpec& spec) {
   switch (spec.type) {
