@@ -7,6 +7,7 @@
 #include "geo/kernels/depressions.hpp"
 #include "geo/kernels/diffusion.hpp"
 #include "geo/kernels/flow_graph.hpp"
+#include "geo/kernels/multiple_flow.hpp"
 #include "geo/kernels/smoothing.hpp"
 #include "geo/kernels/stream_power.hpp"
 
@@ -98,7 +99,8 @@ class Landscape {
       std::fill_n(area_m2_.begin() + grid_.cell(0, j), grid_.nx(), grid_.area_m2(j));
     }
     if (spread) {
-      graph_.accumulate(area_m2_);
+      accumulate_flow(grid_, routing.filled_m, graph_.receiver,
+                      {FlowMethod::multiple, p_.flow_exponent}, area_m2_);
     } else {
       graph_.accumulate(area_m2_);
     }
