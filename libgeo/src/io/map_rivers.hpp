@@ -24,9 +24,9 @@ struct RiverNetwork {
 /// True where the state has what rivers are drawn from.
 bool has_rivers(const State& state);
 
-/// Traces rivers along `flow_receiver`. Only those above a flow that leaves about the same length
-/// of line per area of map at any scale are kept. Lines are smoothed over a few cells; one that
-/// crosses the date line runs on, one that crosses a pole is cut.
+/// Traces rivers along `flow_receiver`. Only the largest by discharge and drainage area are kept,
+/// about the same length of line per area of map at any scale. Lines are smoothed over a few cells;
+/// one that crosses the date line runs on, one that crosses a pole is cut.
 RiverNetwork trace_rivers(const MapFrame& frame, const State& state);
 
 /// Width of a river on a map 1800 px wide.
