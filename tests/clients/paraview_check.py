@@ -3,8 +3,8 @@
 usage: xvfb-run -a -s '-screen 0 1280x1024x24' pvbatch paraview_check.py FOLDER
 
 Every .vti, .pvd and .nc of the folder is opened through ParaView's own readers; field names,
-ranges, cell counts and extents must be those of the file of the same name. NetCDF files are read
-by netCDF4 for Python where it is installed, else by ParaView alone. Ends with 1 on any failure.
+ranges, counts and extents must be what netCDF4 for Python sees in the NetCDF file of the same
+name. Ends with 1 on any failure.
 """
 
 import os
@@ -28,59 +28,68 @@ def close(a, b, tolerance=1e-5):
     return abs(a - b) <= tolerance * max(1.0, abs(a), abs(b))
 
 
-def ranges_of(path):
-    """Least and greatest value of each field, and the number of cells."""
-    with Dataset(path) as dataset:
-        fields = {}
-        for name, variable in dataset.variables.items():
-            if "cell_measures" in variable.ncattrs():
-                values = np.ma.masked_invalid(np.ma.asarray(variable[:], dtype="f8"))
-                # ParaView knows missing values as NaN alone; integers keep theirs.
-                if variable.dtype.kind == "i":
-                    values = np.asarray(values.data)
-                fields[name] = (float(values.min()), float(values.max()))
-        return fields, int(np.prod(dataset["cell_area"].shape)), "lat" in dataset.dimensions
+class Reference:
+    """What netCDF4 sees of one file."""
+
+    def __init__(self, path):
+        with Dataset(path) as dataset:
+            dataset.set_auto_mask(False)
+            self.is_latitude_longitude = "lat" in dataset.dimensions
+            self.positions = None
+            if "lat" in dataset.variables and not self.is_latitude_longitude:
+                self.positions = [np.asarray(dataset[name][:]) for name in ("lon", "lat")]
+            self.cells = int(np.prod(dataset["cell_area"].shape))
+            self.values = {
+                name: np.asarray(variable[:])
+                for name, variable in dataset.variables.items()
+                if "cell_measures" in variable.ncattrs()
+            }
 
 
-def compare(path, source, fields, cells):
+def compare(path, source, reference, of_points, bytes_are_unsigned):
+    """Names and ranges of all fields; returns the extent."""
     source.UpdatePipeline()
     information = source.GetDataInformation()
-    expect(information.GetNumberOfCells() == cells, path.name, "has", information.GetNumberOfCells(),
-           "cells, not", cells)
-    arrays = source.GetCellDataInformation()
-    for name, (low, high) in fields.items():
+    count = information.GetNumberOfPoints() if of_points else information.GetNumberOfCells()
+    expect(count == reference.cells, path.name, "has", count, "values, not", reference.cells)
+    arrays = source.GetPointDataInformation() if of_points else source.GetCellDataInformation()
+    for name, values in reference.values.items():
         array = arrays.GetArray(name)
         if array is None:
             expect(False, path.name, "lacks", name)
             continue
-        seen = array.GetRange(0)
+        if bytes_are_unsigned and values.dtype == np.int8:
+            values = values.view(np.uint8)
+        seen, low, high = array.GetRange(0), np.nanmin(values), np.nanmax(values)
         expect(close(seen[0], low) and close(seen[1], high), path.name, name, "ranges over", seen,
                "not", (low, high))
     return information.GetBounds()
 
 
-def check_image(path, reference):
-    fields, cells, degrees = ranges_of(reference)
+def check_image(path):
+    reference = Reference(path.with_suffix(".nc"))
     image = simple.XMLImageDataReader(FileName=[str(path)])
-    bounds = compare(path, image, fields, cells)
+    bounds = compare(path, image, reference, of_points=False, bytes_are_unsigned=False)
     if path.stem in ("sphere", "ellipsoid"):
         expect(np.allclose(bounds[:4], [-180, 180, -90, 90]), path.name, "lies at", bounds)
     simple.Delete(image)
 
 
 def check_netcdf(path):
-    fields, cells, degrees = ranges_of(path)
+    reference = Reference(path)
+    degrees = reference.is_latitude_longitude
     reader = simple.NetCDFReader(FileName=[str(path)])
-    rows, columns = ("lat", "lon") if degrees else ("y", "x")
-    reader.Dimensions = f"({rows}, {columns})"
-    reader.ReplaceFillValueWithNan = 1
-    # Integers: ParaView would turn them into floats to put NaN in.
-    with_gaps = {name: limits for name, limits in fields.items() if limits[0] >= 0 or "_" not in name}
-    bounds = compare(path, reader, {**fields, **with_gaps}, cells)
-    radius = max(abs(b) for b in bounds)
-    if not degrees:
+    reader.Dimensions = "(lat, lon)" if degrees else "(y, x)"
+    # Cells that know their latitude and longitude would be shown on a globe.
+    reader.SphericalCoordinates = int(degrees)
+    # ParaView puts values without a sphere on points, and reads bytes without their sign.
+    bounds = compare(path, reader, reference, of_points=not degrees, bytes_are_unsigned=True)
+    if reference.positions:
+        expected = [f(axis) for axis in reference.positions for f in (np.min, np.max)]
+        expect(np.allclose(bounds[:4], expected), path.name, "lies at", bounds, "not", expected)
+    elif not degrees:
         expect(bounds[4] == bounds[5], path.name, "is no plane in ParaView:", bounds)
-        expect(radius > 100.0, path.name, "is wrapped onto a sphere:", bounds)
+        expect(bounds[1] - bounds[0] > 1000.0, path.name, "is not in metres:", bounds)
     simple.Delete(reader)
 
 
@@ -99,7 +108,7 @@ def main():
     for path in sorted(folder.glob("*.nc")):
         check_netcdf(path)
     for path in sorted(folder.glob("*.vti")):
-        check_image(path, path.with_suffix(".nc"))
+        check_image(path)
     for path in sorted(folder.glob("*.pvd")):
         check_collection(path)
     print(f"ParaView: {len(failures)} failures", flush=True)
