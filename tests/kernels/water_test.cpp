@@ -51,6 +51,9 @@ void on_many_terrains(Body&& body) {
       if (seed % 5 == 0) {  // a world without a sea
         for (float& height : z) height += 5000.0F;
       }
+      if (seed % 7 == 0) {  // drops that vanish when they are divided by a distance
+        for (float& height : z) height *= height > 0.0F ? 1e-41F : 1.0F;
+      }
       body(grid, z, find_outlets(grid, z));
     }
   }

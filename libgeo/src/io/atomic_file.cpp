@@ -56,8 +56,11 @@ fs::path folder_of(const fs::path& path) {
 }  // namespace
 
 AtomicFile::AtomicFile(fs::path final_path) : final_(std::move(final_path)) {
-  temporary_ = folder_of(final_) / ("." + final_.filename().string() + "." +
-                                    std::to_string(::getpid()) + std::string(kSuffix));
+  std::string name = final_.filename().string();
+  name.insert(name.begin(), '.');
+  name += '.' + std::to_string(::getpid());
+  name += kSuffix;
+  temporary_ = folder_of(final_) / name;
   // Created here, so that a missing folder or permission is told before anything is computed.
   const int file = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (file < 0) throw IoError("cannot write " + final_.string() + ": " + reason(errno));

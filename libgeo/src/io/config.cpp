@@ -1,6 +1,7 @@
 #include "geo/io/config.hpp"
 
 #include <fmt/format.h>
+#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -8,8 +9,6 @@
 #include <fstream>
 #include <optional>
 #include <sstream>
-
-#include <toml++/toml.h>
 
 #include "geo/core/error.hpp"
 
@@ -203,6 +202,12 @@ std::string write_config(std::span<const Parameter> parameters, std::string_view
     }
   }
   return text;
+}
+
+std::string configured_text(std::string_view toml, std::string_view name) {
+  const toml::table root = parse(toml, "config.toml");
+  const auto dot = name.find('.');
+  return root[name.substr(0, dot)][name.substr(dot + 1)].value_or(std::string());
 }
 
 std::string first_difference(std::string_view before, std::string_view after,

@@ -163,7 +163,6 @@ void write_coordinates(const nc::File& file, const Grid& grid) {
 
 std::vector<double> cell_areas(const Grid& grid) {
   std::vector<double> areas(grid.size());
-#pragma omp parallel for
   for (int j = 0; j < grid.ny(); ++j) {
     std::fill_n(areas.begin() + static_cast<std::ptrdiff_t>(j) * grid.nx(), grid.nx(),
                 grid.area_m2(j));

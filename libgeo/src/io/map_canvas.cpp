@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <system_error>
 
 #include "geo/core/error.hpp"
 #include "png_file.hpp"
@@ -68,6 +69,12 @@ void Canvas::save(const std::filesystem::path& path) const {
                    cairo_image_surface_get_stride(surface_.get())});
 }
 
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw IoError("cannot create folder " + folder.string() + ": " + error.message());
+}
+
 double map_unit(int map_width_px) { return std::max(map_width_px / 1800.0, 0.55); }
 
 double round_down_nicely(double value) {
@@ -82,7 +89,10 @@ double round_down_nicely(double value) {
 std::string label_of(double value) {
   std::string text = fmt::format("{:.4g}", std::abs(value));
   if (std::abs(value) >= 1000.0) text = fmt::format("{:.0f}", std::abs(value));
-  return value < 0.0 ? "\u2212" + text : text;
+  if (std::abs(value) >= 10000.0) {
+    for (auto at = static_cast<int>(text.size()) - 3; at > 0; at -= 3) text.insert(at, "\u2009");
+  }
+  return value < 0.0 ? fmt::format("\u2212{}", text) : text;
 }
 
 MapCanvas::MapCanvas(const Grid& grid, const MapLayout& layout)

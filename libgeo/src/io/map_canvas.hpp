@@ -82,6 +82,9 @@ class MapCanvas : public Canvas {
   void colour_bar(std::span<const ColourMap* const> maps, bool classed);
   /// Swatches and names of categories below the map.
   void category_legend(const std::vector<std::pair<Rgb, std::string>>& items);
+  /// Lines of several widths (px at unit 1) with labels, and one swatch, below the map.
+  void line_legend(Rgb colour, const std::vector<std::pair<double, std::string>>& lines,
+                   Rgb swatch_colour, const std::string& swatch_label);
 
   /// Size of type and lines relative to a map 1800 px wide.
   [[nodiscard]] double unit() const { return unit_; }
@@ -97,13 +100,16 @@ class MapCanvas : public Canvas {
   double unit_;
 };
 
+/// Creates a folder and those above it; throws IoError.
+void make_folder(const std::filesystem::path& folder);
+
 /// Size of type and lines of a map of that width, relative to one of 1800 px.
 double map_unit(int map_width_px);
 
 /// The largest of 1, 2, 2.5, 5 times a power of ten that is at most `value`.
 double round_down_nicely(double value);
 
-/// "−50", "0.25", "11000": a number for a label, without exponent and trailing zeros.
+/// "−50", "0.25", "4000", "11 000": a number for a label, without exponent and trailing zeros.
 std::string label_of(double value);
 
 }  // namespace geo::io

@@ -15,7 +15,7 @@ constexpr double kLegendTop = 48.0;  // below the map, in units of type
 void MapCanvas::colour_bar(std::span<const ColourMap* const> maps, bool classed) {
   int intervals = 0;
   for (const ColourMap* map : maps) intervals += static_cast<int>(map->stops().size()) - 1;
-  const double width = 0.8 * layout_.map_width, height = 26 * unit_;
+  const double width = (intervals > 18 ? 0.94 : 0.8) * layout_.map_width, height = 26 * unit_;
   const double step = width / intervals;
   const double left = layout_.map_left + 0.5 * (layout_.map_width - width);
   const double top = layout_.map_top + layout_.map_height + kLegendTop * unit_;
@@ -55,7 +55,7 @@ void MapCanvas::colour_bar(std::span<const ColourMap* const> maps, bool classed)
       cairo_line_to(pen(), at, top + height + 5 * unit_);
       cairo_stroke(pen());
       text(at, top + height + 23 * unit_, label, Align::centre);
-      label_end = at + half + 10 * unit_;
+      label_end = at + half + 6 * unit_;
     }
     x += step * static_cast<double>(stops.size() - 1);
   }
@@ -90,6 +90,30 @@ void MapCanvas::category_legend(const std::vector<std::pair<Rgb, std::string>>& 
     colour(kInk);
     text(x + swatch + gap, y + 0.5 * height + 0.36 * size, items[i].second);
   }
+}
+
+void MapCanvas::line_legend(Rgb rgb, const std::vector<std::pair<double, std::string>>& lines,
+                            Rgb swatch_colour, const std::string& swatch_label) {
+  const double y =
+      std::floor(layout_.map_top + layout_.map_height + (kLegendTop + 14) * unit_) + 0.5;
+  const double sample = 64 * unit_, gap = 12 * unit_, between = 46 * unit_;
+  double x = layout_.map_left;
+  font(18 * unit_);
+  for (const auto& [width, label] : lines) {
+    colour(rgb);
+    cairo_set_line_width(pen(), width * unit_);
+    cairo_move_to(pen(), x, y);
+    cairo_line_to(pen(), x + sample, y);
+    cairo_stroke(pen());
+    colour(kInk);
+    text(x + sample + gap, y + 6 * unit_, label);
+    x += sample + gap + text_width(label) + between;
+  }
+  colour(swatch_colour);
+  rectangle(x, y - 11 * unit_, 34 * unit_, 22 * unit_);
+  cairo_fill(pen());
+  colour(kInk);
+  text(x + 34 * unit_ + gap, y + 6 * unit_, swatch_label);
 }
 
 }  // namespace geo::io

@@ -59,6 +59,12 @@ void box_line(float* line, int n, std::size_t stride, int radius, bool wraps,
 
 }  // namespace
 
+Raster::Raster(const MapFrame& frame, float value)
+    : width(frame.width()),
+      height(frame.height()),
+      wraps_east(frame.wraps_east()),
+      values(static_cast<std::size_t>(width) * height, value) {}
+
 MapFrame::MapFrame(const Grid& grid, int width_px, int height_px)
     : grid_(&grid), width_(width_px), height_(height_px) {}
 
@@ -84,7 +90,7 @@ Taps MapFrame::row_taps(Filter filter) const {
 
 Raster sample_majority(const MapFrame& frame, std::span<const std::int8_t> categories) {
   const auto columns = frame.column_taps(Filter::linear), rows = frame.row_taps(Filter::linear);
-  Raster out(frame.width(), frame.height());
+  Raster out(frame);
 #pragma omp parallel for schedule(static)
   for (int y = 0; y < frame.height(); ++y) {
     std::array<float, 256> share{};
@@ -132,13 +138,13 @@ Raster blur(const MapFrame& frame, const Raster& raster, double radius_px) {
 }
 
 float change_per_pixel(const Raster& raster, int x, int y) {
-  const auto half_step = [&](int x0, int y0, int x1, int y1) {
-    const float span = static_cast<float>(std::max(x1 - x0 + y1 - y0, 1));
-    return std::abs(raster.at(x1, y1) - raster.at(x0, y0)) / span;
-  };
-  const float east = half_step(std::max(x - 1, 0), y, std::min(x + 1, raster.width - 1), y);
-  const float south = half_step(x, std::max(y - 1, 0), x, std::min(y + 1, raster.height - 1));
-  const float change = std::max(east, south);
+  const int west = raster.west_of(x), east = raster.east_of(x);
+  const int above = std::max(y - 1, 0), below = std::min(y + 1, raster.height - 1);
+  const float columns = west == x || east == x ? 1.0F : 2.0F;
+  const float across = std::abs(raster.at(east, y) - raster.at(west, y)) / columns;
+  const float down = std::abs(raster.at(x, below) - raster.at(x, above)) /
+                     static_cast<float>(std::max(below - above, 1));
+  const float change = std::max(across, down);
   return change == change ? change : 0.0F;
 }
 

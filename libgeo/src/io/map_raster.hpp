@@ -11,20 +11,23 @@
 
 namespace geo::io {
 
+class MapFrame;
+
 /// Values of the pixels of a map, row 0 at its upper edge.
 struct Raster {
   int width = 0, height = 0;
+  bool wraps_east = false;
   std::vector<float> values;
 
   Raster() = default;
-  Raster(int width_px, int height_px, float value = 0.0F)
-      : width(width_px),
-        height(height_px),
-        values(static_cast<std::size_t>(width_px) * height_px, value) {}
+  explicit Raster(const MapFrame& frame, float value = 0.0F);
   [[nodiscard]] float& at(int x, int y) { return values[static_cast<std::size_t>(y) * width + x]; }
   [[nodiscard]] float at(int x, int y) const {
     return values[static_cast<std::size_t>(y) * width + x];
   }
+  /// Neighbouring columns: round the planet, or the column itself at an edge.
+  [[nodiscard]] int west_of(int x) const { return x > 0 ? x - 1 : wraps_east ? width - 1 : 0; }
+  [[nodiscard]] int east_of(int x) const { return x < width - 1 ? x + 1 : wraps_east ? 0 : x; }
 };
 
 /// The cells of one axis that a pixel sees, with weights that sum to 1.
@@ -79,7 +82,7 @@ struct Sampled {
 template <class Value>
 Sampled sample(const MapFrame& frame, Filter filter, const Value& value) {
   const auto columns = frame.column_taps(filter), rows = frame.row_taps(filter);
-  Sampled out{Raster(frame.width(), frame.height()), Raster(frame.width(), frame.height())};
+  Sampled out{Raster(frame), Raster(frame)};
   const int nx = frame.grid().nx();
 #pragma omp parallel for schedule(static)
   for (int y = 0; y < frame.height(); ++y) {

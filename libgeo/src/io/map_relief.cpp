@@ -1,5 +1,6 @@
 #include "map_relief.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -17,7 +18,7 @@ double vertical_exaggeration(double pixel_m) {
 // Lambert shading under a light from the north-west, 45 degrees high. Slopes are measured on the
 // ground: towards the poles, where pixels narrow, over as many pixels as one is high.
 Raster lambert(const MapFrame& frame, const Raster& height_m, double exaggeration) {
-  Raster out(frame.width(), frame.height());
+  Raster out(frame);
   const int width = frame.width(), height = frame.height();
 #pragma omp parallel for schedule(static)
   for (int y = 0; y < height; ++y) {
@@ -70,14 +71,21 @@ Raster shade_of(const MapFrame& frame, const Raster& height_m) {
   return shade;
 }
 
+float lowest_around(const Raster& raster, int x, int y) {
+  return std::min({raster.at(x, y), raster.at(raster.west_of(x), y),
+                   raster.at(raster.east_of(x), y), raster.at(x, std::max(y - 1, 0)),
+                   raster.at(x, std::min(y + 1, raster.height - 1))});
+}
+
 // Where pixels are finer than cells, the coast is the zero line of the interpolated relief, drawn
-// half a pixel to either side.
+// half a pixel to either side. Land that is level with the sea has a coast only where it meets it.
 void split_fine(const Raster& relief, MapBase& base) {
   for (int y = 0; y < relief.height; ++y) {
     for (int x = 0; x < relief.width; ++x) {
       const float elevation = relief.at(x, y);
       const float width = std::max(change_per_pixel(relief, x, y), 1e-3F);
-      base.land_cover.at(x, y) = std::clamp(0.5F + elevation / width, 0.0F, 1.0F);
+      const bool all_land = lowest_around(relief, x, y) >= 0.0F;
+      base.land_cover.at(x, y) = all_land ? 1.0F : std::clamp(0.5F + elevation / width, 0.0F, 1.0F);
       base.land_m.at(x, y) = std::max(elevation, 0.0F);
       base.sea_m.at(x, y) = std::min(elevation, 0.0F);
     }
@@ -129,8 +137,8 @@ Raster lakes(const MapFrame& frame, std::span<const float> depth_m) {
 
 MapBase make_base(const MapFrame& frame, const State& state) {
   const int width = frame.width(), height = frame.height();
-  MapBase base{Raster(width, height, 1.0F), Raster(width, height), Raster(width, height),
-               Raster(width, height),       Raster(width, height), Raster()};
+  MapBase base{Raster(frame, 1.0F), Raster(frame), Raster(frame),
+               Raster(frame),       Raster(frame), Raster()};
   if (state.has(field::lake_depth)) base.lake_cover = lakes(frame, state.read(field::lake_depth));
   if (!state.has(field::elevation)) return base;
 

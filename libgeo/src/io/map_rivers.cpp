@@ -9,13 +9,16 @@
 namespace geo::io {
 namespace {
 
-// Pixels of line per square pixel of land: about one river every 22 pixels.
-constexpr double kLineDensity = 0.045;
+// Pixels of line per square pixel of land: about one river every 18 pixels.
+constexpr double kLineDensity = 0.055;
+// Side of the square that a river drains before it is drawn: in pixels so that lines keep apart, in
+// cells so that the parallel paths of a plain, one a cell, are no rivers.
+constexpr double kSourcePx = 7.0, kSourceCells = 5.0;
 
 // Sixteen bins per factor of two, straight from the bits of a positive float.
 constexpr int kBins = 1 << 12;
-int flow_bin(float flow) { return static_cast<int>(std::bit_cast<std::uint32_t>(flow) >> 19U); }
-float flow_of_bin(int bin) { return std::bit_cast<float>(static_cast<std::uint32_t>(bin) << 19U); }
+int bin_of(float value) { return static_cast<int>(std::bit_cast<std::uint32_t>(value) >> 19U); }
+float value_of(int bin) { return std::bit_cast<float>(static_cast<std::uint32_t>(bin) << 19U); }
 
 std::vector<float> flow_of(const State& state) {
   if (state.has(field::discharge)) {
@@ -24,6 +27,19 @@ std::vector<float> flow_of(const State& state) {
   }
   const auto area = state.read(field::drainage_area);
   return {area.begin(), area.end()};
+}
+
+// What decides which rivers are drawn: (Q^2 A)^(1/3). By discharge alone wet lands would have all
+// the lines, by area alone deserts as many.
+std::vector<float> rank_of(const State& state, const std::vector<float>& flow) {
+  std::vector<float> rank = flow;
+  if (state.has(field::discharge) && state.has(field::drainage_area)) {
+    const auto area = state.read(field::drainage_area);
+    for (std::size_t i = 0; i < rank.size(); ++i) {
+      rank[i] = std::cbrt(flow[i] * flow[i] * static_cast<float>(area[i]));
+    }
+  }
+  return rank;
 }
 
 struct Step {
@@ -36,20 +52,28 @@ class Tracer {
       : frame_(frame),
         grid_(frame.grid()),
         receiver_(state.read(field::flow_receiver)),
-        flow_(flow_of(state)) {
+        flow_(flow_of(state)),
+        rank_(rank_of(state, flow_)),
+        // Lines of small maps are relatively wider and need more room.
+        pixel_m_(frame.pixel_north_m(frame.height() / 2) * map_unit(frame.width())) {
+    if (state.has(field::drainage_area)) area_m2_ = state.read(field::drainage_area);
+    const double cell_m = grid_.spacing_north_m(grid_.ny() / 2);
+    source_m2_ = std::pow(std::max(kSourcePx * pixel_m_, kSourceCells * cell_m), 2);
     if (state.has(field::elevation)) elevation_ = state.read(field::elevation);
     if (state.has(field::lake_depth)) lake_depth_ = state.read(field::lake_depth);
   }
 
   RiverNetwork trace() {
     RiverNetwork network;
-    network.least_flow = threshold();
+    least_rank_ = least_rank();
     std::vector<std::uint8_t> has_donor(receiver_.size(), 0), drawn(receiver_.size(), 0);
     std::vector<Index> cells;
     for (Index i = 0; i < grid_.size(); ++i) {
-      if (!is_drawn(i, network.least_flow)) continue;
+      if (!is_drawn(i)) continue;
+      if (cells.empty()) network.least_flow = network.most_flow = flow_[i];
       cells.push_back(i);
       has_donor[receiver_[i]] = 1;
+      network.least_flow = std::min(network.least_flow, flow_[i]);
       network.most_flow = std::max(network.most_flow, flow_[i]);
     }
     for (const Index source : cells) {
@@ -64,10 +88,13 @@ class Tracer {
   [[nodiscard]] bool is_lake(Index i) const {
     return !lake_depth_.empty() && lake_depth_[i] > 0.0F;
   }
-  [[nodiscard]] bool is_drawn(Index i, float least_flow) const {
+  [[nodiscard]] bool is_river(Index i) const {
     const Index to = receiver_[i];
-    return to >= 0 && to != i && flow_[i] >= least_flow && is_land(i) &&
-           !(is_lake(i) && is_lake(to));
+    return to >= 0 && to != i && rank_[i] > 0.0F && is_land(i) &&
+           (area_m2_.empty() || area_m2_[i] >= source_m2_);
+  }
+  [[nodiscard]] bool is_drawn(Index i) const {
+    return is_river(i) && rank_[i] >= least_rank_ && !(is_lake(i) && is_lake(receiver_[i]));
   }
 
   [[nodiscard]] Step step(Index from, Index to) const {
@@ -79,27 +106,25 @@ class Tracer {
     return {columns, grid_.row(to) - grid_.row(from)};
   }
 
-  // The flow above which the rivers are as long as the map has room for.
-  [[nodiscard]] float threshold() const {
+  // The rank above which the rivers are as long as the map has room for.
+  [[nodiscard]] float least_rank() const {
     std::vector<double> length_m(kBins, 0.0);
     double land_m2 = 0.0;
     for (Index i = 0; i < grid_.size(); ++i) {
       if (!is_land(i)) continue;
       const int row = grid_.row(i);
       land_m2 += grid_.area_m2(row);
-      if (receiver_[i] < 0 || receiver_[i] == i || !(flow_[i] > 0.0F)) continue;
+      if (!is_river(i)) continue;
       const Step to = step(i, receiver_[i]);
-      length_m[flow_bin(flow_[i])] +=
+      length_m[bin_of(rank_[i])] +=
           std::hypot(to.columns * grid_.spacing_east_m(row), to.rows * grid_.spacing_north_m(row));
     }
-    // Lines of small maps are relatively wider and need more room.
-    const double pixel_m = frame_.pixel_north_m(frame_.height() / 2) * map_unit(frame_.width());
-    double room_m = kLineDensity * land_m2 / pixel_m;
+    double room_m = kLineDensity * land_m2 / pixel_m_;
     for (int bin = kBins - 1; bin > 0; --bin) {
       room_m -= length_m[bin];
-      if (room_m < 0.0) return flow_of_bin(bin + 1);
+      if (room_m < 0.0) return value_of(bin + 1);
     }
-    return flow_of_bin(1);
+    return value_of(1);
   }
 
   void follow(Index cell, RiverNetwork& network, std::vector<std::uint8_t>& drawn) {
@@ -109,7 +134,7 @@ class Tracer {
       line->push_back({frame_.x_of(column), frame_.y_of(row), flow_[i]});
     };
     add(cell);
-    while (is_drawn(cell, network.least_flow) && drawn[cell] == 0) {
+    while (is_drawn(cell) && drawn[cell] == 0) {
       drawn[cell] = 1;
       const Index to = receiver_[cell];
       const Step by = step(cell, to);
@@ -143,33 +168,30 @@ class Tracer {
   const MapFrame& frame_;
   const Grid& grid_;
   std::span<const std::int32_t> receiver_;
-  std::vector<float> flow_;
+  std::vector<float> flow_, rank_;
+  double pixel_m_, source_m2_ = 0.0;
+  float least_rank_ = 0.0F;
   std::span<const float> elevation_, lake_depth_;
+  std::span<const double> area_m2_;
 };
 
 // One line from point to point, in strokes of constant width; points closer than a pixel are
 // passed over.
 void draw_line(MapCanvas& canvas, const std::vector<RiverPoint>& line, double shift_px,
                const RiverNetwork& rivers) {
-  const double least = std::sqrt(rivers.least_flow);
-  const double span = std::max(std::sqrt(rivers.most_flow) - least, 1e-30);
-  const auto width_of = [&](float flow) {
-    const double relative = std::max(std::sqrt(flow) - least, 0.0) / span;
-    return std::round((0.85 + 3.6 * std::pow(relative, 0.8)) * 5.0) / 5.0;
-  };
   cairo_t* pen = canvas.pen();
   double width = 0.0, x = 0.0, y = 0.0;
   for (std::size_t i = 0; i < line.size(); ++i) {
     const auto& point = line[i];
     if (i == 0) {
       cairo_move_to(pen, x = point.x + shift_px, y = point.y);
-      width = width_of(point.flow);
+      width = river_width_px(rivers, point.flow);
       continue;
     }
     const bool last = i + 1 == line.size();
     if (!last && std::hypot(point.x + shift_px - x, point.y - y) < 0.9) continue;
     cairo_line_to(pen, x = point.x + shift_px, y = point.y);
-    const double next = width_of(point.flow);
+    const double next = river_width_px(rivers, point.flow);
     if (last || next != width) {
       cairo_set_line_width(pen, width * canvas.unit());
       cairo_stroke(pen);
@@ -189,6 +211,32 @@ bool has_rivers(const State& state) {
 
 RiverNetwork trace_rivers(const MapFrame& frame, const State& state) {
   return Tracer(frame, state).trace();
+}
+
+double river_width_px(const RiverNetwork& rivers, float flow) {
+  constexpr double kThin = 0.8, kThick = 4.6, kQuantum = 0.2;
+  const double least = std::sqrt(rivers.least_flow);
+  const double span = std::max(std::sqrt(rivers.most_flow) - least, 1e-30);
+  const double relative = std::clamp((std::sqrt(flow) - least) / span, 0.0, 1.0);
+  return std::round((kThin + (kThick - kThin) * relative) / kQuantum) * kQuantum;
+}
+
+std::vector<std::pair<double, std::string>> river_key(const RiverNetwork& rivers,
+                                                      const State& state) {
+  std::vector<std::pair<double, std::string>> key;
+  if (rivers.lines.empty()) return key;
+  const bool discharge = state.has(field::discharge);
+  const double unit = discharge ? 1.0 : 1e6;  // areas in km²
+  constexpr double kMostLines = 4.0;
+  const double last = std::floor(std::log10(rivers.most_flow / unit));
+  const double first =
+      std::max(std::ceil(std::log10(rivers.least_flow / unit)), last - kMostLines + 1.0);
+  for (double power = first; std::pow(10.0, power) * unit <= rivers.most_flow; power += 1.0) {
+    const double value = std::pow(10.0, power);
+    key.emplace_back(river_width_px(rivers, static_cast<float>(value * unit)),
+                     label_of(value) + (discharge ? " m³/s" : " km²"));
+  }
+  return key;
 }
 
 void draw_rivers(MapCanvas& canvas, const RiverNetwork& rivers, Rgb colour) {

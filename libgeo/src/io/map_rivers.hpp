@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "geo/core/state.hpp"
@@ -22,10 +24,17 @@ struct RiverNetwork {
 /// True where the state has what rivers are drawn from.
 bool has_rivers(const State& state);
 
-/// Traces rivers along `flow_receiver`. Only those above a flow that leaves about the same length
-/// of line per area of map at any scale are kept. Lines are smoothed over a few cells; one that
-/// crosses the date line runs on, one that crosses a pole is cut.
+/// Traces rivers along `flow_receiver`. Only the largest by discharge and drainage area are kept,
+/// about the same length of line per area of map at any scale. Lines are smoothed over a few cells;
+/// one that crosses the date line runs on, one that crosses a pole is cut.
 RiverNetwork trace_rivers(const MapFrame& frame, const State& state);
+
+/// Width of a river on a map 1800 px wide.
+double river_width_px(const RiverNetwork& rivers, float flow);
+
+/// Round flows between the least and the most, with their widths and words, for a legend.
+std::vector<std::pair<double, std::string>> river_key(const RiverNetwork& rivers,
+                                                      const State& state);
 
 /// Draws them, as wide as the square root of the flow, at both edges where they run across one.
 void draw_rivers(MapCanvas& canvas, const RiverNetwork& rivers, Rgb colour);

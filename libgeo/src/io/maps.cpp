@@ -110,7 +110,7 @@ void draw_field(const FieldMap& map, const Scene& scene, MapCanvas& canvas) {
     Rgb colour = kPaleSea;
     if (at == at) {
       colour = colours.classed(at, change_per_pixel(position, x, y));
-      colour = lit(colour, shade, 0.06F + 0.32F * cover);
+      colour = lit(colour, shade, 0.06F + 0.36F * cover);
       if (map.land_only) colour = mix(kPaleSea, colour, cover);
     }
     return with_coast(base, x, y, colour);
@@ -130,7 +130,8 @@ void draw_categories(const CategoryMap& map, const Scene& scene, MapCanvas& canv
   const MapBase& base = scene.base;
   canvas.paint([&](int x, int y) {
     const Rgb colour = colour_of(static_cast<int>(category.at(x, y)));
-    return lit(colour, base.shade.at(x, y), 0.34F * base.land_cover.at(x, y));
+    const Rgb shaded = lit(colour, base.shade.at(x, y), 0.34F * base.land_cover.at(x, y));
+    return mix(shaded, kInk, 0.4F * base.coast.at(x, y));
   });
   canvas.frame();
   std::vector<std::pair<Rgb, std::string>> items;
@@ -143,17 +144,19 @@ void draw_categories(const CategoryMap& map, const Scene& scene, MapCanvas& canv
 }
 
 void draw_river_map(const Scene& scene, MapCanvas& canvas) {
-  const ColourMap sea("sea_depth");
+  const ColourMap sea("sea_depth"), heights("land_elevation");
   const MapBase& base = scene.base;
   canvas.paint([&](int x, int y) {
     const float cover = base.land_cover.at(x, y), shade = base.shade.at(x, y);
-    const Rgb water = lit(mix(sea.smooth(base.sea_m.at(x, y)), {1, 1, 1}, 0.55F), shade, 0.15F);
-    const Rgb land = lit(kPaleLand, shade, 0.5F);
+    const Rgb water = lit(mix(sea.smooth(base.sea_m.at(x, y)), {1, 1, 1}, 0.6F), shade, 0.12F);
+    const Rgb tint = mix(kPaleLand, heights.smooth(base.land_m.at(x, y)), 0.28F);
+    const Rgb land = lit(tint, shade, 0.62F);
     return with_lakes(base, x, y, with_coast(base, x, y, mix(water, land, cover)));
   });
   const RiverNetwork rivers = trace_rivers(scene.frame, scene.state);
   draw_rivers(canvas, rivers, kRiver);
   canvas.frame();
+  canvas.line_legend(kRiver, river_key(rivers, scene.state), kLake, "lakes");
 }
 
 void draw_wind(const Scene& scene, MapCanvas& canvas) {
@@ -242,9 +245,7 @@ MapLayout map_layout(const Grid& grid, int width_px) {
 std::vector<MapFile> draw_map_files(const State& state, const std::filesystem::path& folder,
                                     int width_px, std::string_view note) {
   const MapLayout layout = map_layout(state.grid(), width_px);
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw IoError("cannot create folder " + folder.string() + ": " + error.message());
+  make_folder(folder);
   const MapFrame frame(state.grid(), layout.map_width, layout.map_height);
   const MapBase base = make_base(frame, state);
   const Scene scene{state, frame, base};

@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 
+#include "chunk_writer.hpp"
 #include "geo/core/error.hpp"
 #include "geo/io/atomic_file.hpp"
 #include "geo/io/stage_file.hpp"
@@ -22,23 +23,27 @@ std::size_t chunk_length(int cells) {
   return static_cast<std::size_t>((cells + chunks - 1) / chunks);
 }
 
+ChunkShape chunk_shape(const Grid& grid) {
+  return {chunk_length(grid.ny()), chunk_length(grid.nx())};
+}
+
 int define_raster(const nc::File& file, const Grid& grid, const GridVariables& ids,
                   std::string_view name, nc_type type) {
   const int variable =
       file.define_variable(name, type, std::array{ids.row_dimension, ids.column_dimension});
-  const std::array chunks{chunk_length(grid.ny()), chunk_length(grid.nx())};
+  const ChunkShape chunk = chunk_shape(grid);
+  const std::array chunks{chunk.rows, chunk.columns};
   nc::check(nc_def_var_chunking(file.id(), variable, NC_CHUNKED, chunks.data()));
   nc::check(nc_def_var_deflate(file.id(), variable, 1, 1, kDeflateLevel));
   return variable;
 }
 
-int define_cell_area(const nc::File& file, const Grid& grid, const GridVariables& ids) {
+void define_cell_area(const nc::File& file, const Grid& grid, const GridVariables& ids) {
   const int variable = define_raster(file, grid, ids, kCellArea, NC_DOUBLE);
   file.put(variable, "standard_name", "cell_area");
   file.put(variable, "long_name", "area of the cell");
   file.put(variable, "units", "m2");
   if (ids.has_coordinates) file.put(variable, "coordinates", "lat lon");
-  return variable;
 }
 
 template <class T>
@@ -69,8 +74,8 @@ void put_typed_attributes(const nc::File& file, int variable, const FieldSpec& s
   file.put(variable, "flag_meanings", meanings);
 }
 
-int define_field(const nc::File& file, const Grid& grid, const GridVariables& ids,
-                 const FieldSpec& spec, const Values& values) {
+void define_field(const nc::File& file, const Grid& grid, const GridVariables& ids,
+                  const FieldSpec& spec, const Values& values) {
   const int variable = define_raster(file, grid, ids, spec.name, nc::type_of(spec.type));
   std::visit([&]<class T>(const std::vector<T>&) { put_typed_attributes<T>(file, variable, spec); },
              values);
@@ -81,7 +86,6 @@ int define_field(const nc::File& file, const Grid& grid, const GridVariables& id
   file.put(variable, "cell_measures", "area: cell_area");
   if (ids.has_mapping) file.put(variable, "grid_mapping", kMapping);
   if (ids.has_coordinates) file.put(variable, "coordinates", "lat lon");
-  return variable;
 }
 
 void put_provenance(const nc::File& file, const Snapshot& snapshot, const Provenance& provenance) {
@@ -107,23 +111,29 @@ void check_snapshot(const Snapshot& snapshot) {
   }
 }
 
-void write_contents(const nc::File& file, const Snapshot& snapshot, const Provenance& provenance) {
+/// Everything but the rasters' values.
+void write_frame(const std::filesystem::path& path, const Snapshot& snapshot,
+                 const Provenance& provenance) {
   const Grid& grid = *snapshot.grid;
+  auto file = nc::File::create(path);
   put_provenance(file, snapshot, provenance);
   const GridVariables ids = define_grid(file, grid);
-  const int area = define_cell_area(file, grid, ids);
-  std::vector<int> variables;
-  for (const auto& [spec, values] : snapshot.fields) {
-    variables.push_back(define_field(file, grid, ids, *spec, *values));
-  }
+  define_cell_area(file, grid, ids);
+  for (const auto& [spec, values] : snapshot.fields) define_field(file, grid, ids, *spec, *values);
   nc::check(nc_enddef(file.id()));
   write_coordinates(file, grid);
-  nc::check(nc_put_var_double(file.id(), area, cell_areas(grid).data()));
-  for (std::size_t k = 0; k < variables.size(); ++k) {
-    std::visit(
-        [&](const auto& array) { nc::check(nc_put_var(file.id(), variables[k], array.data())); },
-        *snapshot.fields[k].second);
+  file.close();
+}
+
+void write_rasters(const std::filesystem::path& path, const Snapshot& snapshot) {
+  const Grid& grid = *snapshot.grid;
+  const ChunkShape chunk = chunk_shape(grid);
+  ChunkWriter file(path);
+  file.write(kCellArea, cell_areas(grid), grid.ny(), grid.nx(), chunk);
+  for (const auto& [spec, values] : snapshot.fields) {
+    file.write(spec->name, *values, grid.ny(), grid.nx(), chunk);
   }
+  file.close();
 }
 
 }  // namespace
@@ -133,9 +143,8 @@ void write_netcdf(const std::filesystem::path& path, const Snapshot& snapshot,
   check_snapshot(snapshot);
   AtomicFile whole(path);
   try {
-    auto file = nc::File::create(whole.temporary());
-    write_contents(file, snapshot, provenance);
-    file.close();
+    write_frame(whole.temporary(), snapshot, provenance);
+    write_rasters(whole.temporary(), snapshot);
   } catch (const nc::Failure& failure) {
     whole.fail(failure.what());
   }

@@ -1,12 +1,22 @@
 #include "netcdf_file.hpp"
 
+#include <hdf5.h>
+
 #include <utility>
 
 namespace geo::io::nc {
 
 std::unique_lock<std::recursive_mutex> lock_library() {
   static std::recursive_mutex mutex;
-  return std::unique_lock(mutex);
+  std::unique_lock lock(mutex);
+  // A file that a full disk kept from closing stays open inside HDF5, and its clean-up at exit
+  // would try again and complain. Ours are all closed by then.
+  static const bool kNoCleanUp = H5dont_atexit() >= 0;
+  static_cast<void>(kNoCleanUp);
+  // Each thread of HDF5 has an error stack of its own that prints itself unless told otherwise.
+  thread_local const bool kQuiet = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr) >= 0;
+  static_cast<void>(kQuiet);
+  return lock;
 }
 
 File File::create(const std::filesystem::path& path) {

@@ -5,13 +5,11 @@
 #include <algorithm>
 #include <vector>
 
+#include "embedded_data.hpp"
 #include "geo/core/error.hpp"
 #include "geo/io/config.hpp"
 
 namespace geo::io {
-
-// Made by the build from data/presets.
-extern const std::span<const std::pair<std::string_view, std::string_view>> kEmbeddedPresets;
 
 namespace {
 
@@ -26,7 +24,12 @@ std::string_view summary_of(std::string_view toml) {
 std::span<const Preset> presets() {
   static const std::vector<Preset> kPresets = [] {
     std::vector<Preset> all;
-    for (const auto& [name, toml] : kEmbeddedPresets) all.push_back({name, summary_of(toml), toml});
+    constexpr std::string_view kFolder = "presets/";
+    for (const auto& [path, toml] : embedded_files()) {
+      if (!path.starts_with(kFolder)) continue;
+      const auto file = path.substr(kFolder.size());
+      all.push_back({file.substr(0, file.rfind('.')), summary_of(toml), toml});
+    }
     std::stable_partition(all.begin(), all.end(),
                           [](const Preset& preset) { return preset.name == "earth"; });
     return all;

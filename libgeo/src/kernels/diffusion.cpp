@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "geo/core/error.hpp"
 #include "tridiagonal.hpp"
+#include "zonal_waves.hpp"
 
 namespace geo {
 namespace {
@@ -27,7 +29,7 @@ class SplitDiffusion {
     const int nx = grid_.nx(), ny = grid_.ny(), blocks = (ny + kRows - 1) / kRows;
     const bool periodic = grid_.topology() != Topology::plane;
     const double strength = stage_strength(dt_yr);
-#pragma omp parallel
+#pragma omp parallel if (worth_threads())
     {
       TridiagonalBlock<kRows> system(nx, periodic);
       std::vector<double> value(std::size_t(nx) * kRows), stage(value.size());
@@ -52,7 +54,7 @@ class SplitDiffusion {
     const int nx = grid_.nx(), ny = grid_.ny(), blocks = (nx + kColumns - 1) / kColumns;
     const bool periodic = grid_.topology() == Topology::torus;
     const double strength = stage_strength(dt_yr);
-#pragma omp parallel
+#pragma omp parallel if (worth_threads())
     {
       TridiagonalBlock<kColumns> system(ny, periodic);
       std::vector<double> value(std::size_t(ny) * kColumns), stage(value.size());
@@ -76,6 +78,9 @@ class SplitDiffusion {
   }
 
  private:
+  // Waking threads takes longer than a small grid.
+  [[nodiscard]] bool worth_threads() const { return grid_.size() > 16384; }
+
   [[nodiscard]] bool has_marks() const {
     return !options_.fixed.empty() || !options_.excluded.empty();
   }
@@ -170,14 +175,22 @@ class SplitDiffusion {
   const DiffusionOptions& options_;
 };
 
-// Where meridians converge, rows and columns do not commute: a step must not carry far beyond the
-// scale on which their lengths change. Steps of 0.5 cells of latitude need no cutting, as the cell
-// blurs more than the splitting does.
-int choose_substeps(const Grid& grid, double variance_m2) {
-  if (!grid.is_latitude_longitude()) return 1;
-  const double spread_cells = std::sqrt(variance_m2) / grid.face_east_m(grid.ny() / 2);
-  constexpr int kMost = 8;
-  return std::clamp(static_cast<int>(std::ceil(2.0 * spread_cells)), 1, kMost);
+// One step reverses no wave of the grid while it carries less than about a cell, and four make a
+// clean bell of a point. Where meridians converge, rows and columns do not commute: there a step
+// should not carry further than the distance of the nearest row from the pole, which is half a cell
+// on a sphere; with the longest zonal waves apart four steps do nevertheless.
+int choose_substeps(const Grid& grid, double variance_m2, bool waves_apart) {
+  const double spread_m = std::sqrt(variance_m2);
+  const int middle = grid.ny() / 2;
+  const double cell_m = std::min(grid.face_east_m(middle), grid.spacing_east_m(middle));
+  const double wanted = std::clamp(std::ceil(spread_m / cell_m), 1.0, 4.0);
+  if (!grid.is_latitude_longitude()) return static_cast<int>(wanted);
+  const double dlon_deg = (grid.window().east_deg - grid.window().west_deg) / grid.nx();
+  const double polar_radius_m =
+      std::min(grid.spacing_east_m(0), grid.spacing_east_m(grid.ny() - 1)) /
+      (dlon_deg * std::numbers::pi / 180.0);
+  const double most = waves_apart ? 4.0 : 8.0;
+  return static_cast<int>(std::clamp(std::ceil(spread_m / polar_radius_m), wanted, most));
 }
 
 void check(const Grid& grid, std::span<const float> field, double diffusivity_m2_yr, double dt_yr,
@@ -199,9 +212,25 @@ void diffuse(const Grid& grid, std::span<float> field, double diffusivity_m2_yr,
              const DiffusionOptions& options) {
   check(grid, field, diffusivity_m2_yr, dt_yr, options);
   if (diffusivity_m2_yr * dt_yr == 0.0) return;
-  const int steps = options.substeps > 0 ? options.substeps
-                                         : choose_substeps(grid, 2.0 * diffusivity_m2_yr * dt_yr);
+  const bool waves_apart =
+      grid.topology() == Topology::sphere && options.fixed.empty() && options.excluded.empty();
+  const int steps = options.substeps > 0
+                        ? options.substeps
+                        : choose_substeps(grid, 2.0 * diffusivity_m2_yr * dt_yr, waves_apart);
   const double step_yr = dt_yr / steps;
+
+  std::optional<ZonalWaves> waves;
+  if (waves_apart) {
+    waves.emplace(grid);
+    waves->take_from(field);
+    for (int s = 0; s < steps; ++s) {
+      if (options.scheme == DiffusionScheme::positive) {
+        waves->solve(diffusivity_m2_yr * step_yr);
+      } else {
+        waves->solve_second_order(kGamma * diffusivity_m2_yr * step_yr);
+      }
+    }
+  }
   SplitDiffusion diffusion(grid, field, diffusivity_m2_yr, options);
   diffusion.solve_rows(0.5 * step_yr);
   for (int s = 0; s < steps; ++s) {
@@ -209,6 +238,7 @@ void diffuse(const Grid& grid, std::span<float> field, double diffusivity_m2_yr,
     // Half-steps of rows that follow each other are one.
     diffusion.solve_rows(s + 1 < steps ? step_yr : 0.5 * step_yr);
   }
+  if (waves) waves->return_to(field);
 }
 
 }  // namespace geo

@@ -8,16 +8,27 @@
 namespace geo {
 namespace {
 
-/// Receiver of one cell by the generic neighbour function: edges, poles, wraps.
-Index receiver_at_edge(const Grid& grid, const float* z, int i, int j) {
+using Weights = std::array<float, kDirections>;
+
+/// Slopes are compared as drops times the ratio of the row's longest step to each step. Ratios of 1
+/// and more cannot make a drop vanish in underflow, so only true pits are left without a receiver.
+Weights slope_weights(const Grid& grid, int j) {
   const auto& distance = grid.distances_m(j);
+  const double longest = *std::max_element(distance.begin(), distance.end());
+  Weights weights{};
+  for (int k = 0; k < kDirections; ++k) weights[k] = static_cast<float>(longest / distance[k]);
+  return weights;
+}
+
+/// Receiver of one cell by the generic neighbour function: edges, poles, wraps.
+Index receiver_at_edge(const Grid& grid, const float* z, const Weights& weights, int i, int j) {
   const Index cell = grid.cell(i, j);
   Index receiver = cell;
   float steepest = 0.0F;
   for (int k = 0; k < kDirections; ++k) {
     const Index to = grid.neighbour(i, j, k);
     if (to == kNoCell) continue;
-    const float slope = (z[cell] - z[to]) * static_cast<float>(1.0 / distance[k]);
+    const float slope = (z[cell] - z[to]) * weights[k];
     if (slope > steepest) {
       steepest = slope;
       receiver = to;
@@ -30,14 +41,14 @@ Index receiver_at_edge(const Grid& grid, const float* z, int i, int j) {
 /// Eight comparisons a cell; the same multiplications as at the edges, hence the same bits.
 __attribute__((target_clones("avx2", "default"))) void interior_receivers(
     const float* z, Index begin, Index end, const std::array<Index, kDirections>& offset,
-    const std::array<float, kDirections>& inverse_distance, Index* receiver) {
+    const Weights& weights, Index* receiver) {
   for (Index cell = begin; cell < end; ++cell) {
     const float here = z[cell];
     float steepest = 0.0F;
     Index step = 0;
 #pragma GCC unroll 8
     for (int k = 0; k < kDirections; ++k) {
-      const float slope = (here - z[cell + offset[k]]) * inverse_distance[k];
+      const float slope = (here - z[cell + offset[k]]) * weights[k];
       const bool steeper = slope > steepest;
       steepest = steeper ? slope : steepest;
       step = steeper ? offset[k] : step;
@@ -50,16 +61,13 @@ void row_receivers(const Grid& grid, const float* z, const std::uint8_t* outlets
                    Index* receiver) {
   const int nx = grid.nx();
   const Index row = grid.cell(0, j);
+  const Weights weights = slope_weights(grid, j);
   if (j == 0 || j == grid.ny() - 1) {
-    for (int i = 0; i < nx; ++i) receiver[row + i] = receiver_at_edge(grid, z, i, j);
+    for (int i = 0; i < nx; ++i) receiver[row + i] = receiver_at_edge(grid, z, weights, i, j);
   } else {
-    std::array<float, kDirections> inverse{};
-    for (int k = 0; k < kDirections; ++k) {
-      inverse[k] = static_cast<float>(1.0 / grid.distances_m(j)[k]);
-    }
-    receiver[row] = receiver_at_edge(grid, z, 0, j);
-    interior_receivers(z, row + 1, row + nx - 1, grid.offsets(), inverse, receiver);
-    receiver[row + nx - 1] = receiver_at_edge(grid, z, nx - 1, j);
+    receiver[row] = receiver_at_edge(grid, z, weights, 0, j);
+    interior_receivers(z, row + 1, row + nx - 1, grid.offsets(), weights, receiver);
+    receiver[row + nx - 1] = receiver_at_edge(grid, z, weights, nx - 1, j);
   }
   for (Index cell = row; cell < row + nx; ++cell) {
     receiver[cell] = outlets[cell] != 0 ? cell : receiver[cell];

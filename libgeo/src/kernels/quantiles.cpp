@@ -124,7 +124,7 @@ class Histogram {
 
   template <class BinOf>
   void count(std::vector<Share>& bins, BinOf bin_of) const {
-#pragma omp parallel
+#pragma omp parallel if (cells_.grid.size() > 16384)
     {
       std::vector<Share> own(bins.size(), 0);
 #pragma omp for schedule(static) nowait
@@ -185,7 +185,7 @@ double fraction_below(const Grid& grid, std::span<const float> field, float leve
                       std::span<const std::uint8_t> mask) {
   const Cells cells = checked(grid, field, mask);
   std::vector<std::int64_t> below(grid.ny(), 0), all(grid.ny(), 0);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (grid.size() > 16384)
   for (int j = 0; j < grid.ny(); ++j) {
     cells.for_row(j, [&](float value) {
       ++all[j];
@@ -206,7 +206,7 @@ double area_mean(const Grid& grid, std::span<const float> field,
   const Cells cells = checked(grid, field, mask);
   std::vector<double> sum(grid.ny(), 0.0);
   std::vector<std::int64_t> count(grid.ny(), 0);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (grid.size() > 16384)
   for (int j = 0; j < grid.ny(); ++j) {
     cells.for_row(j, [&](float value) {
       sum[j] += value;

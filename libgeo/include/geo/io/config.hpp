@@ -35,6 +35,9 @@ std::string first_difference(std::string_view before, std::string_view after,
                              std::span<const std::string> sections = {},
                              std::span<const std::string_view> ignored_names = {});
 
+/// The string that a configuration holds under "section.key"; empty when it holds none.
+std::string configured_text(std::string_view toml, std::string_view name);
+
 /// Whole text of a file. IoError when it cannot be read.
 std::string read_text(const std::filesystem::path& path);
 

@@ -1,0 +1,128 @@
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "geo/core/error.hpp"
+#include "geo/io/build_info.hpp"
+#include "geo/io/config.hpp"
+#include "geo/io/manifest.hpp"
+#include "log.hpp"
+#include "signals.hpp"
+
+namespace {
+
+std::string version_text() {
+  const auto& build = geo::io::build_info();
+  std::string text =
+      fmt::format("terrane {} (commit {}, {})\n", build.version, build.commit, build.compiler);
+  for (const auto& [name, version] : geo::io::library_versions()) {
+    text += fmt::format("{} {}\n", name, version);
+  }
+  text += fmt::format("CLI11 {}", CLI11_VERSION);
+  return text;
+}
+
+/// Words that could have been meant where an unknown one stands.
+std::vector<std::string> known_words(const CLI::App& app, bool options) {
+  std::vector<std::string> words;
+  if (options) {
+    for (const CLI::Option* option : app.get_options()) {
+      for (const auto& name : option->get_lnames()) words.push_back("--" + name);
+    }
+  } else {
+    for (const CLI::App* command : app.get_subcommands({})) words.push_back(command->get_name());
+  }
+  return words;
+}
+
+/// Refuses the first argument that nothing took, with the nearest known word.
+void refuse_extras(const CLI::App& program) {
+  const CLI::App* place = &program;
+  std::vector<std::string> extras = program.remaining();
+  if (extras.empty() && !program.get_subcommands().empty()) {
+    place = program.get_subcommands().front();
+    extras = place->remaining();
+  }
+  if (extras.empty()) return;
+  const std::string word = extras.front().substr(0, extras.front().find('='));
+  const bool is_option = word.size() > 1 && word.front() == '-';
+  const auto known = known_words(*place, is_option);
+  const std::vector<std::string_view> candidates(known.begin(), known.end());
+  const bool at_top = place == &program;
+  const auto hint = geo::io::suggestion(word, candidates);
+  const std::string remedy = !hint.empty()
+                                 ? hint
+                                 : fmt::format("; {} --help lists what there is",
+                                               at_top ? "terrane" : "terrane " + place->get_name());
+  throw geo::ConfigurationError(fmt::format("unknown {} {}{}",
+                                            is_option ? "option"
+                                            : at_top  ? "command"
+                                                      : "argument",
+                                            word, remedy));
+}
+
+void run_program(int argc, char** argv) {
+  CLI::App program("A whole planet's surface from physics.", "terrane");
+  program.set_version_flag("--version", version_text, "Version, commit and library versions");
+  program.set_help_flag("-h,--help", "This help");
+  program.footer("terrane COMMAND --help tells more.");
+  terrane::Action action;
+  terrane::add_run_command(program, action);
+  terrane::add_maps_command(program, action);
+  terrane::add_params_command(program, action);
+  terrane::add_info_command(program, action);
+  terrane::add_presets_command(program, action);
+  program.allow_extras();
+  for (CLI::App* command : program.get_subcommands({})) {
+    command->allow_extras();
+    command->set_help_flag("-h,--help", "This help");
+  }
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::Success& asked) {
+    program.exit(asked);
+    return;
+  } catch (const CLI::ParseError& error) {
+    throw geo::ConfigurationError(error.what());
+  }
+  refuse_extras(program);
+  if (!action) throw geo::ConfigurationError("no command given; terrane --help lists them");
+  action();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  terrane::prepare_signals();
+  try {
+    run_program(argc, argv);
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+      throw geo::IoError("standard output: could not be written");
+    }
+    return 0;
+  } catch (const geo::Bug& error) {
+    terrane::log_error(
+        fmt::format("{} (a bug in terrane: please report it with the command line)", error.what()));
+    return static_cast<int>(error.kind());
+  } catch (const geo::Error& error) {
+    terrane::log_error(error.what());
+    return static_cast<int>(error.kind());
+  } catch (const std::bad_alloc&) {
+    terrane::log_error("not enough memory for this grid; --dry-run tells how much a run needs");
+    return static_cast<int>(geo::ErrorKind::configuration);
+  } catch (...) {
+    terrane::log_error(
+        "unexpected failure (a bug in terrane: please report it with the command line)");
+    return static_cast<int>(geo::ErrorKind::bug);
+  }
+}

@@ -1,0 +1,131 @@
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <CLI/App.hpp>
+#include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "configuration.hpp"
+#include "geo/core/error.hpp"
+#include "geo/io/config.hpp"
+
+namespace terrane {
+namespace {
+
+using Rows = std::vector<geo::Parameter>;
+
+std::string_view section_of(const geo::Parameter& parameter) {
+  return parameter.name.substr(0, parameter.name.find('.'));
+}
+
+/// The parameters of one section, or all.
+Rows chosen_rows(const Rows& all, const std::string& section) {
+  if (section.empty()) return all;
+  Rows rows;
+  std::vector<std::string_view> sections;
+  for (const geo::Parameter& parameter : all) {
+    if (section_of(parameter) == section) rows.push_back(parameter);
+    if (sections.empty() || sections.back() != section_of(parameter)) {
+      sections.push_back(section_of(parameter));
+    }
+  }
+  if (rows.empty()) {
+    throw geo::ConfigurationError(fmt::format("unknown stage {}: must be one of {}{}", section,
+                                              fmt::join(sections, ", "),
+                                              geo::io::suggestion(section, sections)));
+  }
+  return rows;
+}
+
+void print_table(const Rows& rows) {
+  std::size_t name_width = 9;
+  std::size_t value_width = 7;
+  std::size_t unit_width = 4;
+  std::size_t range_width = 5;
+  for (const geo::Parameter& row : rows) {
+    name_width = std::max(name_width, row.name.size());
+    value_width = std::max(value_width, geo::to_toml(row.default_value).size());
+    unit_width = std::max(unit_width, row.units.size());
+    range_width = std::max(range_width, row.range_text().size());
+  }
+  const auto line = [&](std::string_view name, std::string_view value, std::string_view unit,
+                        std::string_view range, std::string_view source, std::string_view doc) {
+    fmt::print("{:<{}}  {:<{}}  {:<{}}  {:<{}}  {:<16}  {}\n", name, name_width, value, value_width,
+               unit, unit_width, range, range_width, source, doc);
+  };
+  line("parameter", "default", "unit", "range", "source", "meaning");
+  for (const geo::Parameter& row : rows) {
+    line(row.name, geo::to_toml(row.default_value), row.units, row.range_text(), row.source,
+         row.doc);
+  }
+}
+
+void print_json(const Rows& rows) {
+  auto list = nlohmann::ordered_json::array();
+  for (const geo::Parameter& row : rows) {
+    nlohmann::ordered_json entry{{"name", row.name},
+                                 {"type", row.type_name()},
+                                 {"units", row.units},
+                                 {"doc", row.doc},
+                                 {"source", row.source}};
+    std::visit([&](const auto& value) { entry["default"] = value; }, row.default_value);
+    if (std::isfinite(row.min)) entry["min"] = row.min;
+    if (std::isfinite(row.max)) entry["max"] = row.max;
+    if (!row.choices.empty()) entry["choices"] = row.choices;
+    list.push_back(entry);
+  }
+  fmt::print("{}\n", list.dump(2));
+}
+
+void print_markdown(const Rows& rows) {
+  std::string_view section;
+  for (const geo::Parameter& row : rows) {
+    if (section_of(row) != section) {
+      section = section_of(row);
+      fmt::print("\n## [{}]\n\n| key | default | unit | range | meaning | source |\n", section);
+      fmt::print("|---|---|---|---|---|---|\n");
+    }
+    fmt::print("| `{}` | `{}` | {} | {} | {} | {} |\n", row.name.substr(section.size() + 1),
+               geo::to_toml(row.default_value), row.units, row.range_text(), row.doc, row.source);
+  }
+}
+
+}  // namespace
+
+void add_params_command(CLI::App& program, Action& action) {
+  struct Options {
+    std::string section;
+    std::string format = "table";
+  };
+  CLI::App* command =
+      program.add_subcommand("params", "Every parameter: default, unit, range, source");
+  const auto options = std::make_shared<Options>();
+  command->add_option("STAGE", options->section, "A stage or another section; all without it");
+  command->add_option("--format", options->format, "table, toml, json or markdown")
+      ->type_name("FORMAT");
+  command->callback([&action, options] {
+    action = [options] {
+      const Configuration configuration;
+      const Rows rows = chosen_rows(configuration.parameters(), options->section);
+      constexpr std::string_view kFormats[] = {"table", "toml", "json", "markdown"};
+      if (options->format == "table") return print_table(rows);
+      if (options->format == "json") return print_json(rows);
+      if (options->format == "markdown") return print_markdown(rows);
+      if (options->format == "toml") {
+        fmt::print("{}", geo::io::write_config(rows, "every parameter with its default"));
+        return;
+      }
+      throw geo::ConfigurationError(fmt::format("--format {}: must be one of {}{}", options->format,
+                                                fmt::join(kFormats, ", "),
+                                                geo::io::suggestion(options->format, kFormats)));
+    };
+  });
+}
+
+}  // namespace terrane

@@ -1,0 +1,197 @@
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+#include <omp.h>
+
+#include <CLI/App.hpp>
+#include <CLI/Formatter.hpp>
+#include <charconv>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "configuration.hpp"
+#include "geo/core/error.hpp"
+#include "geo/io/config.hpp"
+#include "geo/io/presets.hpp"
+#include "geo/io/run_session.hpp"
+#include "log.hpp"
+#include "progress.hpp"
+#include "signals.hpp"
+
+namespace terrane {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The command line of `run` as it was typed.
+struct RunOptions {
+  std::string config, folder = "out", preset, seed, grid, dem, from, to, threads;
+  std::vector<std::string> assignments;
+  bool resume = false, overwrite = false, dry_run = false;
+  bool quiet = false, log_json = false, no_vtk = false, no_maps = false;
+};
+
+/// A path that the configuration gives is relative to where the configuration file lies.
+void anchor_dem(geo::io::RunSettings& settings, const fs::path& folder) {
+  if (settings.dem_file.empty()) return;
+  settings.dem_file = fs::absolute(folder / settings.dem_file).lexically_normal().string();
+}
+
+void set_option(const Configuration& configuration, std::string_view option, std::string_view name,
+                const std::string& text) {
+  if (text.empty()) return;
+  try {
+    geo::find_parameter(configuration.parameters(), name)->set_text(text);
+  } catch (const geo::ConfigurationError& error) {
+    throw geo::ConfigurationError(fmt::format("{}: {}", option, error.what()));
+  }
+}
+
+/// Defaults, then preset, then file, then the command line. A run that goes on in a folder starts
+/// from the configuration which that folder holds, unless another is given.
+void configure(Configuration& configuration, const RunOptions& options) {
+  const auto& parameters = configuration.parameters();
+  auto& settings = configuration.settings;
+  if (!options.preset.empty()) {
+    geo::io::apply_toml(geo::io::find_preset(options.preset).toml, "preset " + options.preset,
+                        parameters);
+  }
+  fs::path file = options.config;
+  const fs::path kept = fs::path(options.folder) / "config.toml";
+  const bool goes_on = options.resume || (options.overwrite && !options.from.empty());
+  if (file.empty() && options.preset.empty() && goes_on && fs::exists(kept)) file = kept;
+  if (!file.empty()) {
+    geo::io::apply_config_file(file, parameters);
+    anchor_dem(settings, file.parent_path());
+  }
+  if (!options.dem.empty()) {
+    const auto [path, variable] = geo::io::split_dem(options.dem);
+    settings.dem_file = path.string();
+    settings.dem_variable = variable;
+  }
+  for (const std::string& assignment : options.assignments) {
+    geo::io::apply_assignment(assignment, parameters);
+  }
+  anchor_dem(settings, fs::current_path());
+  set_option(configuration, "--seed", "run.seed", options.seed);
+  set_option(configuration, "--grid", "run.grid", options.grid);
+  if (options.no_vtk) settings.vtk = false;
+  if (options.no_maps) settings.maps = false;
+}
+
+int thread_count(const std::string& text) {
+  if (text.empty()) return omp_get_max_threads();
+  constexpr int kMost = 1024;
+  int threads = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, threads);
+  if (error != std::errc() || stop != end || threads < 1 || threads > kMost) {
+    throw geo::ConfigurationError(
+        fmt::format("--threads {}: must be a whole number from 1 to {}", text, kMost));
+  }
+  return threads;
+}
+
+void print_prediction(const geo::io::RunSession& session, const RunOptions& options, int threads) {
+  const auto prediction = session.prediction();
+  const auto& grid = session.grid();
+  fmt::print("grid    {} x {}, {} cells\n", grid.nx(), grid.ny(), grid.size());
+  fmt::print("stages  {}\n", fmt::join(session.stages_to_run(), " "));
+  fmt::print("memory  about {}\n", shown_bytes(prediction.memory_bytes));
+  fmt::print("time    about {} on {} thread{}\n", shown_seconds(prediction.seconds), threads,
+             threads == 1 ? "" : "s");
+  fmt::print("files   about {} in {}\n", shown_bytes(prediction.disk_bytes), options.folder);
+}
+
+void run(const RunOptions& options) {
+  set_log_style({.json = options.log_json, .quiet = options.quiet});
+  const int threads = thread_count(options.threads);
+  Configuration configuration;
+  configure(configuration, options);
+  omp_set_num_threads(threads);
+  geo::io::RunSession session(configuration.pipeline, configuration.stage_numbers(),
+                              configuration.settings, configuration.planet,
+                              configuration.parameters(),
+                              {.folder = options.folder,
+                               .from = options.from,
+                               .to = options.to,
+                               .resume = options.resume,
+                               .overwrite = options.overwrite,
+                               .threads = threads});
+  session.prepare();
+  if (options.dry_run) return print_prediction(session, options, threads);
+
+  Progress progress(!options.quiet && !options.log_json);
+  geo::io::RunEvents events;
+  events.stage_begins = [&](std::string_view stage, double cells) {
+    progress.begin(stage, cells);
+    progress.update(0.0);
+  };
+  events.stage_ends = [&](std::string_view stage, double seconds) {
+    progress.clear();
+    log_info(fmt::format("{:<10} {}", stage, shown_seconds(seconds)));
+  };
+  events.progress = [&](double fraction) { progress.update(fraction); };
+  events.info = [&](std::string_view message) {
+    progress.clear();
+    log_info(message);
+  };
+  events.warning = [&](std::string_view message) {
+    progress.clear();
+    log_warning(message);
+  };
+  events.stop = &stop_requested();
+  try {
+    session.execute(events);
+  } catch (const geo::Interrupted&) {
+    throw geo::Error(geo::ErrorKind::interrupted,
+                     fmt::format("interrupted; terrane run --resume -o {} goes on after the last "
+                                 "complete stage",
+                                 options.folder));
+  }
+  fmt::print("{}\n", options.folder);
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand(
+      "run", "Runs the pipeline and writes one NetCDF and one VTK file per stage");
+  const auto options = std::make_shared<RunOptions>();
+  RunOptions& o = *options;
+  command->add_option("CONFIG", o.config, "Configuration file (TOML)");
+  command->add_option("-o", o.folder, "Folder for the files of the run (default: out)")
+      ->type_name("DIR");
+  command->add_option("--preset", o.preset, "Start from a built-in configuration")
+      ->type_name("NAME");
+  command->add_option("--seed", o.seed, "Seed of every random number")->type_name("N");
+  command->add_option("--set", o.assignments, "Set one parameter; may be repeated")
+      ->type_name("section.key=value")
+      ->expected(1)
+      ->take_all();
+  command->add_option("--grid", o.grid, "Cells of the grid")->type_name("WIDTHxHEIGHT");
+  command->add_option("--dem", o.dem, "A real relief takes the place of plates and isostasy")
+      ->type_name("FILE[:VARIABLE]");
+  command
+      ->add_option("--from", o.from,
+                   "First stage. In a new folder it starts from the relief itself; with "
+                   "--overwrite the folder's earlier stages stay")
+      ->type_name("STAGE");
+  command->add_option("--to", o.to, "Last stage")->type_name("STAGE");
+  command->add_flag("--resume", o.resume, "Go on after the last complete stage of the folder");
+  command->add_flag("--overwrite", o.overwrite, "Replace the run that the folder holds");
+  command->add_option("--threads", o.threads, "Threads (default: as many as there are cores)")
+      ->type_name("N");
+  command->add_flag("--no-vtk", o.no_vtk, "Write no files for ParaView");
+  command->add_flag("--no-maps", o.no_maps, "Draw no maps and no report");
+  command->add_flag("--dry-run", o.dry_run,
+                    "Check everything, predict memory and time, write "
+                    "nothing");
+  command->add_flag("--quiet", o.quiet, "Say nothing but warnings and errors");
+  command->add_flag("--log-json", o.log_json, "Log one JSON object a line");
+  command->callback([&action, options] { action = [options] { run(*options); }; });
+}
+
+}  // namespace terrane

@@ -1,0 +1,16 @@
+# What `cmake --install` puts in place besides the program: the library, its headers, and the
+# package that find_package(terrane) reads. File formats stay inside the program.
+include(CMakePackageConfigHelpers)
+set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/terrane)
+
+install(TARGETS terrane_geo EXPORT terraneTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/libgeo/include/geo DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+  FILES_MATCHING PATTERN "*.hpp" PATTERN io EXCLUDE)
+install(EXPORT terraneTargets NAMESPACE terrane:: DESTINATION ${package_folder})
+configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/terraneConfig.cmake.in
+  ${PROJECT_BINARY_DIR}/terraneConfig.cmake INSTALL_DESTINATION ${package_folder})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/terraneConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/terraneConfig.cmake
+  ${PROJECT_BINARY_DIR}/terraneConfigVersion.cmake DESTINATION ${package_folder})
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <thread>
+
+namespace geo::io {
+
+/// Writes files one after the other on a thread of its own, while the next stage computes.
+/// The first error stops the queue and is thrown again by the next `submit` or `wait`.
+class BackgroundWriter {
+ public:
+  BackgroundWriter();
+  /// As `stop`; an error that nobody asked for is lost.
+  ~BackgroundWriter();
+  BackgroundWriter(const BackgroundWriter&) = delete;
+  BackgroundWriter& operator=(const BackgroundWriter&) = delete;
+
+  /// Appends a job. Throws the error of an earlier one.
+  void submit(std::function<void()> job);
+  /// Returns when all jobs are done. Throws the first error.
+  void wait();
+  /// Finishes the job that runs now and drops the rest. No job may be submitted afterwards.
+  void stop();
+
+ private:
+  void work();
+  void rethrow();
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<std::function<void()>> jobs_;
+  std::exception_ptr error_;
+  bool busy_ = false;
+  bool stopping_ = false;
+  std::thread thread_;
+};
+
+}  // namespace geo::io

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "geo/io/digest.hpp"
+#include "geo/io/stage_file.hpp"
+
+namespace geo::io {
+
+/// What the manifest keeps of one stage. It is written after the stage's files.
+struct StageRecord {
+  std::string name;
+  double seconds = 0.0;
+  std::map<std::string, double> budget;
+  std::vector<std::string> warnings;
+  std::vector<std::string> files;  ///< relative to the folder of the run
+  std::vector<FieldSummary> fields;
+};
+
+/// manifest.json of a run.
+struct Manifest {
+  std::string version, commit, compiler;
+  std::map<std::string, std::string> libraries;
+  std::uint64_t seed = 1;
+  int threads = 1;
+  std::string config_digest;
+  std::vector<StageRecord> stages;  ///< those that are done
+  bool complete = false;            ///< the run went to its end
+};
+
+/// Writes manifest.json whole or not at all. Throws IoError.
+void write_manifest(const std::filesystem::path& path, const Manifest& manifest);
+/// Throws IoError when there is none, InputError when it cannot be understood.
+Manifest read_manifest(const std::filesystem::path& path);
+
+/// Why a stage's file and its record disagree ("elevation: digest differs"), or empty: then the
+/// stage is complete.
+std::string disagreement(const StageRecord& record, const Snapshot& file);
+
+/// Versions of the libraries that this program runs with.
+std::map<std::string, std::string> library_versions();
+
+}  // namespace geo::io

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "geo/core/parameter.hpp"
+
+namespace geo::io {
+
+/// Columns and rows of a grid.
+struct GridSize {
+  int nx, ny;
+};
+
+/// What a run needs besides the planet and the stages: sections [run], [dem] and [output].
+struct RunSettings {
+  std::int64_t seed = 1;
+  std::string grid = "auto";
+  std::string from;
+  std::string to;
+
+  std::string dem_file;
+  std::string dem_variable;
+  std::string dem_sea_level = "datum";
+
+  bool vtk = true;
+  bool maps = true;
+  std::int64_t map_width_px = 1800;
+
+  [[nodiscard]] std::vector<Parameter> parameters();
+  [[nodiscard]] bool grid_is_automatic() const { return grid == "auto"; }
+};
+
+/// Reads "WIDTHxHEIGHT". ConfigurationError when it is not.
+GridSize parse_grid_size(const std::string& text);
+/// Splits `FILE[:VARIABLE]`; a file whose own name has a colon is taken whole when it exists.
+std::pair<std::filesystem::path, std::string> split_dem(const std::string& file_and_variable);
+
+}  // namespace geo::io

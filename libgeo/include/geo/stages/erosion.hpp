@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "geo/core/stage.hpp"
+
+namespace geo {
+
+/// Settings of the erosion stage, section "erosion".
+struct ErosionParameters {
+  std::int64_t steps = 20;
+  double time_step_yr = 100e3;
+  std::int64_t route_every = 1;
+  double area_exponent = 0.5;
+  double slope_exponent = 1.0;
+  double erodibility_yr = 2e-6;
+  double diffusivity_m2_yr = 0.02;
+  std::string flow_routing = "mfd";
+  double flow_exponent = 1.1;
+  std::string depressions = "fill";
+  double uplift_mm_yr = 0.0;
+  double rebound_fraction = 0.0;
+  double rebound_length_km = 100.0;
+  double rebound_time_yr = 1e6;
+  double relaxation_fraction = 0.0;
+
+  [[nodiscard]] std::vector<Parameter> declarations();
+};
+
+/// Landscape evolution over land, dz/dt = U - K A^m S^n + kappa lap(z) (Braun & Willett 2013;
+/// Salles et al. 2023), with the sea and open edges as base level. Each step: route the water,
+/// raise the ground, let rivers cut (implicit, any m and n), let hillslopes creep (implicit), let
+/// the crust rebound under what was taken from it. With no steps the relief stays as it is and the
+/// present rate of incision is reported.
+std::unique_ptr<Stage> make_erosion_stage();
+
+}  // namespace geo

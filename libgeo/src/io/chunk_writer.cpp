@@ -1,0 +1,109 @@
+#include "chunk_writer.hpp"
+
+#include <hdf5.h>
+#include <libdeflate.h>
+
+#include <algorithm>
+#include <cstring>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "netcdf_file.hpp"
+
+namespace geo::io {
+namespace {
+
+// Level 1: relief hardly shrinks further, however long one tries.
+constexpr int kLevel = 1;
+
+void require(bool good) {
+  if (!good) throw nc::Failure(NC_EHDFERR);
+}
+
+struct FreeCompressor {
+  void operator()(libdeflate_compressor* compressor) const {
+    libdeflate_free_compressor(compressor);
+  }
+};
+using Compressor = std::unique_ptr<libdeflate_compressor, FreeCompressor>;
+
+/// A dataset that closes itself.
+class Dataset {
+ public:
+  Dataset(hid_t file, std::string_view name)
+      : id_(H5Dopen2(file, std::string(name).c_str(), H5P_DEFAULT)) {
+    require(id_ >= 0);
+  }
+  ~Dataset() { H5Dclose(id_); }
+  Dataset(const Dataset&) = delete;
+  Dataset& operator=(const Dataset&) = delete;
+  [[nodiscard]] hid_t id() const { return id_; }
+
+ private:
+  hid_t id_;
+};
+
+/// HDF5's shuffle: first bytes of all values, then second bytes, and so on.
+template <std::size_t kBytes>
+void shuffle(const unsigned char* from, std::size_t values, unsigned char* to) {
+  for (std::size_t byte = 0; byte < kBytes; ++byte) {
+    for (std::size_t k = 0; k < values; ++k) to[byte * values + k] = from[k * kBytes + byte];
+  }
+}
+
+template <class T>
+void write_chunks(hid_t dataset, const std::vector<T>& values, int ny, int nx, ChunkShape chunk) {
+  const std::size_t cells = chunk.rows * chunk.columns, bytes = cells * sizeof(T);
+  std::vector<T> raw(cells);
+  std::vector<unsigned char> shuffled(bytes);
+  const Compressor compressor(libdeflate_alloc_compressor(kLevel));
+  std::vector<unsigned char> packed(libdeflate_zlib_compress_bound(compressor.get(), bytes));
+  for (std::size_t row = 0; row < static_cast<std::size_t>(ny); row += chunk.rows) {
+    for (std::size_t column = 0; column < static_cast<std::size_t>(nx); column += chunk.columns) {
+      const std::size_t rows = std::min(chunk.rows, ny - row);
+      const std::size_t columns = std::min(chunk.columns, nx - column);
+      // Beyond the edge of the raster a chunk holds zeros that nobody reads.
+      if (rows < chunk.rows || columns < chunk.columns) std::fill(raw.begin(), raw.end(), T{});
+      for (std::size_t j = 0; j < rows; ++j) {
+        std::copy_n(values.data() + (row + j) * nx + column, columns,
+                    raw.data() + j * chunk.columns);
+      }
+      shuffle<sizeof(T)>(reinterpret_cast<const unsigned char*>(raw.data()), cells,
+                         shuffled.data());
+      const std::size_t size = libdeflate_zlib_compress(compressor.get(), shuffled.data(), bytes,
+                                                        packed.data(), packed.size());
+      require(size > 0);
+      const hsize_t offset[2] = {row, column};
+      require(H5Dwrite_chunk(dataset, H5P_DEFAULT, 0, offset, size, packed.data()) >= 0);
+    }
+  }
+}
+
+}  // namespace
+
+struct ChunkWriter::Implementation {
+  std::unique_lock<std::recursive_mutex> lock = nc::lock_library();
+  hid_t file = -1;
+};
+
+ChunkWriter::ChunkWriter(const std::filesystem::path& path)
+    : implementation_(std::make_unique<Implementation>()) {
+  implementation_->file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  require(implementation_->file >= 0);
+}
+
+ChunkWriter::~ChunkWriter() {
+  if (implementation_->file >= 0) H5Fclose(implementation_->file);
+}
+
+void ChunkWriter::write(std::string_view variable, const Values& values, int ny, int nx,
+                        ChunkShape chunk) const {
+  const Dataset dataset(implementation_->file, variable);
+  std::visit([&](const auto& array) { write_chunks(dataset.id(), array, ny, nx, chunk); }, values);
+}
+
+void ChunkWriter::close() { require(H5Fclose(std::exchange(implementation_->file, -1)) >= 0); }
+
+}  // namespace geo::io

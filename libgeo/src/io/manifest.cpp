@@ -1,0 +1,123 @@
+#include "geo/io/manifest.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "geo/core/error.hpp"
+#include "geo/io/atomic_file.hpp"
+
+namespace geo::io {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// JSON has no NaN: null stands for it.
+double number_or_nan(const Json& json) {
+  return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
+}
+
+Json to_json(const FieldSummary& field) {
+  return {{"units", field.units}, {"min", field.min},         {"mean", field.mean},
+          {"max", field.max},     {"missing", field.missing}, {"digest", field.digest}};
+}
+
+Json to_json(const StageRecord& stage) {
+  Json fields = Json::object();
+  for (const FieldSummary& field : stage.fields) fields[field.name] = to_json(field);
+  return {{"name", stage.name},         {"seconds", stage.seconds}, {"budget", stage.budget},
+          {"warnings", stage.warnings}, {"files", stage.files},     {"fields", fields}};
+}
+
+FieldSummary field_from(const std::string& name, const Json& json) {
+  return {name,
+          json.at("units").get<std::string>(),
+          number_or_nan(json.at("min")),
+          number_or_nan(json.at("mean")),
+          number_or_nan(json.at("max")),
+          json.at("missing").get<std::int64_t>(),
+          json.at("digest").get<std::string>()};
+}
+
+StageRecord stage_from(const Json& json) {
+  StageRecord stage;
+  json.at("name").get_to(stage.name);
+  json.at("seconds").get_to(stage.seconds);
+  for (const auto& [name, value] : json.at("budget").items()) {
+    stage.budget[name] = number_or_nan(value);
+  }
+  json.at("warnings").get_to(stage.warnings);
+  json.at("files").get_to(stage.files);
+  for (const auto& [name, field] : json.at("fields").items()) {
+    stage.fields.push_back(field_from(name, field));
+  }
+  return stage;
+}
+
+Manifest manifest_from(const Json& json) {
+  Manifest manifest;
+  json.at("version").get_to(manifest.version);
+  json.at("commit").get_to(manifest.commit);
+  json.at("compiler").get_to(manifest.compiler);
+  json.at("libraries").get_to(manifest.libraries);
+  json.at("seed").get_to(manifest.seed);
+  json.at("threads").get_to(manifest.threads);
+  json.at("config_digest").get_to(manifest.config_digest);
+  json.at("complete").get_to(manifest.complete);
+  for (const Json& stage : json.at("stages")) manifest.stages.push_back(stage_from(stage));
+  return manifest;
+}
+
+}  // namespace
+
+void write_manifest(const std::filesystem::path& path, const Manifest& manifest) {
+  Json stages = Json::array();
+  for (const StageRecord& stage : manifest.stages) stages.push_back(to_json(stage));
+  const Json json{{"version", manifest.version},
+                  {"commit", manifest.commit},
+                  {"compiler", manifest.compiler},
+                  {"libraries", manifest.libraries},
+                  {"seed", manifest.seed},
+                  {"threads", manifest.threads},
+                  {"config_digest", manifest.config_digest},
+                  {"complete", manifest.complete},
+                  {"stages", stages}};
+  // Bytes that are no UTF-8 (in a path, say) are replaced: no reason to lose a finished run.
+  write_text_file(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+Manifest read_manifest(const std::filesystem::path& path) {
+  std::ifstream stream(path);
+  if (!stream) {
+    throw IoError(
+        fmt::format("cannot read {}: {}", path.string(), std::generic_category().message(errno)));
+  }
+  try {
+    return manifest_from(Json::parse(stream));
+  } catch (const Json::exception& error) {
+    throw InputError(fmt::format("{}: no manifest of this version of terrane ({})", path.string(),
+                                 error.what()));
+  }
+}
+
+std::string disagreement(const StageRecord& record, const Snapshot& file) {
+  if (record.name != file.stage) {
+    return fmt::format("stage is {}, manifest says {}", file.stage, record.name);
+  }
+  for (const FieldSummary& field : record.fields) {
+    const auto at = std::find_if(file.fields.begin(), file.fields.end(), [&](const auto& entry) {
+      return entry.first->name == field.name;
+    });
+    if (at == file.fields.end()) return field.name + ": missing in the file";
+    if (digest_of(*at->second) != field.digest) return field.name + ": digest differs";
+  }
+  if (record.fields.size() != file.fields.size()) return "file holds fields the manifest lacks";
+  return {};
+}
+
+}  // namespace geo::io

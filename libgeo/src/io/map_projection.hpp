@@ -1,0 +1,14 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "geo/core/grid.hpp"
+
+namespace geo::io {
+
+/// Latitude and longitude of a projected point; nothing where `crs` (WKT, PROJ string or
+/// "EPSG:32611") is no projection that PROJ knows.
+std::optional<Centre> unproject(const std::string& crs, double x_m, double y_m);
+
+}  // namespace geo::io

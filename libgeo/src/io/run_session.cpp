@@ -1,0 +1,212 @@
+// The half of a run session that computes and writes.
+#include "geo/io/run_session.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <utility>
+
+#include "geo/core/error.hpp"
+#include "geo/io/atomic_file.hpp"
+#include "geo/io/background_writer.hpp"
+#include "geo/io/build_info.hpp"
+#include "geo/io/report.hpp"
+
+namespace geo::io {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+template <class Function, class... Arguments>
+void tell(const Function& function, Arguments&&... arguments) {
+  if (function) function(std::forward<Arguments>(arguments)...);
+}
+
+/// SOURCE_DATE_EPOCH, with which files must not tell when they were made.
+const char* given_epoch() { return std::getenv("SOURCE_DATE_EPOCH"); }
+
+std::string time_stamp() {
+  std::time_t time = std::time(nullptr);
+  if (const char* text = given_epoch()) {
+    const char* const end = text + std::strlen(text);
+    const auto [stop, error] = std::from_chars(text, end, time);
+    if (error != std::errc() || stop != end) {
+      throw ConfigurationError(
+          fmt::format("SOURCE_DATE_EPOCH = {}: must be seconds since 1970", text));
+    }
+  }
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(time));
+}
+
+/// One background job: the files of a stage, then its entry in the manifest.
+struct StageJob {
+  Snapshot snapshot;
+  Provenance provenance;
+  std::filesystem::path netcdf, vti;
+  StageRecord record;
+
+  void write(bool vtk) {
+    write_netcdf(netcdf, snapshot, provenance);
+    record.files.push_back(netcdf.filename().string());
+    if (vtk) {
+      write_vti(vti, snapshot, provenance);
+      record.files.push_back(vti.filename().string());
+    }
+    for (const auto& [spec, values] : snapshot.fields) {
+      record.fields.push_back(summarise(*spec, *values, *snapshot.grid));
+    }
+  }
+};
+
+}  // namespace
+
+void RunSession::clear_for_this_run() {
+  folder_.open();
+  const auto& build = build_info();
+  manifest_.version = build.version;
+  manifest_.commit = build.commit;
+  manifest_.compiler = build.compiler;
+  manifest_.libraries = library_versions();
+  manifest_.seed = static_cast<std::uint64_t>(settings_.seed);
+  manifest_.threads = request_.threads;
+  manifest_.config_digest = digest_of(config_);
+  manifest_.complete = false;
+  // From here on no stage that is about to be replaced counts as complete.
+  std::erase_if(manifest_.stages, [&](const StageRecord& record) {
+    const int at = pipeline_.find(record.name);
+    return at < begin_ || at >= first_;
+  });
+  write_manifest(folder_.manifest(), manifest_);
+  for (int at = 0; at < static_cast<int>(pipeline_.stages().size()); ++at) {
+    if (at < begin_ || at >= first_) folder_.remove_stage(numbers_[at], name_of(at));
+  }
+  folder_.remove_summaries();
+  write_text_file(folder_.config(), config_);
+}
+
+Provenance RunSession::provenance_of(int position) const {
+  const auto& build = build_info();
+  return {.title = fmt::format("terrane: {}", name_of(position)),
+          .config_toml = config_,
+          .seed = static_cast<std::uint64_t>(settings_.seed),
+          .version = build.version,
+          .history = fmt::format("{} terrane {} ({}): stage {}", time_stamp(), build.version,
+                                 build.commit, name_of(position)),
+          .references = references_of(position)};
+}
+
+std::string RunSession::references_of(int position) const {
+  std::vector<std::string_view> sources;
+  for (const Parameter& parameter : parameters_) {
+    const std::string prefix = fmt::format("{}.", name_of(position));
+    if (!parameter.name.starts_with(prefix) || parameter.source == "design") continue;
+    if (std::find(sources.begin(), sources.end(), parameter.source) == sources.end()) {
+      sources.push_back(parameter.source);
+    }
+  }
+  std::sort(sources.begin(), sources.end());
+  return fmt::format("docs/references.bib: {}", fmt::join(sources, ", "));
+}
+
+void RunSession::write_stage(BackgroundWriter& writer, int position, const State& state,
+                             const Context& context, double seconds) {
+  auto job = std::make_shared<StageJob>();
+  job->snapshot.stage = name_of(position);
+  job->snapshot.grid = state.shared_grid();
+  const auto& written = pipeline_.stages()[position]->info().writes;
+  for (const FieldSpec* spec : written) {
+    job->snapshot.fields.emplace_back(spec, state.values(*spec));
+  }
+  job->provenance = provenance_of(position);
+  job->netcdf = file_of(position, ".nc");
+  job->vti = file_of(position, ".vti");
+  job->record.name = name_of(position);
+  job->record.seconds = given_epoch() != nullptr ? 0.0 : seconds;
+  job->record.budget = context.budget;
+  job->record.warnings = context.warnings;
+  writer.submit([this, job] {
+    job->write(settings_.vtk);
+    manifest_.stages.push_back(job->record);
+    write_manifest(folder_.manifest(), manifest_);
+    job->snapshot.fields.clear();
+  });
+}
+
+void RunSession::execute(const RunEvents& events) {
+  time_stamp();  // a bad SOURCE_DATE_EPOCH is refused before anything is touched
+  if (first_ <= last_) {
+    clear_for_this_run();
+    compute(events);
+  } else {
+    folder_.open();
+    tell(events.info, "all stages are complete: only the pictures are drawn again");
+  }
+  state_.reset();
+  write_summaries(events);
+}
+
+void RunSession::compute(const RunEvents& events) {
+  Context context;
+  context.planet = planet_;
+  context.seed = static_cast<std::uint64_t>(settings_.seed);
+  context.on_progress = events.progress;
+  context.stop = events.stop;
+
+  BackgroundWriter writer;
+  Clock::time_point start;
+  Pipeline::Observer observer;
+  observer.before = [&](int position) {
+    tell(events.stage_begins, name_of(position), static_cast<double>(grid().size()));
+    context.warnings.clear();
+    start = Clock::now();
+  };
+  observer.after = [&](int position, const State& state, const Context& told) {
+    const double seconds = seconds_since(start);
+    for (const std::string& warning : told.warnings) tell(events.warning, warning);
+    write_stage(writer, position, state, told, seconds);
+    tell(events.stage_ends, name_of(position), seconds);
+  };
+  try {
+    pipeline_.run(*state_, context, first_, last_, observer);
+  } catch (const Interrupted&) {
+    writer.wait();  // what was computed is kept
+    throw;
+  }
+  writer.wait();
+}
+
+void RunSession::write_summaries(const RunEvents& events) {
+  const auto check_stop = [&] {
+    if (events.stop != nullptr && events.stop->load()) throw Interrupted();
+  };
+  check_stop();
+  if (settings_.vtk) {
+    std::vector<std::filesystem::path> files;
+    for (int at = begin_; at <= std::max(last_, first_ - 1); ++at) {
+      files.push_back(file_of(at, ".vti"));
+      if (std::filesystem::exists(files.back())) continue;
+      write_vti(files.back(), read_netcdf(file_of(at, ".nc")), provenance_of(at));
+    }
+    write_pvd(folder_.collection(), files);
+  }
+  if (settings_.maps) {
+    tell(events.stage_begins, "maps", static_cast<double>(settings_.map_width_px));
+    const auto start = Clock::now();
+    draw_run(folder_, static_cast<int>(settings_.map_width_px));
+    tell(events.stage_ends, "maps", seconds_since(start));
+  }
+  check_stop();
+  manifest_.complete = true;
+  write_manifest(folder_.manifest(), manifest_);
+}
+
+}  // namespace geo::io

@@ -1,0 +1,248 @@
+// The half of a run session that only looks: names, folder, relief, wiring, room.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "geo/core/error.hpp"
+#include "geo/io/build_info.hpp"
+#include "geo/io/config.hpp"
+#include "geo/io/dem.hpp"
+#include "geo/io/run_session.hpp"
+#include "geo/kernels/quantiles.hpp"
+
+namespace geo::io {
+namespace {
+
+// What may differ between a run and its continuation: how far it goes and what else is written.
+constexpr std::string_view kFreeOnResume[] = {"run.to", "output.vtk", "output.maps",
+                                              "output.map_width_px"};
+// The same where stages are computed again behind others that stay.
+constexpr std::string_view kFreeOnPartialOverwrite[] = {"run.from", "run.to"};
+
+bool lists(const std::vector<const FieldSpec*>& specs, const FieldSpec& spec) {
+  return std::any_of(specs.begin(), specs.end(),
+                     [&](const FieldSpec* listed) { return listed->name == spec.name; });
+}
+
+/// The grid that a relief is put on.
+Grid grid_for(const Relief& relief, const RunSettings& settings, const Planet& planet) {
+  if (settings.grid_is_automatic()) return relief.grid;
+  const auto [nx, ny] = parse_grid_size(settings.grid);
+  const Grid& source = relief.grid;
+  if (source.topology() == Topology::sphere) return Grid::sphere(nx, ny, planet.figure());
+  if (source.is_latitude_longitude()) {
+    return Grid::window(nx, ny, source.window(), planet.figure(), source.edges());
+  }
+  const double width_m = source.spacing_east_m(0) * source.nx();
+  const double height_m = source.step_north_m() * source.ny();
+  return Grid::plane(nx, ny, width_m / nx, height_m / ny, source.edges(), source.centre(),
+                     planet.figure());
+}
+
+}  // namespace
+
+RunSession::RunSession(const Pipeline& pipeline, std::vector<int> numbers, RunSettings& settings,
+                       const Planet& planet, std::span<const Parameter> parameters,
+                       RunRequest request)
+    : pipeline_(pipeline),
+      numbers_(std::move(numbers)),
+      settings_(settings),
+      planet_(planet),
+      parameters_(parameters),
+      request_(std::move(request)),
+      folder_(request_.folder) {}
+
+std::string_view RunSession::name_of(int position) const {
+  return pipeline_.stages()[position]->info().name;
+}
+
+std::filesystem::path RunSession::file_of(int position, std::string_view extension) const {
+  return folder_.stage_file(numbers_[position], name_of(position), extension);
+}
+
+int RunSession::position_of(const std::string& stage, std::string_view asked_by) const {
+  const int position = pipeline_.find(stage);
+  if (position >= 0) return position;
+  std::vector<std::string_view> names;
+  for (const auto& known : pipeline_.stages()) names.push_back(known->info().name);
+  throw ConfigurationError(fmt::format("{}: unknown stage {}: must be one of {}{}", asked_by, stage,
+                                       fmt::join(names, ", "), suggestion(stage, names)));
+}
+
+std::string RunSession::resolved_config() const {
+  return write_config(parameters_, fmt::format("terrane {}: every parameter as it was used. Runs "
+                                               "again with: terrane run config.toml",
+                                               build_info().version));
+}
+
+void RunSession::prepare() {
+  if (!settings_.grid_is_automatic()) parse_grid_size(settings_.grid);
+  choose_stages();
+  look_at_folder();
+  load_complete_stages();
+  read_initial_relief();
+  pipeline_.check(state_->present(), first_, last_);
+  config_ = resolved_config();
+}
+
+void RunSession::choose_stages() {
+  if (!request_.to.empty()) settings_.to = request_.to;
+  const int most = static_cast<int>(pipeline_.stages().size()) - 1;
+  last_ = settings_.to.empty() ? most : position_of(settings_.to, "run.to");
+  const std::string& from = request_.from.empty() ? settings_.from : request_.from;
+  begin_ = from.empty() ? 0 : position_of(from, "run.from");
+  first_ = begin_;
+  if (first_ > last_) {
+    throw ConfigurationError(fmt::format("run.from = {} comes after run.to = {}: must not",
+                                         name_of(first_), name_of(last_)));
+  }
+}
+
+void RunSession::look_at_folder() {
+  const std::string shown = folder_.path().string();
+  if (request_.resume && request_.overwrite) {
+    throw ConfigurationError("--resume and --overwrite exclude each other: choose one");
+  }
+  const bool held = folder_.holds_run();
+  if (held && !request_.resume && !request_.overwrite) {
+    throw ConfigurationError(fmt::format(
+        "{} already holds a run: --resume goes on with it, --overwrite replaces it", shown));
+  }
+  const bool known = held && std::filesystem::exists(folder_.config());
+  if (request_.resume && !known) {
+    throw ConfigurationError(fmt::format("--resume: {} holds no run to go on with", shown));
+  }
+  if (known && (request_.resume || !request_.from.empty())) {
+    const std::string before = read_text(folder_.config());
+    if (std::filesystem::exists(folder_.manifest())) {
+      manifest_ = read_manifest(folder_.manifest());
+    }
+    if (request_.resume) return go_on_from(before);
+    const std::string old_from = configured_text(before, "run.from");
+    const int old_begin = old_from.empty() ? 0 : pipeline_.find(old_from);
+    if (old_begin >= 0 && old_begin < first_) return keep_earlier_stages(before, old_begin);
+    manifest_ = {};
+  }
+  if (!request_.from.empty()) settings_.from = request_.from;
+}
+
+void RunSession::take_open_settings(const std::string& before) {
+  if (settings_.grid_is_automatic()) settings_.grid = configured_text(before, "run.grid");
+  if (settings_.dem_variable.empty()) {
+    settings_.dem_variable = configured_text(before, "dem.variable");
+  }
+}
+
+void RunSession::go_on_from(const std::string& before) {
+  take_open_settings(before);
+  if (!request_.from.empty()) settings_.from = request_.from;
+  const auto difference = first_difference(before, resolved_config(), {}, kFreeOnResume);
+  if (!difference.empty()) {
+    throw ConfigurationError(
+        fmt::format("--resume: the configuration changed: {}; --overwrite computes {} again",
+                    difference, folder_.path().string()));
+  }
+  first_ = begin_ + count_complete_stages();
+}
+
+void RunSession::keep_earlier_stages(const std::string& before, int old_begin) {
+  begin_ = old_begin;
+  settings_.from = configured_text(before, "run.from");
+  take_open_settings(before);
+  std::vector<std::string> sections{"run", "dem", "planet"};
+  for (int at = begin_; at < first_; ++at) sections.emplace_back(name_of(at));
+  const auto difference =
+      first_difference(before, resolved_config(), sections, kFreeOnPartialOverwrite);
+  if (!difference.empty()) {
+    throw ConfigurationError(
+        fmt::format("--from {}: the stages before it would not be the same: {}; --overwrite "
+                    "without --from computes all again",
+                    name_of(first_), difference));
+  }
+  const int complete = count_complete_stages();
+  if (begin_ + complete < first_) {
+    throw ConfigurationError(fmt::format("--from {}: {} holds no complete {} to start from",
+                                         name_of(first_), folder_.path().string(),
+                                         name_of(begin_ + complete)));
+  }
+}
+
+int RunSession::count_complete_stages() const {
+  const int most = static_cast<int>(pipeline_.stages().size());
+  int at = begin_;
+  while (at < most && is_complete(at)) ++at;
+  return at - begin_;
+}
+
+bool RunSession::is_complete(int position) const {
+  const auto path = file_of(position, ".nc");
+  if (!std::filesystem::exists(path)) return false;
+  try {
+    const auto record = std::find_if(
+        manifest_.stages.begin(), manifest_.stages.end(),
+        [&](const StageRecord& candidate) { return candidate.name == name_of(position); });
+    return record != manifest_.stages.end() && disagreement(*record, read_netcdf(path)).empty();
+  } catch (const Error&) {
+    return false;  // half a file is as good as none
+  }
+}
+
+bool RunSession::is_still_read(const FieldSpec& spec) const {
+  for (int at = first_; at <= last_; ++at) {
+    const StageInfo& info = pipeline_.stages()[at]->info();
+    if (lists(info.reads, spec) || lists(info.optional, spec)) return true;
+  }
+  return false;
+}
+
+void RunSession::load_complete_stages() {
+  for (int at = begin_; at < first_; ++at) {
+    const Snapshot snapshot = read_netcdf(file_of(at, ".nc"));
+    if (!state_) state_.emplace(snapshot.grid);
+    for (const auto& [spec, values] : snapshot.fields) {
+      if (is_still_read(*spec)) state_->set(*spec, *values);
+    }
+  }
+  if (state_) folder_.check_writable(prediction().disk_bytes);
+}
+
+void RunSession::read_initial_relief() {
+  const bool wanted =
+      !state_ || (!state_->has(field::elevation) && is_still_read(field::elevation));
+  if (!wanted) return;
+  if (settings_.dem_file.empty()) {
+    throw ConfigurationError(
+        "this version starts from a relief: give one with --dem FILE[:VARIABLE], a NetCDF file of "
+        "elevations");
+  }
+  Relief relief = read_relief(settings_.dem_variable.empty()
+                                  ? settings_.dem_file
+                                  : settings_.dem_file + ":" + settings_.dem_variable,
+                              planet_);
+  auto grid = state_ ? state_->shared_grid()
+                     : std::make_shared<const Grid>(grid_for(relief, settings_, planet_));
+  settings_.grid = fmt::format("{}x{}", grid->nx(), grid->ny());
+  settings_.dem_variable = relief.variable;
+  if (!state_) state_.emplace(grid);
+  folder_.check_writable(prediction().disk_bytes);
+  std::vector<float> elevation_m = resample(relief, *grid);
+  if (settings_.dem_sea_level == "fraction") {
+    const float sea_level_m = level_for_fraction(*grid, elevation_m, planet_.ocean_fraction);
+    for (float& height_m : elevation_m) height_m -= sea_level_m;
+  }
+  state_->set(field::elevation, std::move(elevation_m));
+}
+
+Prediction RunSession::prediction() const {
+  return predict(pipeline_, first_, last_, static_cast<double>(grid().size()), request_.threads,
+                 settings_.vtk, settings_.maps);
+}
+
+std::vector<std::string_view> RunSession::stages_to_run() const {
+  std::vector<std::string_view> names;
+  for (int at = first_; at <= last_; ++at) names.push_back(name_of(at));
+  return names;
+}
+
+}  // namespace geo::io

@@ -1,0 +1,56 @@
+#include "geo/io/run_settings.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <limits>
+
+#include "geo/core/error.hpp"
+
+namespace geo::io {
+
+std::vector<Parameter> RunSettings::parameters() {
+  return {
+      integer("run.seed", seed, "1", 0, std::numeric_limits<std::int64_t>::max(),
+              "seed of every random number", "design"),
+      text("run.grid", grid,
+           "cells as WIDTHxHEIGHT; auto takes the relief's own size, 4096x2048 without one",
+           "design"),
+      text("run.from", from, "first stage to run; empty is the first there is", "design"),
+      text("run.to", to, "last stage to run; empty is the last there is", "design"),
+      text("dem.file", dem_file,
+           "NetCDF file of a real relief, which takes the place of plates and isostasy", "design"),
+      text("dem.variable", dem_variable,
+           "variable of that file; empty is the one that looks like relief", "design"),
+      choice("dem.sea_level", dem_sea_level, {"datum", "fraction"},
+             "where the sea stands: at the relief's own zero, or where planet.ocean_fraction of "
+             "the area lies below it",
+             "design"),
+      flag("output.vtk", vtk, "write a VTK file beside each NetCDF file", "design"),
+      flag("output.maps", maps, "draw the maps and the report", "design"),
+      integer("output.map_width_px", map_width_px, "1", 300, 20000, "width of the maps in pixels",
+              "design"),
+  };
+}
+
+GridSize parse_grid_size(const std::string& text) {
+  GridSize size{};
+  const char* const end = text.data() + text.size();
+  const auto [after_width, width_error] = std::from_chars(text.data(), end, size.nx);
+  if (width_error == std::errc() && after_width != end && *after_width == 'x') {
+    const auto [after_height, height_error] = std::from_chars(after_width + 1, end, size.ny);
+    if (height_error == std::errc() && after_height == end) return size;
+  }
+  throw ConfigurationError(
+      fmt::format("run.grid = \"{}\": must be WIDTHxHEIGHT, such as 4096x2048, or auto", text));
+}
+
+std::pair<std::filesystem::path, std::string> split_dem(const std::string& file_and_variable) {
+  const auto colon = file_and_variable.rfind(':');
+  if (colon == std::string::npos || std::filesystem::exists(file_and_variable)) {
+    return {file_and_variable, ""};
+  }
+  return {file_and_variable.substr(0, colon), file_and_variable.substr(colon + 1)};
+}
+
+}  // namespace geo::io

@@ -1,0 +1,311 @@
+#!/usr/bin/python3
+"""Opens every stage file of a folder with the programs people use, and compares what they see.
+
+usage: check_files.py FOLDER
+
+netCDF4 for Python is the reference; xarray, CDO, NCO, GDAL, ncdump and udunits2 are asked when
+they are installed. Also checks the CF-1.10 conventions that stage files use (it is no complete
+CF checker). Prints one line per failure and ends with 1 if there was any.
+"""
+
+import math
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import netCDF4
+import numpy as np
+
+# Of the CF standard name table: the names that terrane's fields and coordinates may bear.
+STANDARD_NAMES = {
+    "latitude": "degrees_north",
+    "longitude": "degrees_east",
+    "cell_area": "m2",
+    "surface_altitude": "m",
+    "air_temperature": "K",
+    "lwe_precipitation_rate": "m s-1",
+    "eastward_wind": "m s-1",
+    "northward_wind": "m s-1",
+    "water_volume_transport_in_river_channel": "m3 s-1",
+    "projection_x_coordinate": "m",
+    "projection_y_coordinate": "m",
+}
+
+failures = []
+asked = set()
+
+
+def expect(good, *words):
+    if not good:
+        failures.append(" ".join(str(word) for word in words))
+        print("FAIL", failures[-1], flush=True)
+
+
+def close(a, b, tolerance=1e-6):
+    a, b = float(a), float(b)
+    if math.isnan(a) or math.isnan(b):
+        return math.isnan(a) and math.isnan(b)
+    return abs(a - b) <= tolerance * max(1.0, abs(a), abs(b))
+
+
+def call(program, *arguments):
+    """Output of a program, None when it is not installed; its failure is ours."""
+    if shutil.which(program) is None:
+        return None
+    asked.add(program)
+    result = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True)
+    expect(result.returncode == 0, program, *arguments, "->", result.stderr.strip()[:300])
+    return result.stdout if result.returncode == 0 else None
+
+
+def attribute(variable, name, default=None):
+    return variable.getncattr(name) if name in variable.ncattrs() else default
+
+
+class Reference:
+    """What netCDF4 sees of one file."""
+
+    def __init__(self, path):
+        self.path = path
+        self.dataset = netCDF4.Dataset(path)
+        self.area = np.asarray(self.dataset["cell_area"][:], dtype="f8")
+        self.fields = [
+            name for name, v in self.dataset.variables.items()
+            if attribute(v, "cell_measures") is not None
+        ]
+
+    def values(self, name):
+        return np.ma.masked_invalid(np.ma.asarray(self.dataset[name][:], dtype="f8"))
+
+    def summary(self, name):
+        values = self.values(name)
+        mean = np.ma.average(values, weights=self.area)
+        return float(values.min()), float(mean), float(values.max()), int(values.mask.sum())
+
+    @property
+    def is_latitude_longitude(self):
+        return "lat" in self.dataset.dimensions
+
+
+def converts(have, want):
+    """Whether UDUNITS converts one unit to the other."""
+    output = subprocess.run(["udunits2", "-H", have, "-W", want], capture_output=True, text=True)
+    return output.returncode == 0 and not output.stderr.strip()
+
+
+def check_conventions(reference):
+    """The CF-1.10 rules that bear on stage files."""
+    dataset, file = reference.dataset, reference.path.name
+    expect(attribute(dataset, "Conventions") == "CF-1.10", file, "Conventions must be CF-1.10")
+    for name in ("title", "source", "history", "terrane_config", "terrane_seed", "terrane_version"):
+        expect(attribute(dataset, name) not in (None, ""), file, "global attribute", name, "missing")
+    expect(len(reference.fields) > 0, file, "holds no field")
+
+    for name, variable in dataset.variables.items():
+        where = f"{file}: {name}:"
+        expect(re.fullmatch("[A-Za-z][A-Za-z0-9_]*", name), where, "name is not CF's")
+        standard_name = attribute(variable, "standard_name")
+        if standard_name is not None:
+            expect(standard_name in STANDARD_NAMES, where, "unknown standard_name", standard_name)
+        expect(attribute(variable, "axis") is None or reference.is_latitude_longitude, where,
+               "axis attribute on projected coordinates")
+        bounds = attribute(variable, "bounds")
+        if bounds is not None:
+            check_bounds(where, variable, dataset.variables.get(bounds))
+        if shutil.which("udunits2"):
+            asked.add("udunits2")
+            units = attribute(variable, "units")
+            if units is not None:
+                expect(converts(units, units), where, "UDUNITS cannot read units", repr(units))
+                if standard_name in STANDARD_NAMES:
+                    expect(converts(units, STANDARD_NAMES[standard_name]), where, "units", units,
+                           "do not fit standard_name", standard_name)
+
+    for name in reference.fields:
+        check_field(f"{file}: {name}:", reference, dataset[name])
+
+
+def check_bounds(where, variable, bounds):
+    if bounds is None:
+        return expect(False, where, "bounds variable is missing")
+    edges, centres = np.asarray(bounds[:]), np.asarray(variable[:])
+    expect(edges.shape == (*centres.shape, 2), where, "bounds have another shape")
+    expect(np.all(edges[:, 0] < centres) and np.all(centres < edges[:, 1]), where,
+           "lies outside its bounds")
+    expect(np.array_equal(edges[1:, 0], edges[:-1, 1]), where, "bounds have gaps")
+    expect(np.all(np.diff(centres) > 0), where, "does not ascend")
+    return None
+
+
+def check_field(where, reference, variable):
+    dataset = reference.dataset
+    rows, columns = ("lat", "lon") if reference.is_latitude_longitude else ("y", "x")
+    expect(variable.dimensions == (rows, columns), where, "dimensions are", variable.dimensions)
+    expect(attribute(variable, "long_name"), where, "long_name is missing")
+    expect(attribute(variable, "cell_methods"), where, "cell_methods is missing")
+    expect(attribute(variable, "cell_measures") == "area: cell_area", where, "cell_measures")
+    fill = attribute(variable, "_FillValue")
+    expect(fill is not None and np.asarray(fill).dtype == variable.dtype, where,
+           "_FillValue is missing or of another type")
+    mapping = attribute(variable, "grid_mapping")
+    expect((mapping is not None) == reference.is_latitude_longitude, where, "grid_mapping is", mapping)
+    if mapping is not None:
+        crs = dataset[mapping]
+        expect(attribute(crs, "grid_mapping_name") == "latitude_longitude", where, "grid_mapping_name")
+        expect(attribute(crs, "earth_radius") or attribute(crs, "inverse_flattening"), where,
+               "grid mapping says no size")
+    for coordinate in attribute(variable, "coordinates", "").split():
+        expect(coordinate in dataset.variables, where, "coordinates names absent", coordinate)
+
+    flags = attribute(variable, "flag_values")
+    if flags is None:
+        expect(attribute(variable, "units"), where, "units are missing")
+        return
+    meanings = attribute(variable, "flag_meanings", "").split()
+    expect(np.asarray(flags).dtype == variable.dtype, where, "flag_values are of another type")
+    expect(len(meanings) == np.size(flags), where, np.size(flags), "flags,", len(meanings), "meanings")
+    expect(len(set(meanings)) == len(meanings), where, "flag_meanings repeat")
+    expect(attribute(variable, "units") is None, where, "flags have no units")
+    stray = set(np.unique(np.ma.compressed(variable[:]))) - set(np.atleast_1d(flags))
+    expect(not stray, where, "values without a flag:", sorted(stray)[:5])
+
+
+def check_areas(reference):
+    dataset = reference.dataset
+    if dataset.getncattr("terrane_grid") != "sphere" or "earth_radius" not in dataset["crs"].ncattrs():
+        return
+    radius = float(dataset["crs"].getncattr("earth_radius"))
+    expect(close(reference.area.sum() / (4 * math.pi * radius**2), 1.0, 1e-12), reference.path.name,
+           "cell areas do not add up to the sphere")
+
+
+def check_xarray(reference):
+    try:
+        import xarray
+    except ImportError:
+        return
+    asked.add("xarray")
+    with xarray.open_dataset(reference.path) as dataset:
+        for name in reference.fields:
+            where = f"{reference.path.name}: {name}: xarray"
+            low, mean, high, missing = reference.summary(name)
+            values = dataset[name].astype("f8")
+            expect(close(values.min(), low), where, "min", float(values.min()), "not", low)
+            expect(close(values.max(), high), where, "max", float(values.max()), "not", high)
+            weighted = values.weighted(dataset["cell_area"]).mean()
+            expect(close(weighted, mean), where, "mean", float(weighted), "not", mean)
+            expect(int(values.isnull().sum()) == missing, where, "missing cells")
+            expect(values.attrs.get("units") == attribute(reference.dataset[name], "units"), where,
+                   "units", values.attrs.get("units"))
+            wanted = {"lat", "lon"} if "lat" in reference.dataset.variables else {"x", "y"}
+            expect(wanted <= set(values.coords), where, "coordinates are", sorted(values.coords))
+
+
+def numbers_of(text):
+    return [float(word) for word in text.split()]
+
+
+def check_cdo(reference):
+    names = reference.fields
+    for operator, position in (("fldmin", 0), ("fldmean", 1), ("fldmax", 2)):
+        output = call("cdo", "-s", "-L", "outputf,%.17g,1", f"-{operator}",
+                      f"-selname,{','.join(names)}", reference.path)
+        if output is None:
+            return
+        seen = numbers_of(output)
+        expect(len(seen) == len(names), reference.path.name, "cdo sees", len(seen), "of", len(names))
+        for name, value in zip(names, seen):
+            expected = reference.summary(name)[position]
+            expect(close(value, expected, 2e-5), f"{reference.path.name}: {name}: cdo", operator, value,
+                   "not", expected)
+    seen = call("cdo", "-s", "showunit", f"-selname,{names[0]}", reference.path)
+    expect(seen is not None and seen.strip() == attribute(reference.dataset[names[0]], "units"),
+           reference.path.name, "cdo sees units", seen)
+    description = call("cdo", "-s", "griddes", f"-selname,{names[0]}", reference.path) or ""
+    kind = re.search(r"gridtype\s*=\s*(\w+)", description)
+    plane = {"curvilinear"} if "lat" in reference.dataset.variables else {"generic", "projection"}
+    expect(kind and kind[1] in ({"lonlat"} if reference.is_latitude_longitude else plane),
+           reference.path.name, "cdo sees a grid of type", kind and kind[1])
+
+
+def check_nco(reference):
+    if shutil.which("ncwa") is None:
+        return
+    output = reference.path.with_suffix(".nco.nc")
+    for operation, position in (("min", 0), ("avg", 1), ("max", 2)):
+        # CF variables that fields point to are left out, or they would be averaged as well.
+        weights = ["-w", "cell_area"] if operation == "avg" else []
+        if call("ncwa", "-O", "-C", "-h", "-y", operation, *weights, "-v",
+                ",".join(reference.fields + ["cell_area"]), reference.path, output) is None:
+            return
+        with netCDF4.Dataset(output) as dataset:
+            for name in reference.fields:
+                # NCO averages integers as integers.
+                if operation == "avg" and reference.dataset[name].dtype.kind != "f":
+                    continue
+                # NCO does not know NaN for a missing value in its extremes.
+                if np.ma.is_masked(reference.values(name)) and reference.dataset[name].dtype.kind == "f":
+                    continue
+                expected = reference.summary(name)[position]
+                seen = float(np.ma.filled(dataset[name][...], np.nan))
+                expect(close(seen, expected, 2e-5), f"{reference.path.name}: {name}: ncwa", operation,
+                       seen, "not", expected)
+    output.unlink()
+    call("ncks", "-m", reference.path)
+
+
+def check_gdal(reference):
+    import json
+    # One field of each type, with and without gaps: GDAL opens the file anew for each.
+    kinds = {}
+    for name in reference.fields:
+        gaps = bool(np.ma.is_masked(reference.values(name)))
+        kinds.setdefault((reference.dataset[name].dtype, gaps), name)
+    for name in kinds.values():
+        where = f"{reference.path.name}: {name}: gdalinfo"
+        output = call("gdalinfo", "-json", "-stats", "--config", "GDAL_PAM_ENABLED", "NO",
+                      f'NETCDF:"{reference.path}":{name}')
+        if output is None:
+            return
+        info = json.loads(re.sub(r"\bnan\b", "NaN", output))
+        band = info["bands"][0]
+        low, _, high, _ = reference.summary(name)
+        expect(info["size"] == list(reversed(reference.area.shape)), where, "size", info["size"])
+        expect(close(band["minimum"], low, 1e-3), where, "minimum", band["minimum"], "not", low)
+        expect(close(band["maximum"], high, 1e-3), where, "maximum", band["maximum"], "not", high)
+        # Row 0 lies in the south; GDAL turns it to the bottom and so the step southwards.
+        if not reference.is_latitude_longitude:
+            continue  # GDAL gives steps to map projections and latitude-longitude grids alone
+        step = info["geoTransform"]
+        expect(close(step[1], np.diff(reference.dataset["lon"][:2])[0]), where, "column step", step)
+        expect(close(step[5], -np.diff(reference.dataset["lat"][:2])[0]), where, "row step", step)
+
+
+def check_ncdump(reference):
+    output = call("ncdump", "-h", reference.path)
+    if output is None:
+        return
+    for name in reference.fields:
+        expect(re.search(rf"\b{name}\(\w+, \w+\)", output), f"{reference.path.name}: {name}: ncdump",
+               "does not list it")
+
+
+def main():
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    files = sorted(Path(sys.argv[1]).glob("*.nc"))
+    if not files:
+        sys.exit(f"{sys.argv[1]}: no NetCDF files")
+    for path in files:
+        reference = Reference(path)
+        for check in (check_conventions, check_areas, check_xarray, check_cdo, check_nco, check_gdal,
+                      check_ncdump):
+            check(reference)
+    print(f"{len(files)} files, {len(failures)} failures; asked netCDF4, {', '.join(sorted(asked))}")
+    sys.exit(1 if failures else 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,66 @@
+#include "geo/io/background_writer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <future>
+#include <memory>
+#include <vector>
+
+#include "geo/core/error.hpp"
+
+namespace geo::io {
+namespace {
+
+TEST(BackgroundWriter, RunsJobsInOrder) {
+  std::vector<int> done;
+  BackgroundWriter writer;
+  for (int i = 0; i < 100; ++i) writer.submit([&done, i] { done.push_back(i); });
+  writer.wait();
+  ASSERT_EQ(done.size(), 100U);
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(done[i], i);
+}
+
+TEST(BackgroundWriter, FirstErrorComesBackAndStopsTheQueue) {
+  BackgroundWriter writer;
+  std::promise<void> gate;
+  std::atomic<bool> ran = false;
+  writer.submit([&gate] {
+    gate.get_future().wait();
+    throw IoError("disk full");
+  });
+  writer.submit([&ran] { ran = true; });
+  gate.set_value();
+  EXPECT_THROW(writer.wait(), IoError);
+  EXPECT_FALSE(ran);
+  EXPECT_NO_THROW(writer.wait()) << "an error is told once";
+}
+
+TEST(BackgroundWriter, StopFinishesTheJobAtHandAndDropsTheRest) {
+  std::promise<void> started, gate;
+  std::atomic<bool> finished = false, second = false;
+  BackgroundWriter writer;
+  writer.submit([&] {
+    started.set_value();
+    gate.get_future().wait();
+    finished = true;
+  });
+  writer.submit([&second] { second = true; });
+  started.get_future().wait();
+  std::thread stopper([&writer] { writer.stop(); });
+  gate.set_value();
+  stopper.join();
+  EXPECT_TRUE(finished);
+  EXPECT_THROW(writer.submit([] {}), Bug);
+}
+
+TEST(BackgroundWriter, LetsGoOfAJobsDataWhenItIsDone) {
+  const auto data = std::make_shared<int>(1);
+  BackgroundWriter writer;
+  writer.submit([data] {});
+  writer.wait();
+  EXPECT_EQ(data.use_count(), 1);
+}
+
+}  // namespace
+}  // namespace geo::io

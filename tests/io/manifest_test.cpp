@@ -1,0 +1,127 @@
+#include "geo/io/manifest.hpp"
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+#include "geo/core/error.hpp"
+#include "io/sample_snapshot.hpp"
+#include "io/temporary_folder.hpp"
+
+namespace geo::io {
+namespace {
+
+TEST(Digest, IsXxh3Of128Bits) {
+  // The published digest of no bytes at all (xxHash test vectors).
+  EXPECT_EQ(digest_of(""), "99aa06d3014798d86001c324468d497f");
+  const Values values = std::vector<float>{1.0F, 2.0F};
+  const Values other = std::vector<float>{1.0F, std::nextafter(2.0F, 3.0F)};
+  EXPECT_NE(digest_of(values), digest_of(other));
+}
+
+TEST(Digest, TellsZeroesApart) {
+  EXPECT_NE(digest_of(Values(std::vector<float>{0.0F})),
+            digest_of(Values(std::vector<float>{-0.0F})));
+}
+
+TEST(FieldSummary, MeanIsWeightedByAreaAndMissingCellsAreLeftOut) {
+  const Grid grid = Grid::sphere(8, 4);
+  std::vector<float> values(grid.size(), std::numeric_limits<float>::quiet_NaN());
+  values[grid.cell(0, 0)] = 10.0F;
+  values[grid.cell(0, 2)] = -30.0F;
+  const FieldSummary summary = summarise(field::elevation, Values(values), grid);
+  const double polar = grid.area_m2(0), other = grid.area_m2(2);
+  EXPECT_EQ(summary.min, -30.0);
+  EXPECT_EQ(summary.max, 10.0);
+  EXPECT_NEAR(summary.mean, (10.0 * polar - 30.0 * other) / (polar + other), 1e-12);
+  EXPECT_EQ(summary.missing, grid.size() - 2);
+}
+
+TEST(FieldSummary, MissingFlagsAreLeftOut) {
+  const Grid grid = Grid::sphere(8, 4);
+  std::vector<std::int8_t> values(grid.size(), 3);
+  values[0] = -1;
+  const FieldSummary summary = summarise(field::biome, Values(values), grid);
+  EXPECT_EQ(summary.min, 3.0);
+  EXPECT_DOUBLE_EQ(summary.mean, 3.0);
+  EXPECT_EQ(summary.missing, 1);
+}
+
+TEST(FieldSummary, SameBitsForAnyNumberOfThreads) {
+  const Grid grid = Grid::sphere(256, 128);
+  const Values values = sample_values(field::wind_east, grid.size(), 5);
+  const int before = omp_get_max_threads();
+  omp_set_num_threads(1);
+  const double one = summarise(field::wind_east, values, grid).mean;
+  omp_set_num_threads(4);
+  const double four = summarise(field::wind_east, values, grid).mean;
+  omp_set_num_threads(before);
+  EXPECT_EQ(one, four);
+}
+
+Manifest sample_manifest(const Snapshot& snapshot) {
+  Manifest manifest{"0.1.0",
+                    "abc",
+                    "g++ 12",
+                    library_versions(),
+                    18446744073709551615ULL,
+                    2,
+                    digest_of("seed = 1"),
+                    {},
+                    false};
+  StageRecord stage{"sample",
+                    1.25,
+                    {{"rock_eroded_m3", 1.0 / 3.0}},
+                    {"a \"warning\""},
+                    {"01-sample.nc", "01-sample.vti"},
+                    {}};
+  for (const auto& [spec, values] : snapshot.fields) {
+    stage.fields.push_back(summarise(*spec, *values, *snapshot.grid));
+  }
+  manifest.stages.push_back(stage);
+  return manifest;
+}
+
+TEST(Manifest, RoundTripKeepsEverything) {
+  const TemporaryFolder folder;
+  const Manifest written = sample_manifest(sample_snapshot(Grid::sphere(16, 8)));
+  write_manifest(folder / "manifest.json", written);
+  const Manifest read = read_manifest(folder / "manifest.json");
+  EXPECT_EQ(read.seed, written.seed);
+  EXPECT_EQ(read.libraries, written.libraries);
+  EXPECT_EQ(read.config_digest, written.config_digest);
+  EXPECT_EQ(read.complete, written.complete);
+  ASSERT_EQ(read.stages.size(), 1U);
+  EXPECT_EQ(read.stages[0].budget, written.stages[0].budget);
+  EXPECT_EQ(read.stages[0].warnings, written.stages[0].warnings);
+  EXPECT_EQ(read.stages[0].files, written.stages[0].files);
+  ASSERT_EQ(read.stages[0].fields.size(), written.stages[0].fields.size());
+  EXPECT_EQ(read.stages[0].fields[3].mean, written.stages[0].fields[3].mean);
+}
+
+TEST(Manifest, AgreesWithItsFileAndNotWithAnother) {
+  const TemporaryFolder folder;
+  const Snapshot snapshot = sample_snapshot(Grid::sphere(16, 8));
+  write_netcdf(folder / "a.nc", snapshot, sample_provenance());
+  const StageRecord record = sample_manifest(snapshot).stages[0];
+  EXPECT_EQ(disagreement(record, read_netcdf(folder / "a.nc")), "");
+  Snapshot other = sample_snapshot(Grid::sphere(16, 8), 2);
+  EXPECT_EQ(disagreement(record, other), "elevation: digest differs");
+  other.fields.erase(other.fields.begin());
+  EXPECT_EQ(disagreement(record, other), "elevation: missing in the file");
+}
+
+TEST(Manifest, UnreadableOnesAreNamed) {
+  const TemporaryFolder folder;
+  EXPECT_THROW(read_manifest(folder / "none.json"), IoError);
+  for (const char* text : {"", "{", "{\"version\": 3}", "[]"}) {
+    std::ofstream(folder / "bad.json") << text;
+    EXPECT_THROW(read_manifest(folder / "bad.json"), InputError) << text;
+  }
+}
+
+}  // namespace
+}  // namespace geo::io

@@ -1,0 +1,167 @@
+#include "geo/stages/erosion.hpp"
+
+#include <gtest/gtest.h>
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+#include <algorithm>
+#include <cmath>
+
+#include "geo/core/pipeline.hpp"
+#include "geo/kernels/flow_graph.hpp"
+#include "support/terrain.hpp"
+
+namespace geo {
+namespace {
+
+struct Outcome {
+  std::vector<float> z, rate;
+  std::vector<double> area;
+  std::vector<Index> receiver;
+  Budget budget;
+};
+
+Outcome erode(const Grid& grid, const std::vector<float>& z,
+              const std::vector<std::pair<std::string, std::string>>& settings,
+              const std::vector<float>& uplift = {}) {
+  auto stage = make_erosion_stage();
+  const auto parameters = stage->parameters();
+  for (const auto& [key, text] : settings) find_parameter(parameters, key)->set_text(text);
+  State state(std::make_shared<const Grid>(grid));
+  state.set(field::elevation, z);
+  if (!uplift.empty()) state.set(field::uplift_rate, uplift);
+  Context context;
+  StageIo io(state, stage->info());
+  stage->run(io, context);
+  const auto copy = [](auto span) { return std::vector(span.begin(), span.end()); };
+  return {copy(state.read(field::elevation)), copy(state.read(field::erosion_rate)),
+          copy(state.read(field::drainage_area)), copy(state.read(field::flow_receiver)),
+          context.budget};
+}
+
+TEST(Erosion, RockBudgetCloses) {
+  for (const Grid& grid : test::small_grids()) {
+    for (const char* depressions : {"fill", "breach"}) {
+      const auto z = test::random_terrain(grid, 5);
+      const Outcome out = erode(grid, z,
+                                {{"erosion.steps", "7"},
+                                 {"erosion.uplift_mm_yr", "0.5"},
+                                 {"erosion.depressions", depressions},
+                                 {"erosion.rebound_fraction", "0.8"},
+                                 {"erosion.relaxation_fraction", "0.15"}});
+      EXPECT_LT(std::abs(out.budget.at("rock_closing_error")), 1e-10);
+      EXPECT_GT(out.budget.at("rock_uplifted_m3"), 0.0);
+      EXPECT_GT(out.budget.at("rock_eroded_m3"), 0.0);
+    }
+  }
+}
+
+TEST(Erosion, NoStepsLeaveTheReliefAlone) {
+  const Grid grid = Grid::sphere(60, 30);
+  const auto z = test::random_terrain(grid, 2);
+  const Outcome out = erode(grid, z, {{"erosion.steps", "0"}});
+  EXPECT_EQ(out.z, z);
+  EXPECT_GT(*std::max_element(out.rate.begin(), out.rate.end()), 0.0F);
+}
+
+TEST(Erosion, SeaStaysSeaAndLandStaysLand) {
+  for (const Grid& grid : test::small_grids()) {
+    const auto z = test::random_terrain(grid, 8);
+    const Outcome out = erode(grid, z, {{"erosion.steps", "30"}, {"erosion.uplift_mm_yr", "-0.1"}});
+    for (Index cell = 0; cell < grid.size(); ++cell) {
+      ASSERT_EQ(z[cell] < 0.0F, out.z[cell] < 0.0F);
+      if (z[cell] < 0.0F) {
+        ASSERT_EQ(z[cell], out.z[cell]);
+      }
+    }
+  }
+}
+
+TEST(Erosion, ReachesTheBalanceOfUpliftAndIncision) {
+  // Long after the start every point is lowered as fast as it rises.
+  const Grid grid = Grid::plane(48, 40, 2000.0, 2000.0);
+  auto z = test::random_terrain(grid, 4);
+  for (float& height : z) height = 0.1F * std::abs(height) + 1.0F;
+  const std::vector<float> uplift(grid.size(), 1e-3F);
+  const std::vector<std::pair<std::string, std::string>> settings{
+      {"erosion.steps", "300"},
+      {"erosion.time_step_yr", "1e5"},
+      {"erosion.erodibility_yr", "1e-5"}};
+  Outcome out = erode(grid, z, settings, uplift);
+  out = erode(grid, out.z, {{"erosion.steps", "10"}, {"erosion.erodibility_yr", "1e-5"}}, uplift);
+  double rate = 0.0;
+  int cells = 0;
+  for (int j = 1; j < grid.ny() - 1; ++j) {
+    for (int i = 1; i < grid.nx() - 1; ++i) {
+      rate += out.rate[grid.cell(i, j)];
+      ++cells;
+    }
+  }
+  EXPECT_NEAR(rate / cells, 1e-3, 5e-5);
+}
+
+#ifdef _OPENMP
+TEST(Erosion, SameBitsForAnyNumberOfThreads) {
+  const int threads = omp_get_max_threads();
+  for (const Grid& grid : test::small_grids()) {
+    const auto z = test::random_terrain(grid, 9);
+    std::vector<Outcome> outcomes;
+    for (const int number : {1, 2, 4}) {
+      omp_set_num_threads(number);
+      outcomes.push_back(erode(grid, z, {{"erosion.steps", "5"}, {"erosion.uplift_mm_yr", "1"}}));
+    }
+    omp_set_num_threads(threads);
+    for (const Outcome& other : outcomes) {
+      EXPECT_EQ(other.z, outcomes[0].z);
+      EXPECT_EQ(other.area, outcomes[0].area);
+      EXPECT_EQ(other.receiver, outcomes[0].receiver);
+      EXPECT_EQ(other.budget, outcomes[0].budget);
+    }
+  }
+}
+#endif
+
+TEST(Erosion, LargeRiversDoNotPreferTheAxesOfTheGrid) {
+  // An island of noise, uplifted and dissected. Large rivers' bearings over 12 steps, folded to
+  // the distance from the nearest multiple of 45 degrees: 11.25 on average if they have no
+  // preference.
+  double sum = 0.0;
+  int count = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    const Grid grid = Grid::plane(160, 160, 2000.0, 2000.0);
+    const RandomStream random(seed, "isotropy");
+    std::vector<float> z(grid.size());
+    for (Index cell = 0; cell < grid.size(); ++cell) {
+      const double r = std::hypot(grid.x_m(grid.column(cell)), grid.y_m(grid.row(cell)));
+      z[cell] = r < 150e3 ? static_cast<float>(1.0 + 50.0 * random.uniform(cell)) : -100.0F;
+    }
+    const Outcome out = erode(grid, z,
+                              {{"erosion.steps", "60"},
+                               {"erosion.uplift_mm_yr", "0.5"},
+                               {"erosion.erodibility_yr", "3e-6"},
+                               {"erosion.time_step_yr", "2e5"}});
+    for (Index cell = 0; cell < grid.size(); ++cell) {
+      if (out.area[cell] < 4e8 || out.z[cell] < 0.0F) continue;
+      Index to = cell;
+      int steps = 0;
+      for (; steps < 12 && out.z[out.receiver[to]] >= 0.0F; ++steps) to = out.receiver[to];
+      if (steps < 12) continue;
+      const double bearing =
+          std::atan2(grid.row(to) - grid.row(cell), grid.column(to) - grid.column(cell)) *
+          57.29577951;
+      const double off = std::remainder(bearing, 45.0);
+      sum += std::abs(off);
+      ++count;
+    }
+  }
+  ASSERT_GT(count, 500);
+  RecordProperty("mean_deviation_deg", std::to_string(sum / count));
+  std::printf(
+      "mean deviation from the nearest axis or diagonal: %.2f of 11.25 degrees (%d reaches)\n",
+      sum / count, count);
+  EXPECT_NEAR(sum / count, 11.25, 1.2);
+}
+
+}  // namespace
+}  // namespace geo
