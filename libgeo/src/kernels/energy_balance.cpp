@@ -13,48 +13,59 @@ namespace geo {
 namespace {
 
 constexpr double kRadians = std::numbers::pi / 180.0;
-// The mean is almost a Laplace problem; storage makes the harmonic complex, and strong
-// over-relaxation of complex problems diverges.
-constexpr double kMeanRelaxation = 1.85, kHarmonicRelaxation = 1.2;
+constexpr double kConverged_k = 1.0e-5;  // change of a step
 
-/// Solves one row: diagonal x_i - east_i x_{i+1} - east_{i-1} x_{i-1} = right_i, cyclic
-/// (Sherman-Morrison on the Thomas algorithm). All coefficients of a row are diagonally dominant.
+/// Rows of the matrix, factored once: diagonal x_i - east_i x_{i+1} - east_{i-1} x_{i-1} = right_i,
+/// cyclic (Thomas algorithm; the corner entries split off as a rank-one term, Sherman-Morrison).
 template <class T>
-class CyclicRow {
+class CyclicRows {
  public:
-  explicit CyclicRow(int n) : upper_(n), solution_(n), corner_(n) {}
+  CyclicRows(int nx, int ny)
+      : nx_(nx),
+        upper_(static_cast<std::size_t>(nx) * ny),
+        inverse_(upper_.size()),
+        corner_(upper_.size()),
+        gamma_(ny),
+        closing_(ny) {}
 
-  std::span<const T> solve(std::span<const T> diagonal, std::span<const double> east,
-                           std::span<const T> right) {
-    const int n = static_cast<int>(diagonal.size());
-    const double wrap = east[n - 1];
-    // The corner entries are split off as a rank-one term: gamma at both ends.
+  void factor(int row, std::span<const T> diagonal, std::span<const double> east) {
+    const std::size_t begin = static_cast<std::size_t>(row) * nx_;
+    T* upper = upper_.data() + begin;
+    T* inverse = inverse_.data() + begin;
+    T* corner = corner_.data() + begin;
+    const double wrap = east[nx_ - 1];
     const T gamma = -diagonal[0];
-    const T first = diagonal[0] - gamma;
-    const T last = diagonal[n - 1] - wrap * wrap / gamma;
-    T pivot = first;
-    solution_[0] = right[0] / pivot;
-    corner_[0] = gamma / pivot;
-    for (int i = 1; i < n; ++i) {
-      upper_[i - 1] = -east[i - 1] / pivot;
-      pivot = (i == n - 1 ? last : diagonal[i]) + east[i - 1] * upper_[i - 1];
-      const T inverse = T(1.0) / pivot;
-      const T corner_right = i == n - 1 ? T(-wrap) : T(0.0);
-      solution_[i] = (right[i] + east[i - 1] * solution_[i - 1]) * inverse;
-      corner_[i] = (corner_right + east[i - 1] * corner_[i - 1]) * inverse;
+    inverse[0] = T(1.0) / (diagonal[0] - gamma);
+    corner[0] = gamma * inverse[0];
+    for (int i = 1; i < nx_; ++i) {
+      upper[i - 1] = -east[i - 1] * inverse[i - 1];
+      const bool last = i == nx_ - 1;
+      const T own = last ? diagonal[i] - wrap * wrap / gamma : diagonal[i];
+      inverse[i] = T(1.0) / (own + east[i - 1] * upper[i - 1]);
+      corner[i] = ((last ? T(-wrap) : T(0.0)) + east[i - 1] * corner[i - 1]) * inverse[i];
     }
-    for (int i = n - 2; i >= 0; --i) {
-      solution_[i] -= upper_[i] * solution_[i + 1];
-      corner_[i] -= upper_[i] * corner_[i + 1];
-    }
-    const T factor = (solution_[0] - wrap * solution_[n - 1] / gamma) /
-                     (T(1.0) + corner_[0] - wrap * corner_[n - 1] / gamma);
-    for (int i = 0; i < n; ++i) solution_[i] -= factor * corner_[i];
-    return solution_;
+    for (int i = nx_ - 2; i >= 0; --i) corner[i] -= upper[i] * corner[i + 1];
+    gamma_[row] = wrap / gamma;
+    closing_[row] = T(1.0) / (T(1.0) + corner[0] - gamma_[row] * corner[nx_ - 1]);
+  }
+
+  /// Solves in place: `values` holds the right-hand side, then the solution.
+  void solve(int row, std::span<const double> east, std::span<T> values) const {
+    const std::size_t begin = static_cast<std::size_t>(row) * nx_;
+    const T* upper = upper_.data() + begin;
+    const T* inverse = inverse_.data() + begin;
+    const T* corner = corner_.data() + begin;
+    values[0] *= inverse[0];
+    for (int i = 1; i < nx_; ++i)
+      values[i] = (values[i] + east[i - 1] * values[i - 1]) * inverse[i];
+    for (int i = nx_ - 2; i >= 0; --i) values[i] -= upper[i] * values[i + 1];
+    const T factor = (values[0] - gamma_[row] * values[nx_ - 1]) * closing_[row];
+    for (int i = 0; i < nx_; ++i) values[i] -= factor * corner[i];
   }
 
  private:
-  std::vector<T> upper_, solution_, corner_;
+  int nx_;
+  std::vector<T> upper_, inverse_, corner_, gamma_, closing_;
 };
 
 /// Heat conductances of all faces for a diffusivity per cell (W m-2 K-1 on the unit sphere).
@@ -79,40 +90,88 @@ void face_conductances(const Grid& grid, std::span<const double> diffusivity,
 }  // namespace
 
 template <class T>
-void relax_heat(const Grid& grid, const HeatProblem<T>& problem, int sweeps, double over_relaxation,
+void solve_heat(const Grid& grid, const HeatProblem<T>& problem, int iterations,
                 std::span<T> temperature) {
-  if (grid.topology() == Topology::plane) throw Bug("relax_heat: the grid has edges");
+  if (grid.topology() == Topology::plane) throw Bug("solve_heat: the grid has edges");
   const int nx = grid.nx(), ny = grid.ny();
   const bool sphere = grid.topology() == Topology::sphere;
-  CyclicRow<T> row(nx);
-  std::vector<T> diagonal(nx), right(nx);
-  for (int sweep = 0; sweep < sweeps; ++sweep) {
+  CyclicRows<T> rows(nx, ny);
+  std::vector<T> values(nx);
+  const auto row_below = [&](int j) {
+    return static_cast<std::size_t>(j == 0 ? ny - 1 : j - 1) * nx;
+  };
+  const auto row_above = [&](int j) {
+    return static_cast<std::size_t>(j + 1 == ny ? 0 : j + 1) * nx;
+  };
+  // Faces at a pole have no length: no heat crosses them.
+  const auto to_south = [&](int j, int i) {
+    return sphere && j == 0 ? 0.0 : problem.conductance_north[row_below(j) + i];
+  };
+  for (int j = 0; j < ny; ++j) {
+    const std::size_t begin = static_cast<std::size_t>(j) * nx;
+    const auto east = problem.conductance_east.subspan(begin, nx);
+    for (int i = 0; i < nx; ++i) {
+      values[i] = problem.loss[begin + i] + (problem.conductance_north[begin + i] + to_south(j, i) +
+                                             east[i] + east[i == 0 ? nx - 1 : i - 1]);
+    }
+    rows.factor(j, values, east);
+  }
+  // A x: loss and outgoing conductances on the diagonal, neighbours off it.
+  const auto apply = [&](std::span<const T> x, std::span<T> out) {
     for (int j = 0; j < ny; ++j) {
       const std::size_t begin = static_cast<std::size_t>(j) * nx;
-      const std::size_t below = static_cast<std::size_t>(j == 0 ? ny - 1 : j - 1) * nx;
-      const std::size_t above = static_cast<std::size_t>(j + 1 == ny ? 0 : j + 1) * nx;
-      const auto east = problem.conductance_east.subspan(begin, nx);
+      const T* above = x.data() + row_above(j);
+      const T* below = x.data() + row_below(j);
+      const double* east = problem.conductance_east.data() + begin;
       for (int i = 0; i < nx; ++i) {
-        const std::size_t here = begin + i;
-        // Faces at a pole have no length: no heat crosses them.
-        const double to_north = problem.conductance_north[here];
-        const double to_south = sphere && j == 0 ? 0.0 : problem.conductance_north[below + i];
         const double west = east[i == 0 ? nx - 1 : i - 1];
-        diagonal[i] = problem.loss[here] + (to_north + to_south + east[i] + west);
-        right[i] = problem.source[here] + to_north * temperature[above + i] +
-                   to_south * temperature[below + i];
-      }
-      const auto solved = row.solve(diagonal, east, right);
-      for (int i = 0; i < nx; ++i) {
-        T& value = temperature[begin + i];
-        value += over_relaxation * (solved[i] - value);
+        const double north = problem.conductance_north[begin + i], south = to_south(j, i);
+        out[begin + i] =
+            (problem.loss[begin + i] + (north + south + east[i] + west)) * x[begin + i] -
+            north * above[i] - south * below[i] - east[i] * x[begin + (i + 1 == nx ? 0 : i + 1)] -
+            west * x[begin + (i == 0 ? nx - 1 : i - 1)];
       }
     }
+  };
+  const auto precondition = [&](std::span<const T> from, std::span<T> to) {
+    std::copy(from.begin(), from.end(), to.begin());
+    for (int j = 0; j < ny; ++j) {
+      const std::size_t begin = static_cast<std::size_t>(j) * nx;
+      rows.solve(j, problem.conductance_east.subspan(begin, nx), to.subspan(begin, nx));
+    }
+  };
+  const auto product = [](std::span<const T> a, std::span<const T> b) {
+    T sum = 0.0;
+    for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
+    return sum;
+  };
+  const std::size_t size = temperature.size();
+  std::vector<T> residual(size), direction(size), step(size), image(size);
+  apply(temperature, image);
+  for (std::size_t k = 0; k < size; ++k) residual[k] = problem.source[k] - image[k];
+  precondition(residual, direction);
+  T energy = product(residual, direction);
+  for (int iteration = 0; iteration < iterations && std::abs(energy) > 0.0; ++iteration) {
+    apply(direction, image);
+    const T length = energy / product(direction, image);
+    double largest = 0.0;
+    for (std::size_t k = 0; k < size; ++k) {
+      const T change = length * direction[k];
+      temperature[k] += change;
+      residual[k] -= length * image[k];
+      largest = std::max(largest, std::abs(std::real(change)) + std::abs(std::imag(change)));
+    }
+    if (largest < kConverged_k) break;
+    precondition(residual, step);
+    const T next = product(residual, step);
+    const T turn = next / energy;
+    for (std::size_t k = 0; k < size; ++k) direction[k] = step[k] + turn * direction[k];
+    energy = next;
   }
 }
 
-template void relax_heat(const Grid&, const HeatProblem<double>&, int, double, std::span<double>);
-template void relax_heat(const Grid&, const HeatProblem<std::complex<double>>&, int, double,
+template void solve_heat(const Grid&, const HeatProblem<double>&, int, std::span<double>);
+template void solve_heat(const Grid&, const HeatProblem<std::complex<double>>&, int,
                          std::span<std::complex<double>>);
 
 void gyre_heat(const Grid& grid, const EnergyBalance& model, std::span<const double> latitude_deg,
@@ -175,7 +234,9 @@ void solve_energy_balance(const Grid& grid, const EnergyBalance& model,
             model.ice_width_k > 0.0
                 ? 1.0 / (1.0 + std::exp((surface_c - model.ice_temperature_c) / model.ice_width_k))
                 : 0.0;
-        absorbed[here] = bare + ice * (model.ice_coalbedo - bare);
+        const double frozen = model.sea_ice_coalbedo +
+                              land_fraction[here] * (model.ice_coalbedo - model.sea_ice_coalbedo);
+        absorbed[here] = bare + ice * (frozen - bare);
         diffusivity[here] =
             model.diffusivity_w_m2_k * moist_factor(mean_c[here]) / reference_factor;
         const double area_m2 = grid.area_m2(j);
@@ -190,11 +251,11 @@ void solve_energy_balance(const Grid& grid, const EnergyBalance& model,
 
   // Ice and moist transport follow the temperature slowly; each round relaxes towards the
   // solution of the present ones.
-  constexpr int kRounds = 12, kSweepsPerRound = 12, kLastSweeps = 60;
+  constexpr int kRounds = 12, kStepsPerRound = 10, kLastSteps = 300;
   for (int round = 0; round <= kRounds; ++round) {
     update_coefficients();
-    relax_heat<double>(grid, {east, north, loss, source},
-                       round < kRounds ? kSweepsPerRound : kLastSweeps, kMeanRelaxation, mean_c);
+    solve_heat<double>(grid, {east, north, loss, source},
+                       round < kRounds ? kStepsPerRound : kLastSteps, mean_c);
   }
 
   std::vector<std::complex<double>> storing(size), forcing(size);
@@ -216,9 +277,9 @@ void solve_energy_balance(const Grid& grid, const EnergyBalance& model,
       harmonic_k[here] = 0.0;
     }
   }
-  constexpr int kHarmonicSweeps = 60;
-  relax_heat<std::complex<double>>(grid, {east, north, storing, forcing}, kHarmonicSweeps,
-                                   kHarmonicRelaxation, harmonic_k);
+  constexpr int kHarmonicSteps = 300;
+  solve_heat<std::complex<double>>(grid, {east, north, storing, forcing}, kHarmonicSteps,
+                                   harmonic_k);
 }
 
 }  // namespace geo

@@ -88,7 +88,7 @@ void solve_moisture(const Grid& grid, const MoistureBudget& model, const Moistur
     const Index north = j + 1 < ny ? here + nx : grid.neighbour(i, j, kNorth);
     const Index south = j > 0 ? here - nx : grid.neighbour(i, j, kSouth);
     const double capacity = season.saturated_mm[here];
-    const double open = model.evaporation_velocity_1_d * season.water_fraction[here];
+    const double open = season.open_water_1_d[here];
     const double supply = x.from_east * column_mm[east] + x.from_west * column_mm[west] +
                           x.from_north * column_mm[north] + x.from_south * column_mm[south] +
                           season.land_evaporation[here];

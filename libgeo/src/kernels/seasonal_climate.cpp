@@ -13,7 +13,7 @@ namespace geo {
 namespace {
 
 constexpr double kRadians = std::numbers::pi / 180.0;
-constexpr double kDaysPerYear = 365.25;
+constexpr double kDaysPerYear = 365.25, kSecondsPerDay = 86400.0;
 
 std::vector<double> row_means(const Grid& grid, std::span<const double> values) {
   std::vector<double> means(grid.ny(), 0.0);
@@ -58,9 +58,28 @@ std::vector<double> eddy_strength(const Grid& grid, std::span<const double> lati
   return strength;
 }
 
+/// Horizontal convergence of the winds, s-1, from face-normal velocities.
+std::vector<float> convergence(const Grid& grid, std::span<const float> wind_east,
+                               std::span<const float> wind_north) {
+  std::vector<float> result(static_cast<std::size_t>(grid.size()));
+  for (int j = 0; j < grid.ny(); ++j) {
+    for (int i = 0; i < grid.nx(); ++i) {
+      const Index here = grid.cell(i, j);
+      const Index east = grid.neighbour(i, j, kEast), west = grid.neighbour(i, j, kWest);
+      const Index north = grid.neighbour(i, j, kNorth), south = grid.neighbour(i, j, kSouth);
+      const double zonal = 0.5 * (wind_east[west] - wind_east[east]) * grid.face_east_m(j);
+      const double meridional =
+          0.5 * (wind_north[south] + wind_north[here]) * grid.face_north_m(j - 1) -
+          0.5 * (wind_north[north] + wind_north[here]) * grid.face_north_m(j);
+      result[here] = static_cast<float>((zonal + meridional) / grid.area_m2(j));
+    }
+  }
+  return result;
+}
+
 struct Month {
   std::vector<float> wind_east, wind_north, diffusivity, eddies, saturated_mm, evaporation_mm_d,
-      land_evaporation_mm_d;
+      land_evaporation_mm_d, open_water_1_d;
   std::vector<double> column_mm, rain_mm_d;
 };
 
@@ -78,8 +97,16 @@ SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& m
                        harmonic_k);
   const std::vector<double> zonal_mean_c = row_means(grid, mean_c);
 
-  std::vector<float> water_fraction(size);
-  for (std::size_t cell = 0; cell < size; ++cell) water_fraction[cell] = 1.0F - land_fraction[cell];
+  const bool has_sea = std::any_of(land_fraction.begin(), land_fraction.end(),
+                                   [](float land) { return land < 1.0F; });
+  constexpr double kWattsPerMillimetreADay = 28.36;
+  std::vector<double> most_evaporation_mm_d(ny);
+  for (int j = 0; j < ny; ++j) {
+    const auto sun = insolation_cycle(latitude_deg[j], model.energy.obliquity_deg,
+                                      model.energy.solar_constant_w_m2);
+    most_evaporation_mm_d[j] = std::max(
+        1.0e-6, model.moisture.evaporating_share * sun.mean_w_m2 / kWattsPerMillimetreADay);
+  }
 
   std::vector<Month> months(kMonths);
 #pragma omp parallel for schedule(dynamic, 1)
@@ -101,6 +128,7 @@ SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& m
     month.column_mm.resize(size);
     month.rain_mm_d.resize(size);
     month.land_evaporation_mm_d.resize(size);
+    month.open_water_1_d.resize(size);
     month.wind_east.resize(size);
     month.wind_north.resize(size);
     for (int j = 0; j < ny; ++j) {
@@ -120,7 +148,11 @@ SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& m
         month.saturated_mm[here] = static_cast<float>(saturated);
         month.evaporation_mm_d[here] =
             static_cast<float>(oudin_evaporation_mm_d(insolation, surface_c));
-        month.column_mm[here] = 0.7 * saturated;
+        // Evaporation in series with the energy that the sun gives through the year.
+        const double resistance_d =
+            1.0 / model.moisture.evaporation_velocity_1_d + saturated / most_evaporation_mm_d[j];
+        month.open_water_1_d[here] = static_cast<float>((1.0 - land_fraction[here]) / resistance_d);
+        month.column_mm[here] = (has_sea ? 0.7 : 1.0e-3) * saturated;
       }
     }
     thermal_winds(grid, model.circulation, latitude_deg, itcz_deg, land_fraction, anomaly_k,
@@ -132,11 +164,19 @@ SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& m
       month.wind_north[cell] *= open;
       month.diffusivity[cell] *= open;
     }
+    // Rising air rains out, sinking air keeps its water.
+    const auto converging = convergence(grid, month.wind_east, month.wind_north);
+    for (std::size_t cell = 0; cell < size; ++cell) {
+      constexpr float kMost = 2.0F;
+      const float ascent =
+          converging[cell] * static_cast<float>(model.ascent_time_d * kSecondsPerDay);
+      month.eddies[cell] *= std::exp(std::clamp(ascent, -kMost, kMost));
+    }
   }
 
   // Land returns what Budyko's curve says of the rain that the last round gave it.
   constexpr int kRounds = 4;
-  std::vector<float> evaporative_share(size, 0.5F);
+  std::vector<float> evaporative_share(size, has_sea ? 0.5F : 0.0F);
   for (int round = 0; round < kRounds; ++round) {
 #pragma omp parallel for schedule(dynamic, 1)
     for (int m = 0; m < kMonths; ++m) {
@@ -148,7 +188,7 @@ SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& m
       }
       solve_moisture(grid, model.moisture,
                      {month.wind_east, month.wind_north, month.diffusivity, month.eddies,
-                      month.saturated_mm, water_fraction, month.land_evaporation_mm_d},
+                      month.saturated_mm, month.open_water_1_d, month.land_evaporation_mm_d},
                      month.column_mm);
       for (std::size_t cell = 0; cell < size; ++cell) {
         month.rain_mm_d[cell] = rain_mm_d(model.moisture, month.column_mm[cell],

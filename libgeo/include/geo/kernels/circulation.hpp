@@ -24,7 +24,7 @@ struct Circulation {
   double drag_ocean_s = 2.6e-5;  ///< r over the sea, s-1
   double drag_land_s = 3.0e-5;
   double subtropical_high_hpa = 3.0;  ///< above the equatorial trough
-  double subpolar_low_hpa = 8.0;     ///< below the subtropical high
+  double subpolar_low_hpa = 8.0;      ///< below the subtropical high
   double polar_high_hpa = 4.0;        ///< above the subpolar low
   double thermal_low_hpa_k = 0.8;     ///< fall of pressure per kelvin of heat anomaly
 };

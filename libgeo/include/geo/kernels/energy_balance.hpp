@@ -7,10 +7,11 @@
 
 namespace geo {
 
-/// Zonal line relaxation of   (loss + sum of conductances) T - sum(conductance * T_neighbour) = f
-/// on a sphere or torus, for real or complex unknowns: row after row, each solved exactly (cyclic
-/// tridiagonal, which takes the narrow cells near the poles in its stride), over-relaxed. One
-/// thread: on a grid of 2 degrees a sweep takes less than a millisecond.
+/// Heat balance   (loss + sum of conductances) T - sum(conductance * T_neighbour) = source
+/// on a sphere or torus, for real or complex unknowns. The matrix is symmetric: conjugate gradients
+/// (without conjugation for complex unknowns: COCG, van der Vorst & Melissen 1990), preconditioned
+/// with the exact solution of each row, which takes the narrow cells near the poles in its stride.
+/// One thread: on a grid of 2 degrees a step takes well below a millisecond.
 template <class T>
 struct HeatProblem {
   std::span<const double> conductance_east;   ///< of the face to the east, W K-1, size nx*ny
@@ -18,9 +19,9 @@ struct HeatProblem {
   std::span<const T> loss;                    ///< W K-1 per cell
   std::span<const T> source;                  ///< W per cell
 };
-/// Does `sweeps` sweeps in place on `temperature`.
+/// Improves `temperature` until a step changes less than 1e-5 K, at most `iterations` times.
 template <class T>
-void relax_heat(const Grid& grid, const HeatProblem<T>& problem, int sweeps, double over_relaxation,
+void solve_heat(const Grid& grid, const HeatProblem<T>& problem, int iterations,
                 std::span<T> temperature);
 
 /// Constants of the energy-balance model (North 1975, North et al. 1981, with the moist transport
@@ -34,9 +35,10 @@ struct EnergyBalance {
   double moist_transport = 1.0;         ///< share of latent heat in D's change with temperature
   double coalbedo = 0.697;              ///< mean absorbed share without ice
   double coalbedo_p2 = -0.0779;         ///< its second Legendre coefficient in latitude
-  double ice_coalbedo = 0.47;
-  double ice_temperature_c = -7.0;  ///< annual mean at which half the surface is ice
-  double ice_width_k = 3.0;          ///< width of the transition; 0: no ice at all
+  double ice_coalbedo = 0.40;           ///< of ice sheets and snow on land
+  double sea_ice_coalbedo = 0.50;       ///< of sea ice, broken and wet in summer
+  double ice_temperature_c = -7.0;      ///< annual mean at which half the surface is ice
+  double ice_width_k = 3.0;             ///< width of the transition; 0: no ice at all
   double land_heat_capacity_w_yr_m2_k = 0.5;
   double ocean_heat_capacity_w_yr_m2_k = 7.5;
   double gyre_heat_w_m2 = 50.0;   ///< heat that gyres release along a western coast of an ocean

@@ -9,9 +9,10 @@ namespace geo {
 
 /// Constants of the moisture budget.
 struct MoistureBudget {
-  double rain_time_d = 1.5;   ///< rain-out time of a saturated column
+  double rain_time_d = 1.5;            ///< rain-out time of a saturated column
   std::int64_t humidity_exponent = 4;  ///< how sharply rain follows the column's relative humidity
-  double evaporation_velocity_1_d = 0.16;  ///< of the column's deficit over open water
+  double evaporation_velocity_1_d = 0.16;  ///< v over open water that energy does not limit
+  double evaporating_share = 0.8;          ///< of the annual insolation, at most
   int sweeps = 30;
 };
 
@@ -21,7 +22,7 @@ struct MoistureBudget {
 /// volumes, upwind; nonlinear Gauss-Seidel in four alternating directions. Sequential: seasons
 /// are independent and run side by side.
 ///
-/// @param water_fraction   0..1 per cell
+/// @param open_water_1_d   v times the fraction of water, per cell
 /// @param land_evaporation mm d-1 per cell (averaged over the cell)
 /// @param column_mm        in: first guess; out: W
 struct MoistureSeason {
@@ -29,7 +30,7 @@ struct MoistureSeason {
   std::span<const float> diffusivity;            ///< K, m2 s-1
   std::span<const float> eddy_activity;          ///< e
   std::span<const float> saturated_mm;           ///< W_s
-  std::span<const float> water_fraction;
+  std::span<const float> open_water_1_d;
   std::span<const float> land_evaporation;  ///< mm d-1
 };
 void solve_moisture(const Grid& grid, const MoistureBudget& model, const MoistureSeason& season,

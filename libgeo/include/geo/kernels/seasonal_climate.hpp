@@ -20,6 +20,7 @@ struct SeasonalClimate {
   double eddy_diffusivity_m2_s = 5.0e5;  ///< at the reference temperature gradient
   double eddy_rain = 3.0;                ///< extra rain-out activity there
   double eddy_gradient_k_1000km = 7.0;   ///< the reference gradient
+  double ascent_time_d = 5.0;            ///< convergence over this time multiplies rain-out by e
   double orographic_share = 0.2;  ///< of the mean height by which moist air is lifted over a cell
   double blocking_height_m = 2700.0;  ///< height at which relief halves the moist flow
   double land_transpiration = 1.0;    ///< share of Budyko's evaporation that returns to the air

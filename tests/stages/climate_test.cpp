@@ -1,0 +1,268 @@
+#include "geo/stages/climate.hpp"
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <set>
+
+namespace geo {
+namespace {
+
+/// A northern continent with a meridional range, a southern one, and sea.
+float relief_at(double latitude_deg, double longitude_deg) {
+  const double lon = longitude_deg;
+  const bool north = latitude_deg > 5 && latitude_deg < 65 && lon > -60 && lon < 60;
+  const bool south = latitude_deg < -10 && latitude_deg > -45 && lon > 100 && lon < 150;
+  if (!north && !south) return -4000.0F;
+  const double range = std::exp(-std::pow((lon - 20.0) / 6.0, 2));
+  return static_cast<float>(200.0 + (north ? 2500.0 * range : 0.0));
+}
+
+std::vector<float> relief(const Grid& grid, double turn_deg = 0.0) {
+  std::vector<float> h(static_cast<std::size_t>(grid.size()));
+  for (Index c = 0; c < grid.size(); ++c) {
+    const double lon = std::remainder(grid.longitude_deg(grid.column(c)) - turn_deg, 360.0);
+    h[c] = relief_at(grid.latitude_deg(grid.row(c)), lon);
+  }
+  return h;
+}
+
+State run(std::shared_ptr<const Grid> grid, std::vector<float> elevation,
+          ClimateParameters parameters = {}, Context context = {}) {
+  State state(std::move(grid));
+  state.set(field::elevation, std::move(elevation));
+  const auto stage = make_climate_stage(std::move(parameters));
+  StageIo io(state, stage->info());
+  stage->run(io, context);
+  return state;
+}
+
+const Field<float>* const kOutputs[] = {
+    &field::temperature,       &field::temperature_range,
+    &field::precipitation,     &field::precipitation_seasonality,
+    &field::wind_east,         &field::wind_north,
+    &field::distance_to_coast, &field::potential_evaporation};
+
+void expect_sound(const State& state, const std::string& which) {
+  for (const auto* spec : kOutputs) {
+    for (const float value : state.read(*spec)) {
+      ASSERT_TRUE(std::isfinite(value)) << which << ": " << spec->name;
+    }
+  }
+  const auto rain = state.read(field::precipitation);
+  const auto temperature = state.read(field::temperature);
+  const auto season = state.read(field::precipitation_seasonality);
+  for (std::size_t c = 0; c < rain.size(); ++c) {
+    ASSERT_GE(rain[c], 0.0F) << which;
+    ASSERT_LT(rain[c], 20000.0F) << which;
+    ASSERT_GE(temperature[c], -270.0F) << which;
+    ASSERT_LE(std::abs(season[c]), 1.0F) << which;
+    ASSERT_GE(state.read(field::potential_evaporation)[c], 0.0F) << which;
+  }
+}
+
+double area_mean(const State& state, const Field<float>& spec) {
+  const Grid& grid = state.grid();
+  double sum = 0.0;
+  for (Index c = 0; c < grid.size(); ++c) sum += grid.area_m2(grid.row(c)) * state.read(spec)[c];
+  return sum / grid.total_area_m2();
+}
+
+TEST(Climate, DeclarationsAreSoundAndUnique) {
+  const auto stage = make_climate_stage();
+  std::set<std::string_view> names;
+  for (const Parameter& p : stage->parameters()) {
+    EXPECT_TRUE(p.name.starts_with("climate."));
+    EXPECT_TRUE(names.insert(p.name).second) << p.name;
+    EXPECT_FALSE(p.doc.empty()) << p.name;
+    EXPECT_FALSE(p.source.empty()) << p.name;
+    EXPECT_NO_THROW(p.set(p.default_value)) << p.name;
+  }
+}
+
+TEST(Climate, OutputsAreSoundOnEveryTopologyAndModel) {
+  for (const char* model : {"energy-balance", "blueprint"}) {
+    ClimateParameters p;
+    p.model = model;
+    const auto sphere = std::make_shared<Grid>(Grid::sphere(96, 48));
+    expect_sound(run(sphere, relief(*sphere), p), "sphere");
+    const auto window = std::make_shared<Grid>(Grid::window(60, 40, {30, 50, -10, 30}));
+    expect_sound(run(window, relief(*window), p), "window");
+    const auto plane =
+        std::make_shared<Grid>(Grid::plane(50, 30, 1000, 1000, Edges::open, Centre{-20.0, 179.0}));
+    expect_sound(run(plane, std::vector<float>(1500, 50.0F), p), "plane with a centre");
+    const auto nowhere = std::make_shared<Grid>(Grid::plane(40, 30, 30e3, 30e3));
+    std::vector<float> island(1200, -100.0F);
+    island[15 * 40 + 20] = 900.0F;
+    expect_sound(run(nowhere, island, p), "plane without latitude");
+    const auto torus = std::make_shared<Grid>(Grid::torus(64, 48, 40e3, 40e3));
+    std::vector<float> half(64 * 48, -100.0F);
+    std::fill(half.begin() + 1000, half.begin() + 2000, 1500.0F);
+    expect_sound(run(torus, half, p), "torus");
+  }
+}
+
+TEST(Climate, OddPlanetsHaveAClimate) {
+  const auto grid = std::make_shared<Grid>(Grid::sphere(72, 36));
+  const auto size = static_cast<std::size_t>(grid->size());
+  const State sea = run(grid, std::vector<float>(size, -3000.0F));
+  expect_sound(sea, "all sea");
+  EXPECT_GT(area_mean(sea, field::precipitation), 300.0);
+  const State land = run(grid, std::vector<float>(size, 300.0F));
+  expect_sound(land, "all land");
+  EXPECT_LT(area_mean(land, field::precipitation), 100.0) << "no sea, no rain";
+  for (const double obliquity : {0.0, 60.0, 90.0}) {
+    for (const double pressure : {0.05, 1.0, 10.0}) {
+      Context context;
+      context.planet.obliquity_deg = obliquity;
+      context.planet.pressure_bar = pressure;
+      const State state = run(grid, relief(*grid), {}, context);
+      expect_sound(state, "obliquity " + std::to_string(obliquity));
+      if (obliquity == 0.0) {
+        for (const float range : state.read(field::temperature_range)) ASSERT_LT(range, 1e-3F);
+      }
+    }
+  }
+}
+
+TEST(Climate, SymmetricPlanetHasASymmetricClimate) {
+  const auto grid = std::make_shared<Grid>(Grid::sphere(72, 36));
+  std::vector<float> h(static_cast<std::size_t>(grid->size()));
+  for (Index c = 0; c < grid->size(); ++c) {
+    const double lat = std::abs(grid->latitude_deg(grid->row(c)));
+    h[c] = lat > 20 && lat < 50 && std::abs(grid->longitude_deg(grid->column(c))) < 60 ? 500.0F
+                                                                                       : -100.0F;
+  }
+  const State state = run(grid, h);
+  for (const auto* spec : {&field::temperature, &field::precipitation, &field::temperature_range,
+                           &field::wind_east, &field::potential_evaporation}) {
+    const auto values = state.read(*spec);
+    double worst = 0.0, largest = 0.0;
+    for (int j = 0; j < 18; ++j) {
+      for (int i = 0; i < 72; ++i) {
+        const double south = values[grid->cell(i, j)], north = values[grid->cell(i, 35 - j)];
+        worst = std::max(worst, std::abs(north - south));
+        largest = std::max(largest, std::abs(north));
+      }
+    }
+    EXPECT_LT(worst, 0.01 * largest) << spec->name << ": months sample the year, not its mirror";
+  }
+}
+
+TEST(Climate, TurningThePlanetTurnsItsClimate) {
+  const auto grid = std::make_shared<Grid>(Grid::sphere(96, 48));
+  const State here = run(grid, relief(*grid)), there = run(grid, relief(*grid, 90.0));
+  for (const auto* spec : kOutputs) {
+    const auto a = here.read(*spec), b = there.read(*spec);
+    double worst = 0.0, largest = 0.0;
+    for (int j = 0; j < 48; ++j) {
+      for (int i = 0; i < 96; ++i) {
+        worst = std::max<double>(worst,
+                                 std::abs(a[grid->cell(i, j)] - b[grid->cell((i + 24) % 96, j)]));
+        largest = std::max<double>(largest, std::abs(a[grid->cell(i, j)]));
+      }
+    }
+    EXPECT_LT(worst, 2e-3 * largest) << spec->name;
+  }
+}
+
+TEST(Climate, SameBitsForAnyNumberOfThreads) {
+  const auto grid = std::make_shared<Grid>(Grid::sphere(96, 48));
+  for (const char* model : {"energy-balance", "blueprint"}) {
+    ClimateParameters p;
+    p.model = model;
+    p.temperature_noise_k = 2.0;
+    p.precipitation_noise_mm_yr = 60.0;
+    const int before = omp_get_max_threads();
+    omp_set_num_threads(1);
+    const State one = run(grid, relief(*grid), p);
+    omp_set_num_threads(4);
+    const State four = run(grid, relief(*grid), p);
+    omp_set_num_threads(before);
+    for (const auto* spec : kOutputs) {
+      const auto a = one.read(*spec), b = four.read(*spec);
+      EXPECT_TRUE(std::equal(a.begin(), a.end(), b.begin())) << spec->name;
+    }
+  }
+}
+
+TEST(Climate, DoesNotDependOnResolution) {
+  const auto coarse = std::make_shared<Grid>(Grid::sphere(180, 90));
+  const auto fine = std::make_shared<Grid>(Grid::sphere(540, 270));
+  const State a = run(coarse, relief(*coarse)), b = run(fine, relief(*fine));
+  for (const auto* spec : {&field::temperature, &field::precipitation, &field::temperature_range}) {
+    double difference = 0.0, size = 0.0;
+    for (Index c = 0; c < coarse->size(); ++c) {
+      const Index centre = fine->cell(3 * coarse->column(c) + 1, 3 * coarse->row(c) + 1);
+      const double area = coarse->area_m2(coarse->row(c));
+      difference += area * std::abs(a.read(*spec)[c] - b.read(*spec)[centre]);
+      size += area * std::abs(a.read(*spec)[c]);
+    }
+    EXPECT_LT(difference / size, 0.03) << spec->name;
+  }
+}
+
+TEST(Climate, TemperatureFallsByTheLapseRate) {
+  const auto grid = std::make_shared<Grid>(Grid::sphere(360, 180));
+  auto h = relief(*grid);
+  const Index here = grid->cell(180, 120);  // 30 N in the middle of the continent
+  const State flat = run(grid, h);
+  const float before = h[here];
+  h[here] = before + 1000.0F;
+  const State high = run(grid, h);
+  EXPECT_NEAR(flat.read(field::temperature)[here] - high.read(field::temperature)[here], 6.0, 0.3);
+}
+
+TEST(Climate, InteriorsAreMoreSeasonalAndDrierThanCoasts) {
+  const auto grid = std::make_shared<Grid>(Grid::sphere(180, 90));
+  const State state = run(grid, relief(*grid));
+  const auto at = [&](const Field<float>& spec, double lat, double lon) {
+    return state.read(
+        spec)[grid->cell(static_cast<int>((lon + 180) / 2), static_cast<int>((lat + 90) / 2))];
+  };
+  EXPECT_GT(at(field::temperature_range, 55, 0), 1.5F * at(field::temperature_range, 55, 150));
+  EXPECT_GT(at(field::precipitation, 55, -57), 1.2F * at(field::precipitation, 55, 40))
+      << "westerlies lose their water on the way, and at the range";
+}
+
+TEST(Climate, LeeOfARangeIsDrierThanItsWindwardFoot) {
+  const auto grid = std::make_shared<Grid>(Grid::sphere(720, 360));
+  const State state = run(grid, relief(*grid));
+  const int row = static_cast<int>((52 + 90) * 2);
+  const auto rain = state.read(field::precipitation);
+  const Index windward = grid->cell(static_cast<int>((14.0 + 180) * 2), row);
+  const Index lee = grid->cell(static_cast<int>((28.0 + 180) * 2), row);
+  ASSERT_GT(state.read(field::wind_east)[windward], 0.0F);
+  EXPECT_LT(rain[lee], 0.8F * rain[windward]);
+}
+
+TEST(Climate, NoiseIsBoundedByItsAmplitude) {
+  const auto grid = std::make_shared<Grid>(Grid::sphere(96, 48));
+  ClimateParameters p;
+  p.temperature_noise_k = 2.0;
+  const State calm = run(grid, relief(*grid)), noisy = run(grid, relief(*grid), p);
+  double largest = 0.0;
+  for (Index c = 0; c < grid->size(); ++c) {
+    largest = std::max<double>(
+        largest, std::abs(noisy.read(field::temperature)[c] - calm.read(field::temperature)[c]));
+  }
+  EXPECT_GT(largest, 0.4);
+  EXPECT_LE(largest, 2.2);
+}
+
+TEST(Climate, BlueprintFollowsItsFormulaOnThePlane) {
+  const auto grid = std::make_shared<Grid>(Grid::plane(20, 20, 1000, 1000));
+  ClimateParameters p;
+  p.model = "blueprint";
+  p.latitude_deg = 0.0;
+  const State state = run(grid, std::vector<float>(400, -10.0F), p);
+  EXPECT_NEAR(state.read(field::temperature)[210], 28 + 2 + 5 * std::log(2.0), 0.01);
+  EXPECT_NEAR(state.read(field::precipitation)[210], 2400.0, 1.0);
+  EXPECT_LT(state.read(field::wind_east)[210], -6.9F) << "trades, 7 m s-1";
+}
+
+}  // namespace
+}  // namespace geo
