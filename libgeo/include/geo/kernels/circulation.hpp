@@ -24,7 +24,7 @@ struct Circulation {
   double drag_ocean_s = 1.5e-5;  ///< r over the sea, s-1
   double drag_land_s = 3.0e-5;
   double subtropical_high_hpa = 5.0;  ///< above the equatorial trough
-  double subpolar_low_hpa = 12.0;      ///< below the subtropical high
+  double subpolar_low_hpa = 15.0;      ///< below the subtropical high
   double polar_high_hpa = 6.0;        ///< above the subpolar low
   double thermal_low_hpa_k = 0.98;     ///< fall of pressure per kelvin of heat anomaly
 };

@@ -29,14 +29,14 @@ void solve_heat(const Grid& grid, const HeatProblem<T>& problem, int iterations,
 struct EnergyBalance {
   double solar_constant_w_m2 = 1361.0;
   double obliquity_deg = 23.44;
-  double outgoing_w_m2 = 204.8;         ///< A at 0 degC
+  double outgoing_w_m2 = 204.6;         ///< A at 0 degC
   double outgoing_slope_w_m2_k = 2.09;  ///< B
   double diffusivity_w_m2_k = 0.62;     ///< D at 15 degC, on the unit sphere
   double moist_transport = 1.0;         ///< share of latent heat in D's change with temperature
   double coalbedo = 0.697;              ///< mean absorbed share without ice
   double coalbedo_p2 = -0.0779;         ///< its second Legendre coefficient in latitude
-  double ice_coalbedo = 0.3;           ///< of ice sheets and snow on land
-  double sea_ice_coalbedo = 0.52;       ///< of sea ice, broken and wet in summer
+  double ice_coalbedo = 0.28;           ///< of ice sheets and snow on land
+  double sea_ice_coalbedo = 0.55;       ///< of sea ice, broken and wet in summer
   double ice_temperature_c = -1.1e1;      ///< annual mean at which half the surface is ice
   double ice_width_k = 3.0;             ///< width of the transition; 0: no ice at all
   double land_heat_capacity_w_yr_m2_k = 0.4;
