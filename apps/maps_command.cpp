@@ -10,8 +10,8 @@
 #include "configuration.hpp"
 #include "geo/core/error.hpp"
 #include "geo/io/config.hpp"
-#include "geo/io/report.hpp"
 #include "geo/io/run_folder.hpp"
+#include "geo/io/run_pictures.hpp"
 
 namespace terrane {
 

@@ -27,12 +27,12 @@ TEST(Digest, TellsZeroesApart) {
             digest_of(Values(std::vector<float>{-0.0F})));
 }
 
-TEST(FieldSummary, MeanIsWeightedByAreaAndMissingCellsAreLeftOut) {
+TEST(FieldRecord, MeanIsWeightedByAreaAndMissingCellsAreLeftOut) {
   const Grid grid = Grid::sphere(8, 4);
   std::vector<float> values(grid.size(), std::numeric_limits<float>::quiet_NaN());
   values[grid.cell(0, 0)] = 10.0F;
   values[grid.cell(0, 2)] = -30.0F;
-  const FieldSummary summary = summarise(field::elevation, Values(values), grid);
+  const FieldRecord summary = summarise(field::elevation, Values(values), grid);
   const double polar = grid.area_m2(0), other = grid.area_m2(2);
   EXPECT_EQ(summary.min, -30.0);
   EXPECT_EQ(summary.max, 10.0);
@@ -40,17 +40,17 @@ TEST(FieldSummary, MeanIsWeightedByAreaAndMissingCellsAreLeftOut) {
   EXPECT_EQ(summary.missing, grid.size() - 2);
 }
 
-TEST(FieldSummary, MissingFlagsAreLeftOut) {
+TEST(FieldRecord, MissingFlagsAreLeftOut) {
   const Grid grid = Grid::sphere(8, 4);
   std::vector<std::int8_t> values(grid.size(), 3);
   values[0] = -1;
-  const FieldSummary summary = summarise(field::biome, Values(values), grid);
+  const FieldRecord summary = summarise(field::biome, Values(values), grid);
   EXPECT_EQ(summary.min, 3.0);
   EXPECT_DOUBLE_EQ(summary.mean, 3.0);
   EXPECT_EQ(summary.missing, 1);
 }
 
-TEST(FieldSummary, SameBitsForAnyNumberOfThreads) {
+TEST(FieldRecord, SameBitsForAnyNumberOfThreads) {
   const Grid grid = Grid::sphere(256, 128);
   const Values values = sample_values(field::wind_east, grid.size(), 5);
   const int before = omp_get_max_threads();

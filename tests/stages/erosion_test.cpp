@@ -157,9 +157,6 @@ TEST(Erosion, LargeRiversDoNotPreferTheAxesOfTheGrid) {
   }
   ASSERT_GT(count, 500);
   RecordProperty("mean_deviation_deg", std::to_string(sum / count));
-  std::printf(
-      "mean deviation from the nearest axis or diagonal: %.2f of 11.25 degrees (%d reaches)\n",
-      sum / count, count);
   EXPECT_NEAR(sum / count, 11.25, 1.2);
 }
 

@@ -61,7 +61,7 @@ std::string digest_of(const Values& values) {
       values);
 }
 
-FieldSummary summarise(const FieldSpec& spec, const Values& values, const Grid& grid) {
+FieldRecord summarise(const FieldSpec& spec, const Values& values, const Grid& grid) {
   const auto rows =
       std::visit([&](const auto& array) { return summarise_rows(array, spec, grid); }, values);
   RowSummary all;

@@ -22,19 +22,19 @@ double number_or_nan(const Json& json) {
   return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
 }
 
-Json to_json(const FieldSummary& field) {
+Json to_json(const FieldRecord& field) {
   return {{"units", field.units}, {"min", field.min},         {"mean", field.mean},
           {"max", field.max},     {"missing", field.missing}, {"digest", field.digest}};
 }
 
 Json to_json(const StageRecord& stage) {
   Json fields = Json::object();
-  for (const FieldSummary& field : stage.fields) fields[field.name] = to_json(field);
+  for (const FieldRecord& field : stage.fields) fields[field.name] = to_json(field);
   return {{"name", stage.name},         {"seconds", stage.seconds}, {"budget", stage.budget},
           {"warnings", stage.warnings}, {"files", stage.files},     {"fields", fields}};
 }
 
-FieldSummary field_from(const std::string& name, const Json& json) {
+FieldRecord field_from(const std::string& name, const Json& json) {
   return {name,
           json.at("units").get<std::string>(),
           number_or_nan(json.at("min")),
@@ -109,7 +109,7 @@ std::string disagreement(const StageRecord& record, const Snapshot& file) {
   if (record.name != file.stage) {
     return fmt::format("stage is {}, manifest says {}", file.stage, record.name);
   }
-  for (const FieldSummary& field : record.fields) {
+  for (const FieldRecord& field : record.fields) {
     const auto at = std::find_if(file.fields.begin(), file.fields.end(), [&](const auto& entry) {
       return entry.first->name == field.name;
     });

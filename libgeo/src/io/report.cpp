@@ -54,7 +54,7 @@ std::string shown(double value) {
   return std::isfinite(value) ? fmt::format("{:.5g}", value) : "–";
 }
 
-void add_fields(pugi::xml_node main, const std::vector<FieldSummary>& fields) {
+void add_fields(pugi::xml_node main, const std::vector<FieldFigures>& fields) {
   add(main, "h2", "Fields");
   auto scroll = add(main, "div");
   scroll.append_attribute("class") = "wide";
@@ -95,7 +95,7 @@ bool is_value(T value, int missing) {
 }
 
 template <class T>
-FieldSummary summarise(const Grid& grid, const FieldSpec& spec, const std::vector<T>& values) {
+FieldFigures summarise(const Grid& grid, const FieldSpec& spec, const std::vector<T>& values) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   struct Row {
     double sum = 0.0, area = 0.0, min = kInfinity, max = -kInfinity;
@@ -120,7 +120,7 @@ FieldSummary summarise(const Grid& grid, const FieldSpec& spec, const std::vecto
     all.min = std::min(all.min, row.min);
     all.max = std::max(all.max, row.max);
   }
-  FieldSummary summary{std::string(spec.name), std::string(spec.units), std::string(spec.doc)};
+  FieldFigures summary{std::string(spec.name), std::string(spec.units), std::string(spec.doc)};
   const bool empty = !(all.area > 0.0);
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   summary.min = empty ? kNaN : all.min;
@@ -136,8 +136,8 @@ bool is_measured(const FieldSpec& spec) {
 
 }  // namespace
 
-std::vector<FieldSummary> summarise_fields(const State& state) {
-  std::vector<FieldSummary> summaries;
+std::vector<FieldFigures> summarise_fields(const State& state) {
+  std::vector<FieldFigures> summaries;
   for (const FieldSpec* spec : state.present()) {
     if (!is_measured(*spec)) continue;
     std::visit(

@@ -15,7 +15,7 @@
 #include "geo/io/atomic_file.hpp"
 #include "geo/io/background_writer.hpp"
 #include "geo/io/build_info.hpp"
-#include "geo/io/report.hpp"
+#include "geo/io/run_pictures.hpp"
 
 namespace geo::io {
 namespace {

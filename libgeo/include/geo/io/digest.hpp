@@ -14,7 +14,7 @@ std::string digest_of(std::string_view text);
 std::string digest_of(const Values& values);
 
 /// One field in figures. `min`, `mean` and `max` leave missing cells out, and are NaN if all are.
-struct FieldSummary {
+struct FieldRecord {
   std::string name;
   std::string units;
   double min = 0.0;
@@ -25,6 +25,6 @@ struct FieldSummary {
 };
 
 /// The same bits for any number of threads.
-FieldSummary summarise(const FieldSpec& spec, const Values& values, const Grid& grid);
+FieldRecord summarise(const FieldSpec& spec, const Values& values, const Grid& grid);
 
 }  // namespace geo::io

@@ -18,7 +18,7 @@ struct StageRecord {
   std::map<std::string, double> budget;
   std::vector<std::string> warnings;
   std::vector<std::string> files;  ///< relative to the folder of the run
-  std::vector<FieldSummary> fields;
+  std::vector<FieldRecord> fields;
 };
 
 /// manifest.json of a run.

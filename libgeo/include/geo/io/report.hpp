@@ -12,21 +12,21 @@ namespace geo::io {
 
 /// What a field holds, in three numbers. `mean` is weighted by true area; cells without a value do
 /// not count. NaN when there is no value at all.
-struct FieldSummary {
+struct FieldFigures {
   std::string name, units, doc;
   double min = 0.0, mean = 0.0, max = 0.0;
 };
 
 /// Summaries of the fields of a state, in vocabulary order; enumerations and cell numbers, whose
 /// mean says nothing, are left out. Rows are summed in order: the same for any number of threads.
-std::vector<FieldSummary> summarise_fields(const State& state);
+std::vector<FieldFigures> summarise_fields(const State& state);
 
 /// What a report shows.
 struct Report {
   std::string title;  ///< "terrane: planet of seed 1"
   std::string introduction;
   std::vector<MapFile> maps;
-  std::vector<FieldSummary> fields;
+  std::vector<FieldFigures> fields;
   std::string parameters;  ///< the resolved configuration, as text
   std::vector<std::pair<std::string, std::string>> provenance;  ///< ("seed", "1") …
 };
