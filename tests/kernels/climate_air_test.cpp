@@ -90,15 +90,14 @@ struct Air {
 TEST(Moisture, WhatEvaporatesRains) {
   const Grid grid = Grid::sphere(72, 36);
   Air air(grid);
-  for (Index c = 0; c < grid.size(); ++c) air.water[c] = grid.column(c) < 40 ? 1.0F : 0.0F;
+  for (Index c = 0; c < grid.size(); ++c) air.water[c] = grid.column(c) < 40 ? 0.2F : 0.0F;
   MoistureBudget model;
   model.sweeps = 400;
   solve_moisture(grid, model, air.season(), air.column);
   double evaporation = 0.0, rain = 0.0;
   for (Index c = 0; c < grid.size(); ++c) {
     const double area = grid.area_m2(grid.row(c));
-    evaporation += area * model.evaporation_velocity_1_d * air.water[c] *
-                   std::max(0.0, air.saturated[c] - air.column[c]);
+    evaporation += area * air.water[c] * std::max(0.0, air.saturated[c] - air.column[c]);
     rain += area * rain_mm_d(model, air.column[c], air.saturated[c], 1.0);
   }
   EXPECT_NEAR(rain / evaporation, 1.0, 1e-4);
@@ -107,7 +106,7 @@ TEST(Moisture, WhatEvaporatesRains) {
 TEST(Moisture, RainFallsOffDownwindOfTheCoast) {
   const Grid grid = Grid::sphere(72, 36);
   Air air(grid);
-  for (Index c = 0; c < grid.size(); ++c) air.water[c] = grid.column(c) < 36 ? 1.0F : 0.0F;
+  for (Index c = 0; c < grid.size(); ++c) air.water[c] = grid.column(c) < 36 ? 0.2F : 0.0F;
   const MoistureBudget model;
   solve_moisture(grid, model, air.season(), air.column);
   for (int i = 37; i < 60; ++i) {
@@ -119,7 +118,7 @@ TEST(Moisture, LeeOfARangeIsDry) {
   const Grid grid = Grid::sphere(72, 36);
   Air air(grid), flat(grid);
   for (Index c = 0; c < grid.size(); ++c) {
-    air.water[c] = flat.water[c] = grid.column(c) < 36 ? 1.0F : 0.0F;
+    air.water[c] = flat.water[c] = grid.column(c) < 36 ? 0.2F : 0.0F;
     if (grid.column(c) == 42) air.saturated[c] = 12.0F;  // cold air over the crest
   }
   const MoistureBudget model;
@@ -224,7 +223,8 @@ TEST(Blueprint, LeeOfARangeIsDry) {
   }
   blueprint_relief_precipitation(grid, {}, latitude, land, h, rain);
   const auto at = [&](int column) { return rain[grid.cell(column, 10)]; };
-  EXPECT_NEAR(at(50) - at(48), 0.8 * 2000, 60.0) << "0.8 mm per metre of lift";
+  EXPECT_NEAR(at(50) - at(48), 0.8 * 2000, 80.0)
+      << "0.8 mm per metre of lift, less two cells of decay from the sea";
   EXPECT_LT(at(51), at(48) - 500.0F) << "about 0.4 mm per metre in the shadow";
   EXPECT_GT(at(70), at(51) + 300.0F) << "which wears off";
   EXPECT_GT(at(22), at(40)) << "the sea upwind feeds the coast";

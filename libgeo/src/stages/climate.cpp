@@ -113,7 +113,7 @@ std::vector<float> relief_lift(const ClimateFrame& frame, const SeasonalFields& 
 /// How much more sun than on average reaches the ground under a column of this humidity
 /// (Angstrom-Prescott, sunshine falling with humidity).
 float clearness(float humidity) {
-  const float sunshine = std::clamp(1.25F - humidity, 0.1F, 0.9F);
+  const float sunshine = std::clamp(1.1F - humidity, 0.1F, 0.9F);
   return (0.25F + 0.5F * sunshine) / 0.5F;
 }
 
