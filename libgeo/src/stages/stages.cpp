@@ -6,13 +6,15 @@
 #include "geo/stages/biomes.hpp"
 #include "geo/stages/climate.hpp"
 #include "geo/stages/erosion.hpp"
+#include "geo/stages/hydrology.hpp"
 
 namespace geo {
 
 std::span<const StageEntry> stage_table() {
-  static constexpr std::array<StageEntry, 3> kStages{{
+  static constexpr std::array<StageEntry, 4> kStages{{
       {3, "erosion", [] { return make_erosion_stage(); }},
       {4, "climate", [] { return make_climate_stage(); }},
+      {5, "hydrology", [] { return make_hydrology_stage(); }},
       {6, "biomes", [] { return make_biomes_stage(); }},
   }};
   return kStages;

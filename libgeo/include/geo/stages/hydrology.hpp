@@ -1,0 +1,37 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "geo/core/stage.hpp"
+
+namespace geo {
+
+struct HydrologyParameters {
+  double breach_depth_m = 20.0;
+  double breach_gorge_factor = 1.0;
+  double breach_length_km = 700.0;
+  double channel_area_km2 = 5000.0;
+  double river_threshold_m3_s = 100.0;
+  double river_reference_m3_s = 20000.0;
+  double carving = 1.0;
+  std::int64_t carving_rounds = 1;
+  double valley_blend = 0.2;
+  double frozen_temperature_degc = -15.0;
+
+  [[nodiscard]] std::vector<Parameter> declarations();
+};
+
+/// Where the rain goes: runoff after Budyko (1974), routing over a relief freed of the false dams
+/// of its resolution, lakes and endorheic basins by the steady water balance, discharge,
+/// valleys carved by rivers (Leopold & Maddock 1953), basins and stream orders.
+///
+/// Discharge is that which leaves the cell; on a lake it is the lake's outflow, on an endorheic
+/// lake its inflow, at sea 0. Ice does not pond: where it is colder than `frozen_temperature_degc`
+/// a full depression passes its water on without a lake. Budget (m3/s over land): precipitation,
+/// evaporation of land and of lakes beside it, runoff to the sea (or over an open edge), and
+/// the relative closing error.
+std::unique_ptr<Stage> make_hydrology_stage(HydrologyParameters parameters = {});
+
+}  // namespace geo
