@@ -124,15 +124,15 @@ class HydrologyStage final : public Stage {
     return {p_.river_threshold_m3_s, p_.river_reference_m3_s};
   }
 
-  /// False dams cut and valleys carved, both by the rivers that flow while every depression
+  /// False dams cut and valleys carved; rivers are those that flow while every depression
   /// overflows.
   void shape_valleys(const Grid& grid, const Bytes& outlets, const Bytes& sea,
                      std::span<const double> runoff, std::span<float> z) const {
+    breach_dams(grid, outlets, {p_.breach_depth_m, p_.breach_length_km * 1000}, z);
     const FlowGraph graph = route_water(grid, z, outlets).graph;
     std::vector<double> discharge(runoff.begin(), runoff.end());
     graph.accumulate(discharge);
-    breach_dams(grid, graph, outlets, discharge,
-                {p_.breach_depth_m, p_.breach_gorge_factor, p_.breach_length_km * 1000}, z);
+    grade_rivers(grid, graph, outlets, discharge, {p_.gorge_factor, p_.gorge_length_km * 1000}, z);
     if (p_.carving > 0) {
       const CarvingLaw law{p_.carving, static_cast<double>(p_.carving_rounds),
                            p_.river_threshold_m3_s, p_.valley_blend};
@@ -194,13 +194,14 @@ class HydrologyStage final : public Stage {
 std::vector<Parameter> HydrologyParameters::declarations() {
   return {
       real("hydrology.breach_depth_m", breach_depth_m, "m", 0.0, 1e4,
-           "deepest cut through false dams of the relief where hardly any water flows",
-           "lindsay2016"),
-      real("hydrology.breach_gorge_factor", breach_gorge_factor, "1", 0.0, 100.0,
-           "deepest cut where a river flows, over the depth of the valley it would have cut",
-           "leopold1953"),
+           "deepest cut through narrow dams of a coarse relief; 0 cuts none", "lindsay2016"),
       real("hydrology.breach_length_km", breach_length_km, "km", 0.0, 1e4,
            "longest cut through such a dam", "lindsay2016"),
+      real("hydrology.gorge_factor", gorge_factor, "1", 0.0, 100.0,
+           "deepest cut by a river through a dam, over the depth of its valley; 0 cuts none",
+           "leopold1953"),
+      real("hydrology.gorge_length_km", gorge_length_km, "km", 0.0, 1e5,
+           "longest way on which a river is graded through a dam", "design"),
       real("hydrology.channel_area_km2", channel_area_km2, "km2", 0.0, 1e8,
            "drainage area from which a channel has a stream order", "design"),
       real("hydrology.river_threshold_m3_s", river_threshold_m3_s, "m3 s-1", 0.0, 1e7,

@@ -1,0 +1,133 @@
+#include "geo/stages/hydrology.hpp"
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "geo/kernels/depressions.hpp"
+#include "geo/kernels/noise.hpp"
+#include "support/terrain.hpp"
+
+namespace geo {
+namespace {
+
+State run(State state, Context& context, HydrologyParameters parameters = {}) {
+  const auto stage = make_hydrology_stage(parameters);
+  StageIo io(state, stage->info());
+  stage->run(io, context);
+  return state;
+}
+
+State random_planet(const Grid& grid, std::uint64_t seed) {
+  State state(std::make_shared<Grid>(grid));
+  state.set(field::elevation, test::random_terrain(grid, seed));
+  const RandomStream random(seed, "climate");
+  const auto t = state.update(field::temperature), p = state.update(field::precipitation);
+  const auto e = state.update(field::potential_evaporation);
+  for (Index c = 0; c < grid.size(); ++c) {
+    t[c] = 10;
+    p[c] = static_cast<float>(random.uniform(c, 0, 0, 1500));
+    e[c] = static_cast<float>(random.uniform(c, 1, 0, 2500));
+  }
+  return state;
+}
+
+TEST(Hydrology, WaterBudgetClosesOnAHundredTerrains) {
+  for (std::uint64_t seed = 0; seed < 25; ++seed) {
+    for (const Grid& grid : test::small_grids()) {
+      SCOPED_TRACE(seed);
+      Context context;
+      run(random_planet(grid, seed), context);
+      ASSERT_LT(std::abs(context.budget.at("water_closing_error")), 1e-9);
+      ASSERT_GT(context.budget.at("runoff_to_sea_m3_s"), 0);
+    }
+  }
+}
+
+TEST(Hydrology, EveryLandCellReachesTheSeaOrAnEndorheicBottomWithoutClimbingTheWater) {
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    for (const Grid& grid : test::small_grids()) {
+      SCOPED_TRACE(seed);
+      Context context;
+      const State state = run(random_planet(grid, seed), context);
+      const auto z = state.read(field::elevation), depth = state.read(field::lake_depth);
+      const auto receiver = state.read(field::flow_receiver);
+      const auto outlets = find_outlets(grid, z);
+      std::vector<float> filled(grid.size());
+      fill_depressions(grid, z, outlets, filled);
+      const auto basin = state.read(field::basin_id), lake = state.read(field::lake_id);
+      double area = 0;
+      for (Index c = 0; c < grid.size(); ++c) {
+        ASSERT_LE(filled[receiver[c]], std::max(filled[c], z[c]));
+        ASSERT_EQ(basin[c] > 0, z[c] >= 0);
+        ASSERT_EQ(lake[c] > 0, depth[c] > 0);
+        if (receiver[c] == c) area += state.read(field::drainage_area)[c];
+        ASSERT_GE(state.read(field::discharge)[c], 0);
+      }
+      EXPECT_NEAR(area / grid.total_area_m2(), 1.0, 1e-12);
+    }
+  }
+}
+
+TEST(Hydrology, SameBitsForAnyNumberOfThreads) {
+  const Grid grid = Grid::sphere(120, 60);
+  Context context;
+  omp_set_num_threads(1);
+  const State one = run(random_planet(grid, 5), context);
+  omp_set_num_threads(4);
+  const State four = run(random_planet(grid, 5), context);
+  omp_set_num_threads(omp_get_num_procs());
+  for (const FieldSpec* spec : one.present()) {
+    EXPECT_EQ(*one.values(*spec), *four.values(*spec)) << spec->name;
+  }
+}
+
+// Two continents, one of them where the poles of the turned planet lie.
+std::vector<double> largest_basins(bool turned) {
+  const Grid grid = Grid::sphere(720, 360);
+  State state(std::make_shared<Grid>(grid));
+  const Noise noise(7, "relief");
+  const auto z = state.update(field::elevation);
+  const auto t = state.update(field::temperature), p = state.update(field::precipitation);
+  const auto e = state.update(field::potential_evaporation);
+  for (int j = 0; j < grid.ny(); ++j) {
+    for (int i = 0; i < grid.nx(); ++i) {
+      auto [x, y, up] = grid.unit_vector(i, j);
+      if (turned) std::tie(x, up) = std::pair{up, -x};
+      const double height =
+          3000 * noise.fbm({x, y, up}, 1.2, 3, 0.4) + 900 * x * x * (1 + 0.3 * y) - 300;
+      const Index c = grid.cell(i, j);
+      z[c] = static_cast<float>(height);
+      t[c] = 10;
+      p[c] = 1000;
+      e[c] = 300;
+    }
+  }
+  Context context;
+  HydrologyParameters parameters;
+  parameters.carving = 0;
+  const State done = run(std::move(state), context, parameters);
+  std::vector<double> area;
+  const auto basin = done.read(field::basin_id);
+  for (Index c = 0; c < grid.size(); ++c) {
+    if (basin[c] == 0) continue;
+    area.resize(std::max<std::size_t>(area.size(), basin[c]), 0.0);
+    area[basin[c] - 1] += grid.area_m2(grid.row(c)) / grid.total_area_m2();
+  }
+  area.resize(4);
+  return area;
+}
+
+TEST(Hydrology, TurningThePlanetKeepsItsLargestBasins) {
+  const auto upright = largest_basins(false), turned = largest_basins(true);
+  for (std::size_t n = 0; n < upright.size(); ++n) {
+    EXPECT_NEAR(turned[n] / upright[n], 1.0, 0.05)
+        << "basin " << n + 1 << ": " << upright[n] << " of the planet";
+  }
+}
+
+}  // namespace
+}  // namespace geo
