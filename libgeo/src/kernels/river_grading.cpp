@@ -25,15 +25,17 @@ bool cut(const Grid& grid, const FlowGraph& graph, std::span<const double> disch
   const auto allowed_m = [&](Index cell) {
     return limits.depth_factor * valley_depth(discharge[cell]);
   };
-  double length_m = 0.0;
+  double length_m = 0.0, dam_m = 0.0;
   Index end = pit;
   while (true) {
     const Index to = graph.receiver[end];
     if (to == end) break;
-    length_m += step_m(grid, end, to);
+    const double step = step_m(grid, end, to);
+    length_m += step;
+    if (z[to] - bottom > limits.shallow_m) dam_m += step;
     end = to;
     if (z[to] < bottom) break;
-    if (length_m > limits.length_m || z[to] - bottom > allowed_m(to)) return false;
+    if (dam_m > limits.length_m || z[to] - bottom > allowed_m(to)) return false;
   }
   const double low = std::max(z[end], 0.0F);
   const double slope = std::min(kBedSlope, (bottom - low) / std::max(length_m, 1.0));

@@ -201,7 +201,7 @@ std::vector<Parameter> HydrologyParameters::declarations() {
            "deepest cut by a river through a dam, over the depth of its valley; 0 cuts none",
            "leopold1953"),
       real("hydrology.gorge_length_km", gorge_length_km, "km", 0.0, 1e5,
-           "longest way on which a river is graded through a dam", "design"),
+           "longest dam that a river is graded through", "design"),
       real("hydrology.channel_area_km2", channel_area_km2, "km2", 0.0, 1e8,
            "drainage area from which a channel has a stream order", "design"),
       real("hydrology.river_threshold_m3_s", river_threshold_m3_s, "m3 s-1", 0.0, 1e7,

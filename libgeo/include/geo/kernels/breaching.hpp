@@ -27,7 +27,8 @@ int breach_dams(const Grid& grid, std::span<const std::uint8_t> outlets, const B
 /// How deep and how long a cut a river may make.
 struct GorgeLimits {
   double depth_factor = 1.0;  ///< over the depth of its valley
-  double length_m = 0.0;      ///< of the way above the point where it starts
+  double length_m = 0.0;      ///< of the part deeper than `shallow_m`
+  double shallow_m = 20.0;    ///< noise of the relief, which does not count as a dam
 };
 
 /// Cuts depressions open along rivers. `graph` routes every depression over its sill

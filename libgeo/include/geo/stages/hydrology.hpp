@@ -12,7 +12,7 @@ struct HydrologyParameters {
   double breach_depth_m = 100.0;
   double breach_length_km = 100.0;
   double gorge_factor = 1.0;
-  double gorge_length_km = 700.0;
+  double gorge_length_km = 450.0;
   double channel_area_km2 = 5000.0;
   double river_threshold_m3_s = 100.0;
   double river_reference_m3_s = 20000.0;
