@@ -54,14 +54,17 @@ void set_option(const Configuration& configuration, std::string_view option, std
 void configure(Configuration& configuration, const RunOptions& options) {
   const auto& parameters = configuration.parameters();
   auto& settings = configuration.settings;
-  if (!options.preset.empty()) {
-    geo::io::apply_toml(geo::io::find_preset(options.preset).toml, "preset " + options.preset,
-                        parameters);
+  // A real relief given on the command line alone is taken as it is, not worn down as a new one.
+  const bool bare_dem = options.config.empty() && !options.dem.empty() && !options.resume;
+  const std::string preset =
+      options.preset.empty() && bare_dem ? std::string("earth-dem") : options.preset;
+  if (!preset.empty()) {
+    geo::io::apply_toml(geo::io::find_preset(preset).toml, "preset " + preset, parameters);
   }
   fs::path file = options.config;
   const fs::path kept = fs::path(options.folder) / "config.toml";
   const bool goes_on = options.resume || (options.overwrite && !options.from.empty());
-  if (file.empty() && options.preset.empty() && goes_on && fs::exists(kept)) file = kept;
+  if (file.empty() && preset.empty() && goes_on && fs::exists(kept)) file = kept;
   if (!file.empty()) {
     geo::io::apply_config_file(file, parameters);
     anchor_dem(settings, file.parent_path());

@@ -154,41 +154,6 @@ TEST(Water, DepressionsHoldWhatTheFilledSurfaceHolds) {
   });
 }
 
-TEST(Water, KeptPitsStayRootsAndAllElseFlowsOn) {
-  on_many_terrains([](const Grid& grid, const auto& z, const auto& outlets) {
-    std::vector<Index> receiver(z.size());
-    steepest_receivers(grid, z, outlets, receiver);
-    const auto hierarchy = build_depression_hierarchy(grid, z, outlets, receiver);
-    std::vector<std::uint8_t> keep(hierarchy.leaves, 0);
-    for (std::int32_t leaf = 0; leaf < hierarchy.leaves; leaf += 7) keep[leaf] = 1;
-    connect_depressions(hierarchy, keep, receiver);
-    FlowGraph graph;
-    graph.order = downstream_order(receiver);
-    for (Index cell = 0; cell < grid.size(); ++cell) {
-      if (receiver[cell] != cell || outlets[cell] != 0) continue;
-      const std::int32_t leaf = hierarchy.leaf_of_cell[cell];
-      ASSERT_EQ(hierarchy.depressions[leaf].pit, cell);
-      ASSERT_NE(keep[leaf], 0);
-    }
-    for (std::int32_t leaf = 0; leaf < hierarchy.leaves; ++leaf) {
-      if (keep[leaf] != 0) {
-        const Index pit = hierarchy.depressions[leaf].pit;
-        ASSERT_EQ(receiver[pit], pit);
-      }
-    }
-  });
-}
-
-TEST(Water, WithoutKeptPitsConnectingEqualsRouting) {
-  on_many_terrains([](const Grid& grid, const auto& z, const auto& outlets) {
-    std::vector<Index> receiver(z.size());
-    steepest_receivers(grid, z, outlets, receiver);
-    const auto hierarchy = build_depression_hierarchy(grid, z, outlets, receiver);
-    connect_depressions(hierarchy, {}, receiver);
-    ASSERT_EQ(receiver, route_water(grid, z, outlets).graph.receiver);
-  });
-}
-
 /// Cells row by row from the north, as a person writes them; surrounded by nothing.
 struct Drawn {
   Grid grid;

@@ -267,26 +267,7 @@ std::vector<Pass> spanning_passes(const Grid& grid, std::span<const float> eleva
   return passes;
 }
 
-std::vector<Pass> passes_below_roots(std::int32_t leaves, std::span<const Pass> passes,
-                                     std::span<const std::uint8_t> is_root) {
-  Sets sets(leaves);
-  std::vector<std::uint8_t> rooted(static_cast<std::size_t>(leaves) + 1, 0);
-  rooted[0] = 1;
-  for (std::int32_t leaf = 0; leaf < leaves; ++leaf) rooted[leaf + 1] = is_root[leaf];
-  std::vector<Pass> kept;
-  for (const Pass& pass : passes) {
-    const std::int32_t a = sets.find(pass.leaf_a + 1), b = sets.find(pass.leaf_b + 1);
-    if (a == b || (rooted[a] != 0 && rooted[b] != 0)) continue;
-    const std::uint8_t either = rooted[a] | rooted[b];
-    sets.join(a, b);
-    rooted[sets.find(a)] = either;
-    kept.push_back(pass);
-  }
-  return kept;
-}
-
-std::vector<Spill> spill_towards_roots(std::int32_t leaves, std::span<const Pass> passes,
-                                       std::span<const std::uint8_t> is_root) {
+std::vector<Spill> spill_seaward(std::int32_t leaves, std::span<const Pass> passes) {
   const std::size_t nodes = static_cast<std::size_t>(leaves) + 1;  // 0 is the sea
   std::vector<std::int32_t> start(nodes + 2, 0), incident(2 * passes.size());
   for (const Pass& pass : passes) {
@@ -303,18 +284,14 @@ std::vector<Spill> spill_towards_roots(std::int32_t leaves, std::span<const Pass
   std::vector<Spill> spill(leaves);
   std::vector<std::int32_t> queue{kSea};
   queue.reserve(nodes);
-  const auto is_kept = [&](std::int32_t leaf) { return !is_root.empty() && is_root[leaf] != 0; };
-  for (std::int32_t leaf = 0; leaf < leaves; ++leaf) {
-    if (is_kept(leaf)) queue.push_back(leaf);
-  }
   for (std::size_t head = 0; head < queue.size(); ++head) {
     const std::int32_t from = queue[head];
-    const float level = from == kSea || is_kept(from) ? kLowest : spill[from].level_m;
+    const float level = from == kSea ? kLowest : spill[from].level_m;
     for (std::int32_t at = start[from + 1]; at < start[from + 2]; ++at) {
       const Pass& pass = passes[incident[at]];
       const bool a_is_here = pass.leaf_a == from;
       const std::int32_t to = a_is_here ? pass.leaf_b : pass.leaf_a;
-      if (to == kSea || is_kept(to) || spill[to].inside != kNoCell) continue;
+      if (to == kSea || spill[to].inside != kNoCell) continue;
       spill[to] = {a_is_here ? pass.b : pass.a, a_is_here ? pass.a : pass.b,
                    std::max(level, pass.elevation_m)};
       queue.push_back(to);

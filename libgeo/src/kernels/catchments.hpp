@@ -45,20 +45,12 @@ std::vector<Pass> spanning_passes(const Grid& grid, std::span<const float> eleva
                                   std::span<const std::uint8_t> outlets,
                                   const Catchments& catchments);
 
-/// Way of each catchment to a root: the sea, or a leaf that keeps its water.
+/// Way of each catchment to the sea along the spanning passes.
 struct Spill {
   Index inside = kNoCell, outside = kNoCell;  ///< cells on both sides of the pass it spills over
-  float level_m = 0.0F;                       ///< level at which its water can reach the root
+  float level_m = 0.0F;                       ///< level at which its water can reach an outlet
 };
-/// `passes` in rising order must connect each leaf to exactly one root; `is_root` has one byte per
-/// leaf (empty: the sea alone). Roots get no spill.
-std::vector<Spill> spill_towards_roots(std::int32_t leaves, std::span<const Pass> passes,
-                                       std::span<const std::uint8_t> is_root = {});
-
-/// The passes (in rising order) that connect each leaf to the root it reaches over the lowest
-/// water level; those between the realms of two roots are dropped.
-std::vector<Pass> passes_below_roots(std::int32_t leaves, std::span<const Pass> passes,
-                                     std::span<const std::uint8_t> is_root);
+std::vector<Spill> spill_seaward(std::int32_t leaves, std::span<const Pass> passes);
 
 /// Reverses the receivers from `inside` down to the pit and sends `inside` to `outside`.
 void reverse_path(Index inside, Index outside, std::span<Index> receiver);

@@ -128,22 +128,6 @@ void measure(const Grid& grid, std::span<const float> z, DepressionHierarchy& hi
   }
 }
 
-/// The pass of each sill once, in rising order.
-std::vector<Pass> sills(const DepressionHierarchy& hierarchy) {
-  const auto& nodes = hierarchy.depressions;
-  std::vector<Pass> passes;
-  for (std::int32_t at = 0; at < static_cast<std::int32_t>(nodes.size()); ++at) {
-    const Depression& node = nodes[at];
-    const bool second_child = node.parent != kSea && nodes[node.parent].children[1] == at;
-    if (second_child) continue;  // shares the pass of the first
-    passes.push_back({node.sill_inside, node.sill_outside, hierarchy.leaf_of_cell[node.sill_inside],
-                      hierarchy.leaf_of_cell[node.sill_outside], node.sill_m});
-  }
-  std::stable_sort(passes.begin(), passes.end(),
-                   [](const Pass& a, const Pass& b) { return a.elevation_m < b.elevation_m; });
-  return passes;
-}
-
 /// Receivers, catchments and spills of a surface: what filling and routing share.
 struct Spills {
   std::vector<Index> receiver;
@@ -154,8 +138,8 @@ struct Spills {
       : receiver(grid.size()) {
     steepest_receivers(grid, z, outlets, receiver);
     catchments = detail::find_catchments(grid, outlets, receiver);
-    spill = detail::spill_towards_roots(static_cast<std::int32_t>(catchments.pits.size()),
-                                        detail::spanning_passes(grid, z, outlets, catchments));
+    spill = detail::spill_seaward(static_cast<std::int32_t>(catchments.pits.size()),
+                                  detail::spanning_passes(grid, z, outlets, catchments));
   }
   void fill(std::span<const float> z, std::span<float> filled_m) const {
 #pragma omp parallel for schedule(static)
@@ -179,18 +163,6 @@ DepressionHierarchy build_depression_hierarchy(const Grid& grid, std::span<const
   hierarchy.leaf_of_cell = std::move(catchments.leaf_of_cell);
   measure(grid, elevation_m, hierarchy);
   return hierarchy;
-}
-
-void connect_depressions(const DepressionHierarchy& hierarchy,
-                         std::span<const std::uint8_t> keep_leaf, std::span<Index> receiver) {
-  std::vector<Pass> passes = sills(hierarchy);
-  if (!keep_leaf.empty()) {
-    passes = detail::passes_below_roots(hierarchy.leaves, passes, keep_leaf);
-  }
-  const auto spill = detail::spill_towards_roots(hierarchy.leaves, passes, keep_leaf);
-  for (const Spill& way : spill) {
-    if (way.inside != kNoCell) detail::reverse_path(way.inside, way.outside, receiver);
-  }
 }
 
 Routing route_water(const Grid& grid, std::span<const float> elevation_m,

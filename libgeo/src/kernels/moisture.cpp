@@ -102,7 +102,8 @@ void solve_moisture(const Grid& grid, const MoistureBudget& model, const Moistur
       const bool unsaturated = w < capacity;
       const double value =
           x.out * w + rain_rate * power * w - supply - (unsaturated ? open * (capacity - w) : 0.0);
-      const double slope = x.out + rain_rate * power * (static_cast<double>(n) + 1.0) + (unsaturated ? open : 0.0);
+      const double slope =
+          x.out + rain_rate * power * (static_cast<double>(n) + 1.0) + (unsaturated ? open : 0.0);
       w = std::max(w - value / slope, 0.01 * w);
     }
     column_mm[here] = w;

@@ -4,12 +4,13 @@
 #include <cmath>
 #include <vector>
 
+#include "geo/kernels/evaporation.hpp"
+
 namespace geo {
 
 double land_evaporation(double precipitation_mm_yr, double potential_mm_yr) {
   if (!(precipitation_mm_yr > 0) || !(potential_mm_yr > 0)) return 0.0;
-  const double dryness = potential_mm_yr / precipitation_mm_yr;
-  const double share = std::sqrt(dryness * std::tanh(1 / dryness) * -std::expm1(-dryness));
+  const double share = budyko_evaporated_share(potential_mm_yr / precipitation_mm_yr);
   return std::min({precipitation_mm_yr * share, precipitation_mm_yr, potential_mm_yr});
 }
 

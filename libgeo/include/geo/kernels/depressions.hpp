@@ -55,12 +55,6 @@ struct Routing {
 Routing route_water(const Grid& grid, std::span<const float> elevation_m,
                     std::span<const std::uint8_t> outlets, bool want_filled = false);
 
-/// The same reversal with some pits kept as roots (endorheic): those flagged in `keep_leaf`, one
-/// byte per leaf; empty: none. Every other leaf spills towards the root, sea or kept pit, that it
-/// reaches over the lowest water level. `receiver` must be the one the hierarchy was built from.
-void connect_depressions(const DepressionHierarchy& hierarchy,
-                         std::span<const std::uint8_t> keep_leaf, std::span<Index> receiver);
-
 /// Raises every cell to the level at which its water can reach an outlet (Barnes et al. 2014).
 void fill_depressions(const Grid& grid, std::span<const float> elevation_m,
                       std::span<const std::uint8_t> outlets, std::span<float> filled_m);

@@ -10,7 +10,7 @@ namespace geo {
 inline constexpr double kSecondsPerYear = 365.25 * 86400.0;
 
 /// Evaporation from land, mm/yr, of a climate with precipitation P and potential evaporation PET:
-/// E / P = sqrt(φ tanh(1/φ) (1 - exp(-φ))) with φ = PET / P (Budyko 1974). Never above P or PET.
+/// Budyko's share of P (see evaporation.hpp). Never above P or PET.
 double land_evaporation(double precipitation_mm_yr, double potential_mm_yr);
 
 /// Sums of a water balance over land, m3/s.
