@@ -16,6 +16,7 @@ using Action = std::function<void()>;
 void add_run_command(CLI::App& program, Action& action);
 void add_maps_command(CLI::App& program, Action& action);
 void add_params_command(CLI::App& program, Action& action);
+void add_fields_command(CLI::App& program, Action& action);
 void add_info_command(CLI::App& program, Action& action);
 void add_presets_command(CLI::App& program, Action& action);
 

@@ -81,6 +81,7 @@ void run_program(int argc, char** argv) {
   terrane::add_run_command(program, action);
   terrane::add_maps_command(program, action);
   terrane::add_params_command(program, action);
+  terrane::add_fields_command(program, action);
   terrane::add_info_command(program, action);
   terrane::add_presets_command(program, action);
   program.allow_extras();

@@ -1,0 +1,122 @@
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <CLI/App.hpp>
+#include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "geo/core/error.hpp"
+#include "geo/core/field.hpp"
+#include "geo/io/config.hpp"
+#include "geo/stages/stages.hpp"
+
+namespace terrane {
+namespace {
+
+/// A row of the vocabulary with the stages that write it.
+struct Row {
+  const geo::FieldSpec* spec;
+  std::vector<std::string_view> writers;
+};
+
+std::vector<Row> rows_of(const geo::Pipeline& pipeline) {
+  std::vector<Row> rows;
+  for (const geo::FieldSpec* spec : geo::field::all()) {
+    Row row{spec, {}};
+    for (const auto& stage : pipeline.stages()) {
+      const auto& writes = stage->info().writes;
+      if (std::find(writes.begin(), writes.end(), spec) != writes.end()) {
+        row.writers.push_back(stage->info().name);
+      }
+    }
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+std::string_view type_name(geo::Type type) {
+  constexpr std::string_view kNames[] = {"float32", "float64", "int8", "int16", "int32"};
+  return kNames[static_cast<int>(type)];
+}
+
+/// "0 none, 1 north, ..." of an enumeration.
+std::string flags_text(const geo::FieldSpec& spec) {
+  std::vector<std::string> flags;
+  for (const geo::Flag& flag : spec.flags) {
+    flags.push_back(fmt::format("{} {}", flag.value, flag.meaning));
+  }
+  return fmt::format("{}", fmt::join(flags, ", "));
+}
+
+void print_table(const std::vector<Row>& rows) {
+  const auto line = [](std::string_view name, std::string_view type, std::string_view units,
+                       std::string_view writers, std::string_view doc) {
+    fmt::print("{:<25}  {:<7}  {:<10}  {:<18}  {}\n", name, type, units, writers, doc);
+  };
+  line("field", "type", "unit", "written by", "meaning");
+  for (const Row& row : rows) {
+    line(row.spec->name, type_name(row.spec->type), row.spec->units,
+         fmt::format("{}", fmt::join(row.writers, " ")), row.spec->doc);
+  }
+}
+
+void print_json(const std::vector<Row>& rows) {
+  auto list = nlohmann::ordered_json::array();
+  for (const Row& row : rows) {
+    nlohmann::ordered_json entry{{"name", row.spec->name},
+                                 {"type", type_name(row.spec->type)},
+                                 {"units", row.spec->units},
+                                 {"standard_name", row.spec->standard_name},
+                                 {"cell_methods", row.spec->cell_methods},
+                                 {"written_by", row.writers},
+                                 {"doc", row.spec->doc}};
+    for (const geo::Flag& flag : row.spec->flags) {
+      entry["flags"][std::to_string(flag.value)] = flag.meaning;
+    }
+    list.push_back(entry);
+  }
+  fmt::print("{}\n", list.dump(2));
+}
+
+void print_markdown(const std::vector<Row>& rows) {
+  fmt::print("| field | type | unit | CF standard name | written by | meaning |\n");
+  fmt::print("|---|---|---|---|---|---|\n");
+  for (const Row& row : rows) {
+    fmt::print("| `{}` | {} | {} | {} | {} | {} |\n", row.spec->name, type_name(row.spec->type),
+               row.spec->units, row.spec->standard_name, fmt::join(row.writers, ", "),
+               row.spec->doc);
+  }
+  for (const Row& row : rows) {
+    if (row.spec->flags.empty()) continue;
+    fmt::print("\nValues of `{}`: {}.\n", row.spec->name, flags_text(*row.spec));
+  }
+}
+
+}  // namespace
+
+void add_fields_command(CLI::App& program, Action& action) {
+  CLI::App* command =
+      program.add_subcommand("fields", "Every field of the files: type, unit, stages, meaning");
+  const auto format = std::make_shared<std::string>("table");
+  command->add_option("--format", *format, "table, json or markdown")->type_name("FORMAT");
+  command->callback([&action, format] {
+    action = [format] {
+      const geo::Pipeline pipeline = geo::make_pipeline();
+      const auto rows = rows_of(pipeline);
+      constexpr std::string_view kFormats[] = {"table", "json", "markdown"};
+      if (*format == "table") return print_table(rows);
+      if (*format == "json") return print_json(rows);
+      if (*format == "markdown") return print_markdown(rows);
+      throw geo::ConfigurationError(fmt::format("--format {}: must be one of {}{}", *format,
+                                                fmt::join(kFormats, ", "),
+                                                geo::io::suggestion(*format, kFormats)));
+    };
+  });
+}
+
+}  // namespace terrane

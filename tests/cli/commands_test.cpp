@@ -1,0 +1,146 @@
+// The commands that only tell: params, presets, info, maps, --version, --help.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+
+#include "cli/folder_contents.hpp"
+#include "cli/program.hpp"
+#include "cli/relief_file.hpp"
+#include "cli/sample_run.hpp"
+#include "io/temporary_folder.hpp"
+
+namespace geo {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+/// What a command that must succeed prints; it says nothing on stderr.
+std::string told_by(const std::vector<std::string>& arguments) {
+  const Outcome outcome = terrane(arguments);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  return outcome.out;
+}
+
+TEST(Version, NamesProgramCommitAndLibraries) {
+  const std::string text = told_by({"--version"});
+  EXPECT_THAT(text, StartsWith("terrane "));
+  for (const char* words : {"commit", "CLI11"}) EXPECT_THAT(text, HasSubstr(words));
+  EXPECT_GT(lines_of(text).size(), 3U);
+}
+
+TEST(Help, ListsEveryCommandAndEveryCommandHasItsOwn) {
+  const std::string all = told_by({"--help"});
+  for (const std::string command : {"run", "maps", "params", "info", "presets"}) {
+    EXPECT_THAT(all, HasSubstr(command));
+    EXPECT_THAT(told_by({command, "--help"}), HasSubstr("terrane " + command));
+  }
+  for (const char* option : {"--dem", "--set", "--resume", "--dry-run", "--log-json"}) {
+    EXPECT_THAT(told_by({"run", "--help"}), HasSubstr(option));
+  }
+}
+
+TEST(Params, TellTheSameInEveryFormat) {
+  const auto json = nlohmann::json::parse(told_by({"params", "--format", "json"}));
+  const std::string table = told_by({"params"});
+  const std::string markdown = told_by({"params", "--format", "markdown"});
+  const std::string toml = told_by({"params", "--format", "toml"});
+  EXPECT_EQ(told_by({"params", "--format", "table"}), table);
+  ASSERT_GT(json.size(), 20U);
+  EXPECT_EQ(lines_of(table).size(), json.size() + 1);
+  for (const auto& parameter : json) {
+    const std::string name = parameter.at("name");
+    const std::string key = name.substr(name.find('.') + 1);
+    EXPECT_THAT(table, HasSubstr(name + " "));
+    EXPECT_THAT(markdown, HasSubstr("| `" + key + "` |"));
+    EXPECT_THAT(toml, HasSubstr("\n" + key + " = "));
+    EXPECT_FALSE(parameter.at("doc").get<std::string>().empty()) << name;
+    EXPECT_FALSE(parameter.at("source").get<std::string>().empty()) << name;
+  }
+}
+
+TEST(Params, OfOneStageAreItsOwn) {
+  const auto json = nlohmann::json::parse(told_by({"params", "erosion", "--format", "json"}));
+  ASSERT_FALSE(json.empty());
+  for (const auto& parameter : json) {
+    EXPECT_THAT(parameter.at("name").get<std::string>(), StartsWith("erosion."));
+  }
+}
+
+TEST(Params, AsTomlRunAsTheyAre) {
+  const TemporaryFolder folder;
+  ReliefFile{}.write(folder / "relief.nc");
+  std::ofstream(folder / "all.toml") << told_by({"params", "--format", "toml"});
+  ASSERT_EQ(terrane(quick_run(folder / "relief.nc", folder / "a", {folder / "all.toml"})).code, 0);
+  ASSERT_EQ(terrane(quick_run(folder / "relief.nc", folder / "b")).code, 0);
+  EXPECT_EQ(digests_of(folder / "a"), digests_of(folder / "b"));
+  EXPECT_EQ(text_of(folder / "a/config.toml"), text_of(folder / "b/config.toml"));
+}
+
+TEST(Presets, AreListedShownAndCanBeRun) {
+  const TemporaryFolder folder;
+  ReliefFile{}.write(folder / "relief.nc");
+  const auto lines = lines_of(told_by({"presets"}));
+  ASSERT_FALSE(lines.empty());
+  EXPECT_THAT(lines.front(), StartsWith("earth "));
+  for (const std::string& line : lines) {
+    SCOPED_TRACE(line);
+    const std::string name = line.substr(0, line.find(' '));
+    EXPECT_GT(line.size(), 20U) << "says what it is";
+    std::ofstream(folder / "preset.toml") << told_by({"presets", "--show", name});
+    for (const auto& way : {std::vector<std::string>{"--preset", name},
+                            std::vector<std::string>{folder / "preset.toml"}}) {
+      auto arguments = quick_run(folder / "relief.nc", folder / "out", way);
+      arguments.push_back("--dry-run");
+      EXPECT_EQ(terrane(arguments).code, 0);
+    }
+  }
+}
+
+class FinishedRun : public testing::Test {
+ protected:
+  void SetUp() override {
+    ReliefFile{}.write(folder_ / "relief.nc");
+    ASSERT_EQ(terrane(quick_run(folder_ / "relief.nc", run_, {"--seed", "11"})).code, 0);
+  }
+  TemporaryFolder folder_;
+  const fs::path run_ = folder_ / "out";
+};
+
+TEST_F(FinishedRun, InfoTellsWhatTheManifestTells) {
+  for (const auto& stage : manifest_of(run_).at("stages")) {
+    const fs::path file = run_ / stage.at("files").at(0).get<std::string>();
+    const std::string table = told_by({"info", file});
+    EXPECT_THAT(table, HasSubstr("stage    " + stage.at("name").get<std::string>()));
+    EXPECT_THAT(table, HasSubstr("72 x 36 cells, sphere"));
+    EXPECT_THAT(table, HasSubstr("seed 11"));
+    const auto json = nlohmann::json::parse(told_by({"info", "--json", file}));
+    EXPECT_EQ(json.at("nx"), 72);
+    EXPECT_EQ(json.at("seed"), 11);
+    ASSERT_EQ(json.at("fields").size(), stage.at("fields").size());
+    for (const auto& [name, field] : stage.at("fields").items()) {
+      EXPECT_THAT(table, HasSubstr(name));
+      for (const char* key : {"units", "min", "mean", "max", "missing", "digest"}) {
+        EXPECT_EQ(json.at("fields").at(name).at(key), field.at(key)) << name << ' ' << key;
+      }
+    }
+  }
+}
+
+TEST_F(FinishedRun, MapsAreDrawnAgain) {
+  const auto before = contents_of(run_);
+  const auto drawn = lines_of(told_by({"maps", run_, "--width", "300"}));
+  EXPECT_THAT(drawn, Contains((run_ / "maps/elevation.png").string()));
+  EXPECT_THAT(drawn, Contains((run_ / "report.html").string()));
+  for (const std::string& file : drawn) EXPECT_TRUE(fs::exists(file)) << file;
+  for (const auto& [name, bytes] : before)
+    EXPECT_TRUE(text_of(run_ / name) == bytes || bytes == "(folder)") << name;
+}
+
+}  // namespace
+}  // namespace geo

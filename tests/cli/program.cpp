@@ -1,0 +1,132 @@
+#include "cli/program.hpp"
+
+#include <fcntl.h>
+#include <grp.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <thread>
+
+namespace geo {
+namespace {
+
+constexpr uid_t kNobody = 65534;
+constexpr int kCouldNotStart = 127;
+
+std::filesystem::path new_folder() {
+  std::string name = (std::filesystem::temp_directory_path() / "terrane-call-XXXXXX").string();
+  if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("mkdtemp " + name);
+  return name;
+}
+
+void redirect(const std::filesystem::path& file, int descriptor) {
+  const int opened = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  if (opened < 0 || ::dup2(opened, descriptor) < 0) ::_exit(kCouldNotStart);
+  ::close(opened);
+}
+
+[[noreturn]] void become_terrane(const Call& call, const std::filesystem::path& folder) {
+  redirect(folder / "out", STDOUT_FILENO);
+  redirect(folder / "err", STDERR_FILENO);
+  // As a shell starts a program, whatever the test's own surroundings ignore.
+  std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGXFSZ, SIG_DFL);
+  ::unsetenv("SOURCE_DATE_EPOCH");
+  for (const auto& [name, value] : call.environment) ::setenv(name.c_str(), value.c_str(), 1);
+  if (call.file_size_limit_bytes >= 0) {
+    const auto bytes = static_cast<rlim_t>(call.file_size_limit_bytes);
+    const rlimit limit{bytes, bytes};
+    if (::setrlimit(RLIMIT_FSIZE, &limit) != 0) ::_exit(kCouldNotStart);
+  }
+  if (!call.working_folder.empty() && ::chdir(call.working_folder.c_str()) != 0) {
+    ::_exit(kCouldNotStart);
+  }
+  if (call.as_nobody &&
+      (::setgroups(0, nullptr) != 0 || ::setgid(kNobody) != 0 || ::setuid(kNobody) != 0)) {
+    ::_exit(kCouldNotStart);
+  }
+  std::vector<std::string> words{TERRANE_PROGRAM};
+  words.insert(words.end(), call.arguments.begin(), call.arguments.end());
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  ::execv(TERRANE_PROGRAM, pointers.data());
+  ::_exit(kCouldNotStart);
+}
+
+}  // namespace
+
+Running::Running(const Call& call) : folder_(new_folder()) {
+  process_ = ::fork();
+  if (process_ == 0) become_terrane(call, folder_);
+  if (process_ < 0) throw std::runtime_error("fork");
+}
+
+Running::~Running() {
+  if (!ended_) {
+    ::kill(process_, SIGKILL);
+    ::waitpid(process_, nullptr, 0);
+  }
+  std::error_code ignored;
+  std::filesystem::remove_all(folder_, ignored);
+}
+
+void Running::send(int signal_number) const {
+  if (!ended_) ::kill(process_, signal_number);
+}
+
+void Running::note(int status) {
+  ended_ = true;
+  code_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+bool Running::alive() {
+  int status = 0;
+  if (!ended_ && ::waitpid(process_, &status, WNOHANG) == process_) note(status);
+  return !ended_;
+}
+
+bool Running::until(const std::function<bool()>& condition) {
+  while (alive()) {
+    if (condition()) return true;
+    std::this_thread::sleep_for(std::chrono::microseconds(200));
+  }
+  return false;
+}
+
+Outcome Running::finish() {
+  int status = 0;
+  if (!ended_ && ::waitpid(process_, &status, 0) == process_) note(status);
+  return {code_, text_of(folder_ / "out"), text_of(folder_ / "err")};
+}
+
+std::string Running::err_so_far() const { return text_of(folder_ / "err"); }
+
+Outcome terrane(const Call& call) { return Running(call).finish(); }
+Outcome terrane(std::vector<std::string> arguments) {
+  return terrane(Call{.arguments = std::move(arguments), .environment = {}, .working_folder = {}});
+}
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+}  // namespace geo

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace geo {
+
+/// What a program left behind when it ended.
+struct Outcome {
+  int code = -1;  ///< exit code, or 128 + signal as a shell shows it
+  std::string out, err;
+};
+
+/// How `terrane` is called: arguments and circumstances.
+struct Call {
+  std::vector<std::string> arguments;
+  std::vector<std::pair<std::string, std::string>> environment;
+  std::filesystem::path working_folder;
+  long file_size_limit_bytes = -1;  ///< RLIMIT_FSIZE; negative: none
+  bool as_nobody = false;           ///< without the rights of root
+};
+
+/// The program on its way, heard through files in a folder of its own.
+class Running {
+ public:
+  explicit Running(const Call& call);
+  ~Running();
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
+
+  void send(int signal_number) const;
+  /// Whether it still runs.
+  bool alive();
+  /// Waits until `condition` holds or the program has ended; true when the condition came first.
+  bool until(const std::function<bool()>& condition);
+  /// Waits for the end.
+  Outcome finish();
+  [[nodiscard]] std::string err_so_far() const;
+
+ private:
+  void note(int status);
+
+  std::filesystem::path folder_;
+  pid_t process_ = -1;
+  bool ended_ = false;
+  int code_ = -1;
+};
+
+/// Runs `terrane` to its end.
+Outcome terrane(const Call& call);
+Outcome terrane(std::vector<std::string> arguments);
+
+std::string text_of(const std::filesystem::path& file);
+std::vector<std::string> lines_of(const std::string& text);
+
+}  // namespace geo

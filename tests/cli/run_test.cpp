@@ -1,0 +1,226 @@
+// What a run promises: the same bits, nothing but what was asked for, and silence where it belongs.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "cli/folder_contents.hpp"
+#include "cli/program.hpp"
+#include "cli/relief_file.hpp"
+#include "cli/sample_run.hpp"
+#include "io/temporary_folder.hpp"
+
+namespace geo {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+
+class Run : public testing::Test {
+ protected:
+  void SetUp() override { ReliefFile{}.write(relief_); }
+
+  Outcome run(const std::string& name, const std::vector<std::string>& more = {}) {
+    return terrane(quick_run(relief_, folder_ / name, more));
+  }
+  [[nodiscard]] bool there(const std::string& name) const { return fs::exists(folder_ / name); }
+
+  TemporaryFolder folder_;
+  const fs::path relief_ = folder_ / "relief.nc";
+};
+
+TEST_F(Run, WritesTheFilesThatItsManifestNames) {
+  const Outcome outcome = run("out");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, "");
+  const auto manifest = manifest_of(folder_ / "out");
+  EXPECT_TRUE(manifest.at("complete").get<bool>());
+  std::vector<std::string> named{"config.toml", "manifest.json", "planet.pvd"};
+  for (const auto& stage : manifest.at("stages")) {
+    EXPECT_FALSE(stage.at("fields").empty());
+    for (const std::string file : stage.at("files")) named.push_back(file);
+    EXPECT_THAT(outcome.err, HasSubstr(stage.at("name")));
+  }
+  std::vector<std::string> found;
+  for (const auto& [name, bytes] : contents_of(folder_ / "out")) found.push_back(name);
+  EXPECT_THAT(found, testing::UnorderedElementsAreArray(named));
+}
+
+TEST_F(Run, GivesTheSameBitsForAnyNumberOfThreads) {
+  ReliefFile{.nx = 144, .ny = 72}.write(relief_);
+  for (const std::string threads : {"1", "2", "4"}) {
+    const Outcome outcome = run(threads, {"--threads", threads, "--no-vtk"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(digests_of(folder_ / threads), digests_of(folder_ / "1")) << threads << " threads";
+  }
+}
+
+TEST_F(Run, WithADateGivenMakesTheSameFilesByteForByte) {
+  std::map<std::string, std::string> first;
+  for (int time = 0; time < 2; ++time) {
+    fs::remove_all(folder_ / "out");
+    const Outcome outcome = terrane(
+        {.arguments = {"run", "--dem", relief_, "-o", folder_ / "out", "--threads", "2", "--set",
+                       "climate.resolution_deg=10", "--set", "output.map_width_px=300"},
+         .environment = {{"SOURCE_DATE_EPOCH", "1600000000"}},
+         .working_folder = {}});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const auto files = contents_of(folder_ / "out");
+    EXPECT_TRUE(files.contains("report.html"));
+    EXPECT_TRUE(files.contains("maps/elevation.png"));
+    if (time == 0) first = files;
+    ASSERT_EQ(files.size(), first.size());
+    for (const auto& [name, bytes] : files) EXPECT_TRUE(bytes == first[name]) << name;
+  }
+  EXPECT_THAT(terrane({"info", folder_ / "out" / "03-erosion.nc"}).out,
+              HasSubstr("2020-09-13T12:26:40Z"));
+}
+
+TEST_F(Run, WritesOnlyWhatWasAskedFor) {
+  ASSERT_EQ(run("bare", {"--no-vtk"}).code, 0);
+  for (const auto& [name, bytes] : contents_of(folder_ / "bare")) {
+    EXPECT_THAT(name, Not(testing::AnyOf(HasSubstr(".vti"), HasSubstr(".pvd"), HasSubstr("maps"),
+                                         HasSubstr(".html"))));
+  }
+  // A resumed run may add them.
+  const Outcome more =
+      terrane({"run", "--resume", "-o", folder_ / "bare", "--set", "output.vtk=true", "--set",
+               "output.maps=true", "--set", "output.map_width_px=300"});
+  EXPECT_EQ(more.code, 0) << more.err;
+  EXPECT_TRUE(there("bare/planet.pvd"));
+  EXPECT_TRUE(there("bare/report.html"));
+  for (const auto& stage : manifest_of(folder_ / "bare").at("stages")) {
+    ASSERT_EQ(stage.at("files").size(), 2U) << "the manifest names all files";
+    for (const std::string file : stage.at("files")) EXPECT_TRUE(there("bare/" + file)) << file;
+  }
+}
+
+TEST_F(Run, DryRunPredictsAndWritesNothing) {
+  const auto before = contents_of(folder_.path());
+  const Outcome outcome = run("out", {"--dry-run"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  for (const char* words : {"72 x 36", "erosion", "biomes", "memory", "time", "2 threads"}) {
+    EXPECT_THAT(outcome.out, HasSubstr(words));
+  }
+  EXPECT_TRUE(before == contents_of(folder_.path()));
+}
+
+TEST_F(Run, QuietSaysNothing) {
+  const Outcome outcome = run("out", {"--quiet"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(outcome.err, "");
+}
+
+TEST_F(Run, QuietStillTellsErrors) {
+  EXPECT_EQ(lines_of(run("out", {"--quiet", "--set", "erosion.steps=-1"}).err).size(), 1U);
+}
+
+TEST_F(Run, JsonLogIsOneObjectALine) {
+  const Outcome sound = run("out", {"--log-json"});
+  const Outcome refused = run("out", {"--log-json"});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_EQ(sound.out, "");
+  EXPECT_GE(lines_of(sound.err).size(), stages_of(folder_ / "out").size());
+  for (const std::string& line : lines_of(sound.err + refused.err)) {
+    ASSERT_TRUE(nlohmann::json::accept(line)) << line;
+    const auto json = nlohmann::json::parse(line);
+    EXPECT_TRUE(json.at("time").is_number());
+    EXPECT_TRUE(json.at("message").is_string());
+    EXPECT_THAT((std::vector<std::string>{"info", "warning", "error"}), Contains(json.at("level")));
+  }
+  EXPECT_THAT(refused.err, HasSubstr("\"level\":\"error\""));
+}
+
+TEST_F(Run, ProgressBarIsDrawnOnATerminalOnly) {
+  EXPECT_THAT(run("out").err, Not(testing::AnyOf(HasSubstr("\r"), HasSubstr("\033"))));
+  if (std::system("script --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "lacks script";
+  const auto on_terminal = [&](const std::string& more) {
+    std::string command = TERRANE_PROGRAM;
+    for (const auto& word : quick_run(relief_, folder_ / "out", {"--overwrite", more})) {
+      command += " '" + word + "'";
+    }
+    const fs::path file = folder_ / "typescript";
+    const std::string call =
+        "script -qec \"" + command + "\" " + file.string() + " > /dev/null < /dev/null";
+    EXPECT_EQ(std::system(call.c_str()), 0) << call;
+    return text_of(file);
+  };
+  const std::string shown = on_terminal("--no-vtk");
+  EXPECT_THAT(shown, HasSubstr("\r\033[K"));
+  EXPECT_THAT(shown, HasSubstr("climate    ["));
+  EXPECT_THAT(shown, HasSubstr(" %"));
+  EXPECT_THAT(on_terminal("--quiet"), Not(HasSubstr("climate")));
+  EXPECT_THAT(on_terminal("--log-json"), Not(HasSubstr("\033[K")));
+}
+
+TEST_F(Run, ConfigurationThatItWroteRunsAgainAsItIs) {
+  ASSERT_EQ(run("first", {"--seed", "7", "--set", "erosion.steps=3"}).code, 0);
+  const Outcome again =
+      terrane({"run", folder_ / "first" / "config.toml", "-o", folder_ / "second"});
+  EXPECT_EQ(again.code, 0) << again.err;
+  EXPECT_EQ(digests_of(folder_ / "second"), digests_of(folder_ / "first"));
+  EXPECT_EQ(text_of(folder_ / "second/config.toml"), text_of(folder_ / "first/config.toml"));
+  EXPECT_EQ(manifest_of(folder_ / "second").at("seed"), 7);
+}
+
+TEST_F(Run, LaterSayWins) {
+  std::ofstream(folder_ / "planet.toml") << "[run]\ngrid = \"36x18\"\nseed = 5\n"
+                                            "[erosion]\nsteps = 2\ntime_step_yr = 7.0\n";
+  const Outcome outcome = run("out", {"--preset", "preview", folder_ / "planet.toml", "--seed", "6",
+                                      "--set", "erosion.steps=4", "--to", "erosion"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::string config = text_of(folder_ / "out/config.toml");
+  for (const char* line : {"\ngrid = \"36x18\"\n", "\nseed = 6\n", "\nsteps = 4\n",
+                           "\ntime_step_yr = 7.0\n", "\nmap_width_px = 1024\n"}) {
+    EXPECT_THAT(config, HasSubstr(line));
+  }
+}
+
+TEST_F(Run, ReliefIsSoughtBesideTheConfigurationThatNamesIt) {
+  fs::create_directory(folder_ / "deep");
+  fs::copy(relief_, folder_ / "deep/relief.nc");
+  fs::remove(relief_);
+  std::ofstream(folder_ / "deep/planet.toml") << "[dem]\nfile = \"relief.nc\"\n";
+  const Outcome outcome =
+      terrane({.arguments = {"run", "deep/planet.toml", "--to", "erosion", "--no-maps", "--no-vtk"},
+               .environment = {},
+               .working_folder = folder_.path()});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_TRUE(there("out/03-erosion.nc")) << "the folder is called out unless told otherwise";
+}
+
+TEST_F(Run, OverwriteReplacesItsOwnFilesOnly) {
+  ASSERT_EQ(run("out").code, 0);
+  std::ofstream(folder_ / "out/notes.txt") << "precious";
+  ASSERT_EQ(run("out", {"--overwrite", "--to", "erosion", "--seed", "2"}).code, 0);
+  EXPECT_EQ(text_of(folder_ / "out/notes.txt"), "precious");
+  EXPECT_EQ(stages_of(folder_ / "out"), std::vector<std::string>{"erosion"});
+  EXPECT_FALSE(there("out/04-climate.nc"));
+}
+
+TEST_F(Run, OverwriteFromAStageKeepsTheEarlierOnes) {
+  ASSERT_EQ(run("out").code, 0);
+  const std::string erosion = text_of(folder_ / "out/03-erosion.nc");
+  const auto before = digests_of(folder_ / "out");
+  const Outcome outcome = terrane({"run", "--overwrite", "--from", "climate", "-o", folder_ / "out",
+                                   "--set", "climate.solar_constant_w_m2=1200"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(text_of(folder_ / "out/03-erosion.nc"), erosion);
+  EXPECT_NE(digests_of(folder_ / "out"), before);
+  // The same planet in one go.
+  ASSERT_EQ(run("straight", {"--set", "climate.solar_constant_w_m2=1200"}).code, 0);
+  EXPECT_EQ(digests_of(folder_ / "out"), digests_of(folder_ / "straight"));
+}
+
+TEST_F(Run, StagesCanEndEarly) {
+  ASSERT_EQ(run("out", {"--to", "climate"}).code, 0);
+  EXPECT_EQ(stages_of(folder_ / "out"), (std::vector<std::string>{"erosion", "climate"}));
+}
+
+}  // namespace
+}  // namespace geo

@@ -1,0 +1,115 @@
+// Who may include whom: apps -> stages -> kernels -> core, and io -> kernels, core.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <regex>
+
+#include "support.hpp"
+
+namespace geo {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::map<std::string, std::set<std::string>> kMayInclude{
+    {"core", {"core"}},
+    {"kernels", {"core", "kernels"}},
+    {"stages", {"core", "kernels", "stages"}},
+    {"io", {"core", "kernels", "io"}},
+    {"apps", {"core", "stages", "io"}},
+};
+
+/// Libraries that core, kernels and stages may use: numbers and text, no files, no logs.
+bool is_plain_library(const std::string& header) {
+  if (header.find('/') == std::string::npos) return header.find('.') == std::string::npos;
+  return header.starts_with("Random123/") || header.starts_with("GeographicLib/") ||
+         header == "fmt/format.h" || header == "fmt/ranges.h";
+}
+
+struct Include {
+  fs::path file;
+  std::string header;
+  bool quoted;
+};
+
+std::vector<Include> includes_of(const std::string& layer) {
+  std::vector<std::string> folders{"libgeo/include/geo/" + layer, "libgeo/src/" + layer};
+  if (layer == "apps") folders = {"apps"};
+  if (!fs::exists(test::repository() / folders.front())) return {};
+  std::vector<Include> includes;
+  static const std::regex kInclude("#include ([<\"])([^>\"]+)[>\"]");
+  for (const fs::path& path : test::files_in(folders, {".hpp", ".cpp"})) {
+    const std::string text = test::read_text(path);
+    for (std::sregex_iterator at(text.begin(), text.end(), kInclude), end; at != end; ++at) {
+      includes.push_back({path, (*at)[2], (*at)[1] == "\""});
+    }
+  }
+  return includes;
+}
+
+TEST(Layers, IncludesPointOneWay) {
+  for (const auto& [layer, allowed] : kMayInclude) {
+    const auto includes = includes_of(layer);
+    EXPECT_FALSE(includes.empty()) << layer;
+    for (const Include& include : includes) {
+      if (!include.header.starts_with("geo/")) continue;
+      const std::string target = include.header.substr(4, include.header.find('/', 4) - 4);
+      EXPECT_TRUE(allowed.contains(target)) << include.file << " includes " << include.header;
+    }
+  }
+}
+
+TEST(Layers, PrivateHeadersStayInTheirFolder) {
+  for (const auto& [layer, allowed] : kMayInclude) {
+    for (const Include& include : includes_of(layer)) {
+      if (!include.quoted || include.header.starts_with("geo/")) continue;
+      if (include.header == "terrane_commit.hpp") continue;  // written by the build
+      EXPECT_TRUE(fs::exists(include.file.parent_path() / include.header))
+          << include.file << " includes " << include.header;
+    }
+  }
+}
+
+TEST(Layers, PhysicsKnowsNoFilesAndNoLogs) {
+  const std::set<std::string> forbidden{"fstream", "filesystem", "iostream", "cstdio"};
+  for (const char* layer : {"core", "kernels", "stages"}) {
+    for (const Include& include : includes_of(layer)) {
+      if (include.quoted) continue;
+      EXPECT_TRUE(is_plain_library(include.header) && !forbidden.contains(include.header))
+          << include.file << " includes " << include.header;
+    }
+  }
+}
+
+TEST(Layers, PublicHeadersNameNoForeignLibrary) {
+  for (const char* layer : {"core", "kernels", "stages", "io"}) {
+    for (const Include& include : includes_of(layer)) {
+      if (include.file.string().find("/include/") == std::string::npos || include.quoted) continue;
+      EXPECT_EQ(include.header.find_first_of("/."), std::string::npos)
+          << include.file << " includes " << include.header;
+    }
+  }
+}
+
+TEST(Repository, NamesNoPlaceOnSomebodysMachine) {
+  // In two pieces, so that this file does not name them.
+  const std::vector<std::string> places{std::string("/ho") + "me/", std::string("/ro") + "ot/",
+                                        std::string("/wo") + "rk/", std::string("/Us") + "ers/",
+                                        std::string("/tm") + "p/wt"};
+  std::vector<fs::path> files = test::files_in(
+      {"apps", "bench", "cmake", "data", "docs", "libgeo", "scripts", "tests"},
+      {".hpp", ".cpp", ".txt", ".cmake", ".in", ".md", ".py", ".toml", ".csv", ".bib", ""});
+  for (const auto& entry : fs::directory_iterator(test::repository())) {
+    if (entry.is_regular_file() && entry.path().filename() != ".git") files.push_back(entry.path());
+  }
+  EXPECT_GT(files.size(), 100U);
+  for (const fs::path& path : files) {
+    const std::string text = test::read_text(path);
+    for (const std::string& place : places) {
+      EXPECT_EQ(text.find(place), std::string::npos) << path << " names " << place;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace geo
