@@ -211,12 +211,13 @@ std::optional<Centre> find_centre(const nc::File& file, int variable, const DemA
   return unproject(*crs, 0.5 * (columns.low() + columns.high()), 0.5 * (rows.low() + rows.high()));
 }
 
-Relief read_from(const nc::File& file, const std::string& wanted, const Planet& planet) {
+Relief read_from(const nc::File& file, const std::string& wanted, const std::string& units,
+                 const Planet& planet) {
   const int variable = choose_variable(file, wanted);
   const auto dimensions = file.dimensions_of(variable);
   const DemAxis rows = read_axis(file, dimensions[dimensions.size() - 2]);
   const DemAxis columns = read_axis(file, dimensions.back());
-  const auto values = read_elevation(file, variable, rows, columns);
+  const auto values = read_values(file, variable, rows, columns, units);
   const auto finish = [&](Relief relief) {
     relief.variable = file.variable_name(variable);
     return relief;
@@ -239,15 +240,15 @@ Relief read_from(const nc::File& file, const std::string& wanted, const Planet& 
   return finish(window_relief(rows, longitudes.axis, std::move(ordered), planet));
 }
 
-}  // namespace
-
-Relief read_relief(const std::string& file_and_variable, const Planet& planet) {
+Relief read_raster(const std::string& file_and_variable, const std::string& otherwise,
+                   const std::string& units, const Planet& planet) {
   const Request request = split(file_and_variable);
   const std::string path = request.path.string();
   const nc::File file = open_input(request.path);
   check_classic_size(request.path);
   try {
-    Relief relief = read_from(file, request.variable, planet);
+    const bool named = !request.variable.empty() || !file.find_variable(otherwise);
+    Relief relief = read_from(file, named ? request.variable : otherwise, units, planet);
     relief.source = path + ":" + relief.variable;
     return relief;
   } catch (const nc::Failure& failure) {
@@ -257,6 +258,17 @@ Relief read_relief(const std::string& file_and_variable, const Planet& planet) {
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", path, error.what()));
   }
+}
+
+}  // namespace
+
+Relief read_relief(const std::string& file_and_variable, const Planet& planet) {
+  return read_raster(file_and_variable, "", "m", planet);
+}
+
+Relief read_field(const std::string& file_and_variable, const FieldSpec& spec,
+                  const Planet& planet) {
+  return read_raster(file_and_variable, std::string(spec.name), std::string(spec.units), planet);
 }
 
 std::vector<float> resample(const Relief& relief, const Grid& target) {

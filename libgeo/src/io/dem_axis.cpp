@@ -98,7 +98,7 @@ std::optional<AxisKind> kind_of_axis(const nc::File& file, int dimension) {
   const std::string standard_name = lower_attribute(file, *variable, "standard_name");
   const std::string units = lower_attribute(file, *variable, "units");
   if (const auto kind = kind_in_degrees(standard_name, name, units)) return kind;
-  if (units.empty() || !metres_per(units)) return {};
+  if (units.empty() || !conversion_factor(units, "m")) return {};
   return kind_in_metres(standard_name, name, lower_attribute(file, *variable, "axis"));
 }
 
@@ -114,7 +114,8 @@ DemAxis read_axis(const nc::File& file, int dimension) {
         fmt::format("axis {}: {} value(s), at least 3 are needed", axis.name, axis.size));
   }
   if (axis.kind == AxisKind::x || axis.kind == AxisKind::y) {
-    const double metres = metres_per(file.text(variable, "units").value_or("")).value();
+    const double metres =
+        conversion_factor(file.text(variable, "units").value_or(""), "m").value();
     for (double& value : values) value *= metres;
   }
   axis.reversed = values.front() > values.back();

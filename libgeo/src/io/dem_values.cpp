@@ -12,7 +12,7 @@
 namespace geo::io {
 namespace {
 
-/// How stored numbers become metres, and which of them stand for nothing.
+/// How stored numbers become values, and which of them stand for nothing.
 struct Packing {
   double scale = 1.0;
   double offset = 0.0;
@@ -42,18 +42,19 @@ std::optional<double> default_fill(nc_type type) {
   }
 }
 
-double factor_to_metres(const nc::File& file, int variable) {
+double factor_to(const std::string& target, const nc::File& file, int variable) {
   const auto units = file.text(variable, "units");
   if (!units || units->empty()) return 1.0;  // GDAL and GMT often write none
-  const auto factor = metres_per(*units);
+  const auto factor = conversion_factor(*units, target);
   if (!factor) {
-    throw InputError(fmt::format("variable {}: units are \"{}\", must be a length such as m",
-                                 file.variable_name(variable), *units));
+    throw InputError(fmt::format("variable {}: units are \"{}\", must be {}",
+                                 file.variable_name(variable), *units,
+                                 target == "m" ? "a length such as m" : "such as " + target));
   }
   return *factor;
 }
 
-Packing read_packing(const nc::File& file, int variable) {
+Packing read_packing(const nc::File& file, int variable, const std::string& units) {
   Packing packing;
   const auto first = [&](const char* name, double otherwise) {
     const auto values = file.numbers(variable, name);
@@ -76,9 +77,9 @@ Packing read_packing(const nc::File& file, int variable) {
     packing.valid_min = range[0];
     packing.valid_max = range[1];
   }
-  const double metres = factor_to_metres(file, variable);
-  packing.scale *= metres;
-  packing.offset *= metres;
+  const double factor = factor_to(units, file, variable);
+  packing.scale *= factor;
+  packing.offset *= factor;
   return packing;
 }
 
@@ -100,14 +101,14 @@ struct Gaps {
 
 }  // namespace
 
-std::vector<float> read_elevation(const nc::File& file, int variable, const DemAxis& rows,
-                                  const DemAxis& columns) {
+std::vector<float> read_values(const nc::File& file, int variable, const DemAxis& rows,
+                               const DemAxis& columns, const std::string& units) {
   const std::string name = file.variable_name(variable);
-  const Packing packing = read_packing(file, variable);
+  const Packing packing = read_packing(file, variable, units);
   const auto dimensions = file.dimensions_of(variable).size();
   std::vector<std::size_t> start(dimensions, 0), count(dimensions, 1);
   const std::size_t nx = columns.size, ny = rows.size;
-  std::vector<float> elevation_m(nx * ny);
+  std::vector<float> values(nx * ny);
 
   // Blocks as tall as common chunks, so that each chunk is unpacked once.
   constexpr std::size_t kBlockRows = 512;
@@ -130,11 +131,11 @@ std::vector<float> read_elevation(const nc::File& file, int variable, const DemA
           gaps.column = static_cast<int>(k % nx);
         }
       }
-      elevation_m[from * nx + k] = static_cast<float>(block[k] * packing.scale + packing.offset);
+      values[from * nx + k] = static_cast<float>(block[k] * packing.scale + packing.offset);
     }
   }
   if (gaps.count > 0) refuse(name, gaps, rows, columns);
-  return elevation_m;
+  return values;
 }
 
 }  // namespace geo::io

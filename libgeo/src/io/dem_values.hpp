@@ -8,9 +8,9 @@
 namespace geo::io {
 
 /// Reads a variable of `rows` x `columns` (and leading dimensions of size one) in file order,
-/// unpacked and in metres. Throws InputError (without path) for missing cells, wrong units and
+/// unpacked and in `units`. Throws InputError (without path) for missing cells, wrong units and
 /// damaged data.
-std::vector<float> read_elevation(const nc::File& file, int variable, const DemAxis& rows,
-                                  const DemAxis& columns);
+std::vector<float> read_values(const nc::File& file, int variable, const DemAxis& rows,
+                               const DemAxis& columns, const std::string& units);
 
 }  // namespace geo::io

@@ -82,6 +82,7 @@ void RunSession::prepare() {
   look_at_folder();
   load_complete_stages();
   read_initial_relief();
+  read_given_fields();
   pipeline_.check(state_->present(), first_, last_);
   config_ = resolved_config();
 }
@@ -232,6 +233,15 @@ void RunSession::read_initial_relief() {
     for (float& height_m : elevation_m) height_m -= sea_level_m;
   }
   state_->set(field::elevation, std::move(elevation_m));
+}
+
+void RunSession::read_given_fields() {
+  const auto read = [&](const Field<float>& spec, const std::string& given) {
+    if (given.empty() || state_->has(spec) || !is_still_read(spec)) return;
+    state_->set(spec, resample(read_field(given, spec, planet_), state_->grid()));
+  };
+  read(field::erodibility, settings_.erodibility);
+  read(field::uplift_rate, settings_.uplift_rate);
 }
 
 Prediction RunSession::prediction() const {

@@ -26,6 +26,12 @@ std::vector<Parameter> RunSettings::parameters() {
              "where the sea stands: at the relief's own zero, or where planet.ocean_fraction of "
              "the area lies below it",
              "design"),
+      text("fields.erodibility", erodibility,
+           "FILE[:VARIABLE] with the erodibility of each place, yr-1; empty is "
+           "erosion.erodibility_yr everywhere",
+           "design"),
+      text("fields.uplift_rate", uplift_rate,
+           "FILE[:VARIABLE] with the rock uplift of each place, as a velocity", "design"),
       flag("output.vtk", vtk, "write a VTK file beside each NetCDF file", "design"),
       flag("output.maps", maps, "draw the maps and the report", "design"),
       integer("output.map_width_px", map_width_px, "1", 300, 20000, "width of the maps in pixels",

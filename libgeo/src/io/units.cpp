@@ -41,16 +41,16 @@ Unit parse(const System& system, std::string text) {
 
 }  // namespace
 
-std::optional<double> metres_per(const std::string& units) {
+std::optional<double> conversion_factor(const std::string& units, const std::string& target) {
   static std::mutex mutex;
   const std::lock_guard lock(mutex);
   static const System system = read_system();
-  const Unit from = parse(system, units), metre = parse(system, "m");
-  if (!from || ut_are_convertible(from.get(), metre.get()) == 0) return {};
-  const Converter converter(ut_get_converter(from.get(), metre.get()));
+  const Unit from = parse(system, units), to = parse(system, target);
+  if (!from || ut_are_convertible(from.get(), to.get()) == 0) return {};
+  const Converter converter(ut_get_converter(from.get(), to.get()));
   const double factor = cv_convert_double(converter.get(), 1.0);
   const double offset = cv_convert_double(converter.get(), 0.0);
-  // Reciprocals ("m-1") convert too, but one of them is no length.
+  // Reciprocals ("m-1" to "m") convert too, but measure something else.
   if (offset != 0.0 || cv_convert_double(converter.get(), 2.0) != 2.0 * factor) return {};
   return factor;
 }

@@ -5,7 +5,8 @@
 
 namespace geo::io {
 
-/// Number of metres in one of these units, as UDUNITS reads them; nothing where they are no length.
-std::optional<double> metres_per(const std::string& units);
+/// Number of `target` units in one of `units`, as UDUNITS reads them; nothing where they measure
+/// something else.
+std::optional<double> conversion_factor(const std::string& units, const std::string& target);
 
 }  // namespace geo::io

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "geo/core/field.hpp"
 #include "geo/core/grid.hpp"
 #include "geo/core/planet.hpp"
 #include "geo/kernels/resample.hpp"
@@ -28,6 +29,10 @@ struct Relief {
 /// lists the candidates. Throws InputError for unusable data (missing or NaN cells with their
 /// index, wrong units, truncated file, irregular axes), IoError when it cannot be opened.
 Relief read_relief(const std::string& file_and_variable, const Planet& planet);
+/// The same for any other field that is given as a raster (`elevation_m` then holds its values in
+/// the units of the vocabulary). Without VARIABLE the one named as the field, else the only raster.
+Relief read_field(const std::string& file_and_variable, const FieldSpec& spec,
+                  const Planet& planet);
 
 /// Area-weighted mean of a relief on another grid (conservative where coarser, bilinear where
 /// finer). Both must cover the same region, or `target` lie within. Throws InputError otherwise.

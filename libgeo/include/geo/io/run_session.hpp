@@ -76,6 +76,7 @@ class RunSession {
   void keep_earlier_stages(const std::string& before, int old_begin);
   void load_complete_stages();
   void read_initial_relief();
+  void read_given_fields();
   [[nodiscard]] int count_complete_stages() const;
   [[nodiscard]] bool is_complete(int position) const;
   [[nodiscard]] bool is_still_read(const FieldSpec& spec) const;

@@ -15,7 +15,7 @@ struct GridSize {
   int nx, ny;
 };
 
-/// What a run needs besides the planet and the stages: sections [run], [dem] and [output].
+/// What a run needs besides the planet and the stages: sections [run], [dem], [fields] and [output].
 struct RunSettings {
   std::int64_t seed = 1;
   std::string grid = "auto";
@@ -25,6 +25,8 @@ struct RunSettings {
   std::string dem_file;
   std::string dem_variable;
   std::string dem_sea_level = "datum";
+  std::string erodibility;  ///< FILE[:VARIABLE]
+  std::string uplift_rate;  ///< FILE[:VARIABLE]
 
   bool vtk = true;
   bool maps = true;
