@@ -8,8 +8,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "commands.hpp"
@@ -72,6 +74,16 @@ void refuse_extras(const CLI::App& program) {
                                             word, remedy));
 }
 
+/// What the system said, without the exception's own words.
+std::string system_message(const std::system_error& error) {
+  const std::string reason = error.code().message();
+  if (std::ferror(stdout) != 0) return fmt::format("standard output: {}", reason);
+  const auto* const file = dynamic_cast<const std::filesystem::filesystem_error*>(&error);
+  if (file == nullptr) return fmt::format("the system refused: {}", reason);
+  const std::string path = file->path1().string();
+  return fmt::format("{}: {}", path.size() > 200 ? path.substr(0, 200) + "..." : path, reason);
+}
+
 void run_program(int argc, char** argv) {
   CLI::App program("A whole planet's surface from physics.", "terrane");
   program.set_version_flag("--version", version_text, "Version, commit and library versions");
@@ -119,6 +131,9 @@ int main(int argc, char** argv) {
   } catch (const geo::Error& error) {
     terrane::log_error(error.what());
     return static_cast<int>(error.kind());
+  } catch (const std::system_error& error) {
+    terrane::log_error(system_message(error));
+    return static_cast<int>(geo::ErrorKind::io);
   } catch (const std::bad_alloc&) {
     terrane::log_error("not enough memory for this grid; --dry-run tells how much a run needs");
     return static_cast<int>(geo::ErrorKind::configuration);

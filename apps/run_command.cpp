@@ -50,21 +50,21 @@ void set_option(const Configuration& configuration, std::string_view option, std
 }
 
 /// Defaults, then preset, then file, then the command line. A run that goes on in a folder starts
-/// from the configuration which that folder holds, unless another is given.
-void configure(Configuration& configuration, const RunOptions& options) {
+/// from the configuration which that folder holds, unless another is given. Returns whether it did.
+bool configure(Configuration& configuration, const RunOptions& options) {
   const auto& parameters = configuration.parameters();
   auto& settings = configuration.settings;
-  // A real relief given on the command line alone is taken as it is, not worn down as a new one.
-  const bool bare_dem = options.config.empty() && !options.dem.empty() && !options.resume;
-  const std::string preset =
-      options.preset.empty() && bare_dem ? std::string("earth-dem") : options.preset;
-  if (!preset.empty()) {
-    geo::io::apply_toml(geo::io::find_preset(preset).toml, "preset " + preset, parameters);
-  }
   fs::path file = options.config;
   const fs::path kept = fs::path(options.folder) / "config.toml";
   const bool goes_on = options.resume || (options.overwrite && !options.from.empty());
-  if (file.empty() && preset.empty() && goes_on && fs::exists(kept)) file = kept;
+  const bool takes_kept = file.empty() && options.preset.empty() && goes_on && fs::exists(kept);
+  if (takes_kept) file = kept;
+  // A real relief given on the command line alone is taken as it is, not worn down as a new one.
+  const std::string preset =
+      options.preset.empty() && file.empty() && !options.dem.empty() ? "earth-dem" : options.preset;
+  if (!preset.empty()) {
+    geo::io::apply_toml(geo::io::find_preset(preset).toml, "preset " + preset, parameters);
+  }
   if (!file.empty()) {
     geo::io::apply_config_file(file, parameters);
     anchor_dem(settings, file.parent_path());
@@ -82,6 +82,7 @@ void configure(Configuration& configuration, const RunOptions& options) {
   set_option(configuration, "--grid", "run.grid", options.grid);
   if (options.no_vtk) settings.vtk = false;
   if (options.no_maps) settings.maps = false;
+  return takes_kept;
 }
 
 int thread_count(const std::string& text) {
@@ -112,7 +113,7 @@ void run(const RunOptions& options) {
   set_log_style({.json = options.log_json, .quiet = options.quiet});
   const int threads = thread_count(options.threads);
   Configuration configuration;
-  configure(configuration, options);
+  const bool folders_configuration = configure(configuration, options);
   omp_set_num_threads(threads);
   geo::io::RunSession session(configuration.pipeline, configuration.stage_numbers(),
                               configuration.settings, configuration.planet,
@@ -121,6 +122,7 @@ void run(const RunOptions& options) {
                                .from = options.from,
                                .to = options.to,
                                .resume = options.resume,
+                               .folders_configuration = folders_configuration,
                                .overwrite = options.overwrite,
                                .threads = threads});
   session.prepare();
@@ -154,7 +156,7 @@ void run(const RunOptions& options) {
                                  "complete stage",
                                  options.folder));
   }
-  fmt::print("{}\n", options.folder);
+  log_info(fmt::format("the files are in {}", options.folder));
 }
 
 }  // namespace

@@ -204,7 +204,7 @@ const BadInput kCommandLines[] = {
     {"SetWithoutKey", kConfiguration, {"--set =3", "section.key"}, run_with({"--set", "=3"})},
     {"SetWithoutSection",
      kConfiguration,
-     {"--set: ", "steps", "erosion.steps"},
+     {"--set steps=3: must be section.key=value", "did you mean erosion.steps?"},
      run_with({"--set", "steps=3"})},
     {"SetUnknownKey",
      kConfiguration,
@@ -420,6 +420,16 @@ const BadInput kFolders[] = {
      [](const fs::path& folder) {
        const Words arguments = after_erosion({"--resume"})(folder);
        std::ofstream(folder / "out" / "manifest.json") << "{\"version\": ";
+       return arguments;
+     }},
+    {"ResumeOfAnotherVersionsRun",
+     kConfiguration,
+     {"--resume", "was made by terrane 0.0.1, this is ", "--overwrite"},
+     [](const fs::path& folder) {
+       const Words arguments = after_erosion({"--resume"})(folder);
+       auto manifest = manifest_of(folder / "out");
+       manifest["version"] = "0.0.1";
+       std::ofstream(folder / "out" / "manifest.json") << manifest;
        return arguments;
      }},
     {"FromBehindAStageThatIsNotThere",

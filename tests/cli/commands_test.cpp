@@ -113,7 +113,8 @@ class FinishedRun : public testing::Test {
 };
 
 TEST_F(FinishedRun, InfoTellsWhatTheManifestTells) {
-  for (const auto& stage : manifest_of(run_).at("stages")) {
+  const auto manifest = manifest_of(run_);
+  for (const auto& stage : manifest.at("stages")) {
     const fs::path file = run_ / stage.at("files").at(0).get<std::string>();
     const std::string table = told_by({"info", file});
     EXPECT_THAT(table, HasSubstr("stage    " + stage.at("name").get<std::string>()));

@@ -92,7 +92,8 @@ TEST_F(Run, WritesOnlyWhatWasAskedFor) {
   EXPECT_EQ(more.code, 0) << more.err;
   EXPECT_TRUE(there("bare/planet.pvd"));
   EXPECT_TRUE(there("bare/report.html"));
-  for (const auto& stage : manifest_of(folder_ / "bare").at("stages")) {
+  const auto manifest = manifest_of(folder_ / "bare");
+  for (const auto& stage : manifest.at("stages")) {
     ASSERT_EQ(stage.at("files").size(), 2U) << "the manifest names all files";
     for (const std::string file : stage.at("files")) EXPECT_TRUE(there("bare/" + file)) << file;
   }
@@ -154,7 +155,7 @@ TEST_F(Run, ProgressBarIsDrawnOnATerminalOnly) {
   EXPECT_THAT(shown, HasSubstr("\r\033[K"));
   EXPECT_THAT(shown, HasSubstr("climate    ["));
   EXPECT_THAT(shown, HasSubstr(" %"));
-  EXPECT_THAT(on_terminal("--quiet"), Not(HasSubstr("climate")));
+  EXPECT_THAT(on_terminal("--quiet"), Not(HasSubstr("climate ")));
   EXPECT_THAT(on_terminal("--log-json"), Not(HasSubstr("\033[K")));
 }
 
@@ -215,6 +216,21 @@ TEST_F(Run, OverwriteFromAStageKeepsTheEarlierOnes) {
   // The same planet in one go.
   ASSERT_EQ(run("straight", {"--set", "climate.solar_constant_w_m2=1200"}).code, 0);
   EXPECT_EQ(digests_of(folder_ / "out"), digests_of(folder_ / "straight"));
+}
+
+TEST_F(Run, ResumedByItsOwnCommandLineGoesOnAsFarAsThatSays) {
+  ASSERT_EQ(run("out", {"--to", "erosion"}).code, 0);
+  ASSERT_EQ(run("out", {"--resume", "--to", "climate"}).code, 0);
+  EXPECT_EQ(stages_of(folder_ / "out"), (std::vector<std::string>{"erosion", "climate"}));
+  std::ofstream(folder_ / "planet.toml") << "[run]\nto = \"climate\"\n";
+  const Outcome again = run("out", {folder_ / "planet.toml", "--resume"});
+  EXPECT_EQ(again.code, 0) << again.err;
+  EXPECT_THAT(again.err, HasSubstr("all stages are complete"));
+  EXPECT_EQ(stages_of(folder_ / "out"), (std::vector<std::string>{"erosion", "climate"}));
+  ASSERT_EQ(terrane({"run", "--resume", "-o", folder_ / "out"}).code, 0);
+  ASSERT_EQ(run("straight").code, 0);
+  EXPECT_EQ(digests_of(folder_ / "out"), digests_of(folder_ / "straight"));
+  EXPECT_EQ(text_of(folder_ / "out/config.toml"), text_of(folder_ / "straight/config.toml"));
 }
 
 TEST_F(Run, StagesCanEndEarly) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -31,19 +33,22 @@ inline nlohmann::json manifest_of(const std::filesystem::path& folder) {
 /// "stage/field: digest" of everything a run computed.
 inline std::vector<std::string> digests_of(const std::filesystem::path& folder) {
   std::vector<std::string> digests;
-  for (const auto& stage : manifest_of(folder).at("stages")) {
+  const auto manifest = manifest_of(folder);
+  for (const auto& stage : manifest.at("stages")) {
     for (const auto& [name, field] : stage.at("fields").items()) {
       digests.push_back(stage.at("name").get<std::string>() + "/" + name + ": " +
                         field.at("digest").get<std::string>());
     }
   }
+  EXPECT_FALSE(digests.empty()) << folder << " holds no complete stage";
   return digests;
 }
 
 /// Names of the stages that a run has completed.
 inline std::vector<std::string> stages_of(const std::filesystem::path& folder) {
   std::vector<std::string> names;
-  for (const auto& stage : manifest_of(folder).at("stages")) names.push_back(stage.at("name"));
+  const auto manifest = manifest_of(folder);
+  for (const auto& stage : manifest.at("stages")) names.push_back(stage.at("name"));
   return names;
 }
 

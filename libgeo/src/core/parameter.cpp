@@ -27,6 +27,14 @@ void check_range(const Parameter& parameter, double number, const std::string& g
   }
 }
 
+/// A whole number with more digits than any integer parameter takes.
+bool beyond_int64(std::string_view text) {
+  std::int64_t whole = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, whole);
+  return error == std::errc::result_out_of_range && stop == end;
+}
+
 }  // namespace
 
 ParameterValue Parameter::value() const {
@@ -95,6 +103,9 @@ void Parameter::set_text(std::string_view text) const {
     std::int64_t whole = 0;
     double number = 0.0;
     if (whole_text(whole)) return set(whole);
+    if (storage.index() == 1 && beyond_int64(text)) {
+      refuse(*this, std::string(text), fmt::format("in {}", range_text()));
+    }
     if (whole_text(number)) return set(number);
   } else if (storage.index() == 2) {
     if (text == "true") return set(true);

@@ -64,6 +64,14 @@ std::string_view kind_of(const toml::node& node) {
   return "a date or time";
 }
 
+/// The parameter that has `key` in some section; empty when none has.
+std::string_view home_of(std::string_view key, std::span<const Parameter> parameters) {
+  for (const Parameter& parameter : parameters) {
+    if (parameter.name.substr(parameter.name.find('.') + 1) == key) return parameter.name;
+  }
+  return {};
+}
+
 [[noreturn]] void refuse_unknown(const std::string& where, std::string_view name,
                                  std::span<const Parameter> parameters) {
   const auto section = section_of(name);
@@ -126,13 +134,10 @@ std::vector<std::string> apply_toml(std::string_view text, const std::string& so
   visit_in_text_order(root, [&](const toml::key& section, const toml::node& node) {
     const auto* table = node.as_table();
     if (table == nullptr) {
-      const auto names = names_of(parameters);
-      const auto home = std::find_if(names.begin(), names.end(), [&](std::string_view name) {
-        return name.substr(name.find('.') + 1) == section.str();
-      });
-      throw ConfigurationError(fmt::format(
-          "{}key {} must stand in a section{}", where_of(section), section.str(),
-          home == names.end() ? "" : fmt::format("; did you mean [{}]?", section_of(*home))));
+      const auto home = home_of(section.str(), parameters);
+      throw ConfigurationError(
+          fmt::format("{}key {} must stand in a section{}", where_of(section), section.str(),
+                      home.empty() ? "" : fmt::format("; did you mean [{}]?", section_of(home))));
     }
     if (const auto sections = sections_of(parameters);
         std::find(sections.begin(), sections.end(), section.str()) == sections.end()) {
@@ -178,6 +183,12 @@ std::string apply_assignment(std::string_view assignment, std::span<const Parame
   };
   const auto name = trimmed(assignment.substr(0, equals));
   const Parameter* parameter = find_parameter(parameters, name);
+  if (parameter == nullptr && name.find('.') == std::string_view::npos) {
+    const auto home = home_of(name, parameters);
+    throw ConfigurationError(
+        fmt::format("--set {}: must be section.key=value{}", assignment,
+                    home.empty() ? "" : fmt::format("; did you mean {}?", home)));
+  }
   if (parameter == nullptr) refuse_unknown("--set: ", name, parameters);
   try {
     parameter->set_text(trimmed(assignment.substr(equals + 1)));

@@ -52,7 +52,9 @@ fs::path RunFolder::stage_file(int number, std::string_view stage,
 
 bool RunFolder::holds_run() const {
   std::error_code error;
-  if (!fs::is_directory(path_, error)) return false;
+  const auto status = fs::status(path_, error);
+  if (!fs::status_known(status)) refuse(path_, "could not look: " + error.message());
+  if (!fs::is_directory(status)) return false;
   if (fs::exists(config()) || fs::exists(manifest())) return true;
   for (const auto& entry : fs::directory_iterator(path_, error)) {
     if (is_stage_file(entry.path())) return true;

@@ -5,10 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
-#include <cstdlib>
-#include <cstring>
 #include <utility>
 
 #include "geo/core/error.hpp"
@@ -16,6 +13,7 @@
 #include "geo/io/background_writer.hpp"
 #include "geo/io/build_info.hpp"
 #include "geo/io/run_pictures.hpp"
+#include "geo/io/source_date.hpp"
 
 namespace geo::io {
 namespace {
@@ -29,22 +27,6 @@ double seconds_since(Clock::time_point start) {
 template <class Function, class... Arguments>
 void tell(const Function& function, Arguments&&... arguments) {
   if (function) function(std::forward<Arguments>(arguments)...);
-}
-
-/// SOURCE_DATE_EPOCH, with which files must not tell when they were made.
-const char* given_epoch() { return std::getenv("SOURCE_DATE_EPOCH"); }
-
-std::string time_stamp() {
-  std::time_t time = std::time(nullptr);
-  if (const char* text = given_epoch()) {
-    const char* const end = text + std::strlen(text);
-    const auto [stop, error] = std::from_chars(text, end, time);
-    if (error != std::errc() || stop != end) {
-      throw ConfigurationError(
-          fmt::format("SOURCE_DATE_EPOCH = {}: must be seconds since 1970", text));
-    }
-  }
-  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(time));
 }
 
 /// One background job: the files of a stage, then its entry in the manifest.
@@ -99,8 +81,9 @@ Provenance RunSession::provenance_of(int position) const {
           .config_toml = config_,
           .seed = static_cast<std::uint64_t>(settings_.seed),
           .version = build.version,
-          .history = fmt::format("{} terrane {} ({}): stage {}", time_stamp(), build.version,
-                                 build.commit, name_of(position)),
+          .history = fmt::format("{:%Y-%m-%dT%H:%M:%SZ} terrane {} ({}): stage {}",
+                                 fmt::gmtime(now_or_given()), build.version, build.commit,
+                                 name_of(position)),
           .references = references_of(position)};
 }
 
@@ -130,7 +113,7 @@ void RunSession::write_stage(BackgroundWriter& writer, int position, const State
   job->netcdf = file_of(position, ".nc");
   job->vti = file_of(position, ".vti");
   job->record.name = name_of(position);
-  job->record.seconds = given_epoch() != nullptr ? 0.0 : seconds;
+  job->record.seconds = time_is_given() ? 0.0 : seconds;
   job->record.budget = context.budget;
   job->record.warnings = context.warnings;
   writer.submit([this, job] {
@@ -142,12 +125,13 @@ void RunSession::write_stage(BackgroundWriter& writer, int position, const State
 }
 
 void RunSession::execute(const RunEvents& events) {
-  time_stamp();  // a bad SOURCE_DATE_EPOCH is refused before anything is touched
   if (first_ <= last_) {
     clear_for_this_run();
     compute(events);
   } else {
     folder_.open();
+    manifest_.config_digest = digest_of(config_);
+    write_text_file(folder_.config(), config_);
     tell(events.info, "all stages are complete: only the pictures are drawn again");
   }
   state_.reset();
@@ -184,20 +168,29 @@ void RunSession::compute(const RunEvents& events) {
   writer.wait();
 }
 
+/// planet.pvd and what it lists; stages that were run without VTK files get theirs now.
+void RunSession::write_collection() {
+  std::vector<std::filesystem::path> paths;
+  for (StageRecord& record : manifest_.stages) {
+    const int at = pipeline_.find(record.name);
+    paths.push_back(file_of(at, ".vti"));
+    const std::string name = paths.back().filename().string();
+    if (!std::filesystem::exists(paths.back())) {
+      write_vti(paths.back(), read_netcdf(file_of(at, ".nc")), provenance_of(at));
+    }
+    if (std::find(record.files.begin(), record.files.end(), name) == record.files.end()) {
+      record.files.push_back(name);
+    }
+  }
+  write_pvd(folder_.collection(), paths);
+}
+
 void RunSession::write_summaries(const RunEvents& events) {
   const auto check_stop = [&] {
     if (events.stop != nullptr && events.stop->load()) throw Interrupted();
   };
   check_stop();
-  if (settings_.vtk) {
-    std::vector<std::filesystem::path> files;
-    for (int at = begin_; at <= std::max(last_, first_ - 1); ++at) {
-      files.push_back(file_of(at, ".vti"));
-      if (std::filesystem::exists(files.back())) continue;
-      write_vti(files.back(), read_netcdf(file_of(at, ".nc")), provenance_of(at));
-    }
-    write_pvd(folder_.collection(), files);
-  }
+  if (settings_.vtk) write_collection();
   if (settings_.maps) {
     tell(events.stage_begins, "maps", static_cast<double>(settings_.map_width_px));
     const auto start = Clock::now();

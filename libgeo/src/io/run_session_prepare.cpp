@@ -9,6 +9,7 @@
 #include "geo/io/config.hpp"
 #include "geo/io/dem.hpp"
 #include "geo/io/run_session.hpp"
+#include "geo/io/source_date.hpp"
 #include "geo/kernels/quantiles.hpp"
 
 namespace geo::io {
@@ -77,6 +78,7 @@ std::string RunSession::resolved_config() const {
 }
 
 void RunSession::prepare() {
+  now_or_given();  // refuses a bad SOURCE_DATE_EPOCH
   if (!settings_.grid_is_automatic()) parse_grid_size(settings_.grid);
   choose_stages();
   look_at_folder();
@@ -101,6 +103,7 @@ void RunSession::choose_stages() {
 }
 
 void RunSession::look_at_folder() {
+  if (folder_.path().empty()) throw ConfigurationError("-o \"\": must name a folder");
   const std::string shown = folder_.path().string();
   if (request_.resume && request_.overwrite) {
     throw ConfigurationError("--resume and --overwrite exclude each other: choose one");
@@ -135,8 +138,24 @@ void RunSession::take_open_settings(const std::string& before) {
   }
 }
 
+/// Another version may compute other values: stages of both make no planet.
+void RunSession::check_version(std::string_view asked_by) const {
+  const auto& version = build_info().version;
+  if (manifest_.version.empty() || manifest_.version == version) return;
+  throw ConfigurationError(
+      fmt::format("{}: {} was made by terrane {}, this is {}; --overwrite computes all again",
+                  asked_by, folder_.path().string(), manifest_.version, version));
+}
+
 void RunSession::go_on_from(const std::string& before) {
+  check_version("--resume");
   take_open_settings(before);
+  const std::string old_to = configured_text(before, "run.to");
+  const bool as_far_as_before = request_.to.empty() && settings_.to == old_to;
+  if (request_.folders_configuration && manifest_.complete && as_far_as_before) {
+    settings_.to.clear();
+    last_ = static_cast<int>(pipeline_.stages().size()) - 1;
+  }
   if (!request_.from.empty()) settings_.from = request_.from;
   const auto difference = first_difference(before, resolved_config(), {}, kFreeOnResume);
   if (!difference.empty()) {
@@ -145,9 +164,11 @@ void RunSession::go_on_from(const std::string& before) {
                     difference, folder_.path().string()));
   }
   first_ = begin_ + count_complete_stages();
+  if (first_ > last_ + 1) settings_.to = old_to;  // the stages behind it stay
 }
 
 void RunSession::keep_earlier_stages(const std::string& before, int old_begin) {
+  check_version("--from " + std::string(name_of(first_)));
   begin_ = old_begin;
   settings_.from = configured_text(before, "run.from");
   take_open_settings(before);

@@ -26,8 +26,11 @@ struct RunRequest {
   /// First stage to compute. In a new folder the run starts there, from the relief itself. With
   /// `overwrite` on a folder that holds a run, earlier stages keep their files.
   std::string from;
-  std::string to;          ///< last stage; empty: as configured
-  bool resume = false;     ///< go on after the last complete stage
+  std::string to;       ///< last stage; empty: as configured
+  bool resume = false;  ///< go on after the last complete stage
+  /// The configuration is the one that the folder holds. A run that reached its own `run.to` is
+  /// then resumed to the last stage there is.
+  bool folders_configuration = false;
   bool overwrite = false;  ///< replace what the folder holds
   int threads = 1;
 };
@@ -72,6 +75,7 @@ class RunSession {
   void choose_stages();
   void look_at_folder();
   void take_open_settings(const std::string& before);
+  void check_version(std::string_view asked_by) const;
   void go_on_from(const std::string& before);
   void keep_earlier_stages(const std::string& before, int old_begin);
   void load_complete_stages();
@@ -90,6 +94,7 @@ class RunSession {
   void write_stage(BackgroundWriter& writer, int position, const State& state,
                    const Context& context, double seconds);
   void write_summaries(const RunEvents& events);
+  void write_collection();
   [[nodiscard]] Provenance provenance_of(int position) const;
   [[nodiscard]] std::string references_of(int position) const;
 

@@ -35,7 +35,7 @@ struct EnergyBalance {
   double moist_transport = 1.0;         ///< share of latent heat in D's change with temperature
   double coalbedo = 0.697;              ///< mean absorbed share without ice
   double coalbedo_p2 = -0.0779;         ///< its second Legendre coefficient in latitude
-  double ice_coalbedo = 0.28;           ///< of ice sheets and snow on land
+  double ice_coalbedo = 0.20;           ///< of ice sheets and snow on land
   double sea_ice_coalbedo = 0.55;       ///< of sea ice, broken and wet in summer
   double ice_temperature_c = -1.1e1;      ///< annual mean at which half the surface is ice
   double ice_width_k = 3.0;             ///< width of the transition; 0: no ice at all
