@@ -21,7 +21,7 @@ BASINS = [
     ("Mississippi", "Memphis", 35.1, -90.1, 3.2, 17000),
     ("Ob", "Khanty-Mansiysk", 61.0, 69.0, 3.0, 12500),
     # Above the Uruguay, which meets it in the estuary.
-    ("Parana", "Rosario", -33.0, -60.6, 2.7, 17000),
+    ("Parana", "Santa Fe", -31.6, -60.7, 2.7, 17000),
 ]
 
 

@@ -37,11 +37,11 @@ struct EnergyBalance {
   double coalbedo_p2 = -0.0779;         ///< its second Legendre coefficient in latitude
   double ice_coalbedo = 0.20;           ///< of ice sheets and snow on land
   double sea_ice_coalbedo = 0.55;       ///< of sea ice, broken and wet in summer
-  double ice_temperature_c = -1.1e1;      ///< annual mean at which half the surface is ice
+  double ice_temperature_c = -13.0;     ///< annual mean at which half the surface is ice
   double ice_width_k = 3.0;             ///< width of the transition; 0: no ice at all
   double land_heat_capacity_w_yr_m2_k = 0.4;
   double ocean_heat_capacity_w_yr_m2_k = 5.4;
-  double gyre_heat_w_m2 = 120.0;   ///< heat that gyres release along a western coast of an ocean
+  double gyre_heat_w_m2 = 120.0;  ///< heat that gyres release along a western coast of an ocean
   double gyre_reach_km = 3200.0;  ///< e-folding distance of a coast's influence
   double lapse_k_m = 0.006;
 };
