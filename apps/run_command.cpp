@@ -59,9 +59,10 @@ bool configure(Configuration& configuration, const RunOptions& options) {
   const bool goes_on = options.resume || (options.overwrite && !options.from.empty());
   const bool takes_kept = file.empty() && options.preset.empty() && goes_on && fs::exists(kept);
   if (takes_kept) file = kept;
-  // A real relief given on the command line alone is taken as it is, not worn down as a new one.
-  const std::string preset =
-      options.preset.empty() && file.empty() && !options.dem.empty() ? "earth-dem" : options.preset;
+  // A real relief on the command line is taken as it is, not worn down as a new one, unless a
+  // preset or the file says so.
+  const bool bare_relief = options.preset.empty() && !options.dem.empty() && !takes_kept;
+  const std::string preset = bare_relief ? "earth-dem" : options.preset;
   if (!preset.empty()) {
     geo::io::apply_toml(geo::io::find_preset(preset).toml, "preset " + preset, parameters);
   }
@@ -177,7 +178,10 @@ void add_run_command(CLI::App& program, Action& action) {
       ->expected(1)
       ->take_all();
   command->add_option("--grid", o.grid, "Cells of the grid")->type_name("WIDTHxHEIGHT");
-  command->add_option("--dem", o.dem, "A real relief takes the place of plates and isostasy")
+  command
+      ->add_option("--dem", o.dem,
+                   "A real relief takes the place of plates and isostasy; without --preset, preset "
+                   "earth-dem")
       ->type_name("FILE[:VARIABLE]");
   command
       ->add_option("--from", o.from,

@@ -400,7 +400,7 @@ const BadInput kFolders[] = {
      }},
     {"ResumeWithAnotherParameter",
      kConfiguration,
-     {"--resume", "the configuration changed", "erosion.steps is 7, was 20"},
+     {"--resume", "the configuration changed", "erosion.steps is 7, was 0"},
      after_erosion({"--resume", "--set", "erosion.steps=7"})},
     {"ResumeWithAnotherSeed",
      kConfiguration,

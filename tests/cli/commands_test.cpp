@@ -77,7 +77,7 @@ TEST(Params, AsTomlRunAsTheyAre) {
   ReliefFile{}.write(folder / "relief.nc");
   std::ofstream(folder / "all.toml") << told_by({"params", "--format", "toml"});
   ASSERT_EQ(terrane(quick_run(folder / "relief.nc", folder / "a", {folder / "all.toml"})).code, 0);
-  ASSERT_EQ(terrane(quick_run(folder / "relief.nc", folder / "b")).code, 0);
+  ASSERT_EQ(terrane(quick_run(folder / "relief.nc", folder / "b", {"--preset", "earth"})).code, 0);
   EXPECT_EQ(digests_of(folder / "a"), digests_of(folder / "b"));
   EXPECT_EQ(text_of(folder / "a/config.toml"), text_of(folder / "b/config.toml"));
 }
