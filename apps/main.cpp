@@ -117,6 +117,7 @@ void run_program(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  terrane::keep_standard_streams();
   terrane::prepare_signals();
   try {
     run_program(argc, argv);

@@ -8,6 +8,10 @@ namespace terrane {
 /// size limit becomes an ordinary write error.
 void prepare_signals();
 
+/// Gives a closed standard stream the null device, lest a file of the run take its number and
+/// receive what is meant for the terminal.
+void keep_standard_streams();
+
 const std::atomic<bool>& stop_requested();
 
 }  // namespace terrane

@@ -117,6 +117,20 @@ TEST_F(Run, QuietSaysNothing) {
   EXPECT_EQ(outcome.err, "");
 }
 
+TEST_F(Run, ClosedStreamsGoIntoNoFile) {
+  ASSERT_EQ(run("open").code, 0);
+  std::string command = TERRANE_PROGRAM;
+  for (const auto& word : quick_run(relief_, folder_ / "closed")) command += " '" + word + "'";
+  ASSERT_EQ(std::system((command + " <&- >&- 2>&-").c_str()), 0);
+  EXPECT_EQ(digests_of(folder_ / "closed"), digests_of(folder_ / "open"));
+  for (const auto& [name, bytes] : contents_of(folder_ / "closed")) {
+    EXPECT_THAT(bytes, Not(HasSubstr("hydrology  0."))) << name;
+    if (name.ends_with(".nc")) {
+      EXPECT_EQ(terrane({"info", folder_ / "closed" / name}).code, 0) << name;
+    }
+  }
+}
+
 TEST_F(Run, QuietStillTellsErrors) {
   EXPECT_EQ(lines_of(run("out", {"--quiet", "--set", "erosion.steps=-1"}).err).size(), 1U);
 }

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "geo/core/error.hpp"
@@ -39,6 +40,16 @@ Grid grid_for(const Relief& relief, const RunSettings& settings, const Planet& p
   const double height_m = source.step_north_m() * source.ny();
   return Grid::plane(nx, ny, width_m / nx, height_m / ny, source.edges(), source.centre(),
                      planet.figure());
+}
+
+/// Heights that no solid planet holds up are a wrong unit or a damaged file.
+void check_heights(const Relief& relief) {
+  constexpr float kMost_m = 100e3F;
+  for (const float height_m : relief.elevation_m) {
+    if (std::abs(height_m) <= kMost_m) continue;
+    throw InputError(fmt::format("{}: holds an elevation of {:g} m: must lie within {:g} m",
+                                 relief.source, height_m, kMost_m));
+  }
 }
 
 }  // namespace
@@ -242,6 +253,7 @@ void RunSession::read_initial_relief() {
                                   ? settings_.dem_file
                                   : settings_.dem_file + ":" + settings_.dem_variable,
                               planet_);
+  check_heights(relief);
   auto grid = state_ ? state_->shared_grid()
                      : std::make_shared<const Grid>(grid_for(relief, settings_, planet_));
   settings_.grid = fmt::format("{}x{}", grid->nx(), grid->ny());
