@@ -39,6 +39,14 @@ std::vector<float> rank_of(const State& state, const std::vector<float>& flow) {
       rank[i] = std::cbrt(flow[i] * flow[i] * static_cast<float>(area[i]));
     }
   }
+  if (state.has(field::temperature)) {
+    // What ice sheets lose flows as ice: no rivers there.
+    constexpr float kIce_c = -15.0F;
+    const auto temperature = state.read(field::temperature);
+    for (std::size_t i = 0; i < rank.size(); ++i) {
+      if (temperature[i] < kIce_c) rank[i] = 0.0F;
+    }
+  }
   return rank;
 }
 
