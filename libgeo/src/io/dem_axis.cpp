@@ -114,8 +114,7 @@ DemAxis read_axis(const nc::File& file, int dimension) {
         fmt::format("axis {}: {} value(s), at least 3 are needed", axis.name, axis.size));
   }
   if (axis.kind == AxisKind::x || axis.kind == AxisKind::y) {
-    const double metres =
-        conversion_factor(file.text(variable, "units").value_or(""), "m").value();
+    const double metres = conversion_factor(file.text(variable, "units").value_or(""), "m").value();
     for (double& value : values) value *= metres;
   }
   axis.reversed = values.front() > values.back();

@@ -15,7 +15,8 @@ struct GridSize {
   int nx, ny;
 };
 
-/// What a run needs besides the planet and the stages: sections [run], [dem], [fields] and [output].
+/// What a run needs besides the planet and the stages: sections [run], [dem], [fields] and
+/// [output].
 struct RunSettings {
   std::int64_t seed = 1;
   std::string grid = "auto";

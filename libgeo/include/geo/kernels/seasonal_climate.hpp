@@ -23,7 +23,7 @@ struct SeasonalClimate {
   double ascent_time_d = 4.1;            ///< convergence over this time multiplies rain-out by e
   double orographic_share = 0.2;  ///< of the mean height by which moist air is lifted over a cell
   double blocking_height_m = 4900.0;  ///< height at which relief halves the moist flow
-  double land_transpiration = 0.95;    ///< share of Budyko's evaporation that returns to the air
+  double land_transpiration = 0.95;   ///< share of Budyko's evaporation that returns to the air
 };
 
 /// Fields of a coarse grid, one value per cell.
