@@ -55,7 +55,7 @@ class Interruption : public testing::Test {
   }
 
   [[nodiscard]] std::vector<std::string> run_into(const fs::path& folder) const {
-    return quick_run(relief_, folder);
+    return quick_run(relief_, folder, {"--set", "erosion.steps=20"});
   }
 
   void expect_resumed_like_straight(const fs::path& folder) const {
