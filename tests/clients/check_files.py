@@ -220,9 +220,11 @@ def check_cdo(reference):
             expected = reference.summary(name)[position]
             expect(close(value, expected, 2e-5), f"{reference.path.name}: {name}: cdo", operator, value,
                    "not", expected)
-    seen = call("cdo", "-s", "showunit", f"-selname,{names[0]}", reference.path)
-    expect(seen is not None and seen.strip() == attribute(reference.dataset[names[0]], "units"),
-           reference.path.name, "cdo sees units", seen)
+    for name in names:
+        units = attribute(reference.dataset[name], "units") or ""  # flags have none
+        seen = call("cdo", "-s", "showunit", f"-selname,{name}", reference.path)
+        expect(seen is not None and seen.strip() == units, f"{reference.path.name}: {name}:",
+               "cdo sees units", seen)
     description = call("cdo", "-s", "griddes", f"-selname,{names[0]}", reference.path) or ""
     kind = re.search(r"gridtype\s*=\s*(\w+)", description)
     plane = {"curvilinear"} if "lat" in reference.dataset.variables else {"generic", "projection"}
