@@ -11,6 +11,14 @@ constexpr std::array kDirectionFlags{
     Flag{3, "east"},       Flag{4, "south_east"}, Flag{5, "south"},
     Flag{6, "south_west"}, Flag{7, "west"},       Flag{8, "north_west"}};
 
+constexpr std::array kBoundaryFlags{Flag{0, "interior"}, Flag{1, "convergent"},
+                                    Flag{2, "divergent"}, Flag{3, "transform"}};
+
+constexpr std::array kOrogenyFlags{Flag{0, "none"}, Flag{1, "andean"}, Flag{2, "himalayan"}};
+
+constexpr std::array kRockFlags{Flag{0, "basalt"},    Flag{1, "schist"},    Flag{2, "granite"},
+                                Flag{3, "quartzite"}, Flag{4, "sandstone"}, Flag{5, "limestone"}};
+
 constexpr std::array kBiomeFlags{Flag{0, "ocean"},
                                  Flag{1, "tundra"},
                                  Flag{2, "boreal_forest"},
@@ -36,6 +44,53 @@ constexpr std::array kKoppenFlags{
 
 }  // namespace
 
+const Field<std::int16_t> plate_id{{"plate_id",
+                                    "1",
+                                    "",
+                                    "number of the tectonic plate, from 0",
+                                    Type::int16,
+                                    {},
+                                    -1,
+                                    "area: point"}};
+const Field<float> continental_fraction{{"continental_fraction", "1", "",
+                                         "share of continental crust, 0 ocean floor to 1 continent",
+                                         Type::float32}};
+const Field<float> plate_velocity_east{
+    {"plate_velocity_east", "mm yr-1", "", "eastward velocity of the plate", Type::float32}};
+const Field<float> plate_velocity_north{
+    {"plate_velocity_north", "mm yr-1", "", "northward velocity of the plate", Type::float32}};
+const Field<std::int8_t> boundary_type{{"boundary_type", "", "",
+                                        "what adjacent plates do to each other", Type::int8,
+                                        kBoundaryFlags, -1, "area: point"}};
+const Field<float> boundary_strength{
+    {"boundary_strength", "1", "",
+     "relative velocity across the plate boundary over the fastest on the planet", Type::float32}};
+const Field<float> crust_age{{"crust_age", "Myr", "",
+                              "age of the ocean floor, on continents of the last thermal event",
+                              Type::float32}};
+const Field<std::int8_t> orogeny_type{{"orogeny_type", "", "",
+                                       "mountain building at the nearest convergent boundary",
+                                       Type::int8, kOrogenyFlags, -1, "area: point"}};
+const Field<float> heat_anomaly{
+    {"heat_anomaly", "1", "", "heat of the mantle below against its mean, 0 to 1", Type::float32}};
+const Field<float> convergent_deformation{
+    {"convergent_deformation", "1", "",
+     "shortening of the crust near convergent boundaries, 0 to 1", Type::float32}};
+const Field<float> divergent_deformation{
+    {"divergent_deformation", "1", "", "stretching of the crust near divergent boundaries, 0 to 1",
+     Type::float32}};
+const Field<float> transform_deformation{{"transform_deformation", "1", "",
+                                          "shear of the crust near transform boundaries, 0 to 1",
+                                          Type::float32}};
+const Field<float> lithospheric_weakness{
+    {"lithospheric_weakness", "1", "",
+     "weakness of the lithosphere, 1 at plate boundaries, 0 in cratons", Type::float32}};
+const Field<float> crust_thickness{
+    {"crust_thickness", "m", "", "thickness of the crystalline crust", Type::float32}};
+const Field<float> crust_density{
+    {"crust_density", "kg m-3", "", "mean density of the crust", Type::float32}};
+const Field<std::int8_t> rock_type{
+    {"rock_type", "", "", "rock at the surface", Type::int8, kRockFlags, -1, "area: point"}};
 const Field<float> elevation{{"elevation", "m", "surface_altitude",
                               "elevation of the solid surface above the planet's sea level",
                               Type::float32}};
@@ -158,7 +213,23 @@ const Field<float> settlement_suitability{{"settlement_suitability", "1", "",
                                            Type::float32}};
 
 std::span<const FieldSpec* const> all() {
-  static const std::array<const FieldSpec*, 26> kAll{&elevation,
+  static const std::array<const FieldSpec*, 42> kAll{&plate_id,
+                                                     &continental_fraction,
+                                                     &plate_velocity_east,
+                                                     &plate_velocity_north,
+                                                     &boundary_type,
+                                                     &boundary_strength,
+                                                     &crust_age,
+                                                     &orogeny_type,
+                                                     &heat_anomaly,
+                                                     &convergent_deformation,
+                                                     &divergent_deformation,
+                                                     &transform_deformation,
+                                                     &lithospheric_weakness,
+                                                     &crust_thickness,
+                                                     &crust_density,
+                                                     &rock_type,
+                                                     &elevation,
                                                      &erodibility,
                                                      &uplift_rate,
                                                      &erosion_rate,

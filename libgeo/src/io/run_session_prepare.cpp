@@ -94,7 +94,11 @@ void RunSession::prepare() {
   choose_stages();
   look_at_folder();
   load_complete_stages();
-  read_initial_relief();
+  if (needs_relief()) {
+    read_initial_relief();
+  } else if (!state_) {
+    begin_with_bare_planet();
+  }
   read_given_fields();
   pipeline_.check(state_->present(), first_, last_);
   config_ = resolved_config();
@@ -105,12 +109,22 @@ void RunSession::choose_stages() {
   const int most = static_cast<int>(pipeline_.stages().size()) - 1;
   last_ = settings_.to.empty() ? most : position_of(settings_.to, "run.to");
   const std::string& from = request_.from.empty() ? settings_.from : request_.from;
-  begin_ = from.empty() ? 0 : position_of(from, "run.from");
+  begin_ = from.empty() ? first_stage_of_input() : position_of(from, "run.from");
   first_ = begin_;
   if (first_ > last_) {
     throw ConfigurationError(fmt::format("run.from = {} comes after run.to = {}: must not",
                                          name_of(first_), name_of(last_)));
   }
+}
+
+/// A real relief takes the place of the stages that would make one.
+int RunSession::first_stage_of_input() const {
+  if (settings_.dem_file.empty()) return 0;
+  const auto& stages = pipeline_.stages();
+  const auto reader = std::find_if(stages.begin(), stages.end(), [](const auto& stage) {
+    return lists(stage->info().reads, field::elevation);
+  });
+  return static_cast<int>(reader - stages.begin());
 }
 
 void RunSession::look_at_folder() {
@@ -240,14 +254,32 @@ void RunSession::load_complete_stages() {
   if (state_) folder_.check_writable(prediction().disk_bytes);
 }
 
+/// Whether a stage to be run reads an elevation that none before it writes.
+bool RunSession::needs_relief() const {
+  if (state_ && state_->has(field::elevation)) return false;
+  for (int at = first_; at <= last_; ++at) {
+    const StageInfo& info = pipeline_.stages()[at]->info();
+    if (lists(info.reads, field::elevation)) return true;
+    if (lists(info.writes, field::elevation)) return false;
+  }
+  return false;
+}
+
+/// The sphere on which the first stage starts from the seed alone.
+void RunSession::begin_with_bare_planet() {
+  constexpr GridSize kDefault{4096, 2048};
+  const auto [nx, ny] = settings_.grid_is_automatic() ? kDefault : parse_grid_size(settings_.grid);
+  settings_.grid = fmt::format("{}x{}", nx, ny);
+  state_.emplace(std::make_shared<const Grid>(Grid::sphere(nx, ny, planet_.figure())));
+  folder_.check_writable(prediction().disk_bytes);
+}
+
 void RunSession::read_initial_relief() {
-  const bool wanted =
-      !state_ || (!state_->has(field::elevation) && is_still_read(field::elevation));
-  if (!wanted) return;
   if (settings_.dem_file.empty()) {
-    throw ConfigurationError(
-        "this version starts from a relief: give one with --dem FILE[:VARIABLE], a NetCDF file of "
-        "elevations");
+    throw ConfigurationError(fmt::format(
+        "{} needs a relief to start from: give one with --dem FILE[:VARIABLE], a NetCDF file of "
+        "elevations, or start with {}",
+        name_of(first_), name_of(0)));
   }
   Relief relief = read_relief(settings_.dem_variable.empty()
                                   ? settings_.dem_file

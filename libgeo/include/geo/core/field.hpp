@@ -51,6 +51,15 @@ struct Field : FieldSpec {
 
 /// The vocabulary: every field that any stage may read or write.
 namespace field {
+extern const Field<std::int16_t> plate_id;
+extern const Field<float> continental_fraction, plate_velocity_east, plate_velocity_north;
+extern const Field<std::int8_t> boundary_type;
+extern const Field<float> boundary_strength, crust_age;
+extern const Field<std::int8_t> orogeny_type;
+extern const Field<float> heat_anomaly;
+extern const Field<float> convergent_deformation, divergent_deformation, transform_deformation;
+extern const Field<float> lithospheric_weakness, crust_thickness, crust_density;
+extern const Field<std::int8_t> rock_type;
 extern const Field<float> elevation;
 extern const Field<float> uplift_rate, erosion_rate, erodibility;
 extern const Field<double> drainage_area;
@@ -69,6 +78,16 @@ std::span<const FieldSpec* const> all();
 /// The row of that name, or nullptr.
 const FieldSpec* find(std::string_view name);
 }  // namespace field
+
+/// What the nearest plates do to each other.
+enum class BoundaryType : std::int8_t { interior, convergent, divergent, transform };
+
+/// Mountain building at a convergent boundary: ocean under continent, or continent against
+/// continent.
+enum class OrogenyType : std::int8_t { none, andean, himalayan };
+
+/// What the ground is made of, as far as rivers feel it.
+enum class RockType : std::int8_t { basalt, schist, granite, quartzite, sandstone, limestone };
 
 /// Biomes 0..11 (Whittaker 1975), colours aside.
 enum class Biome : std::int8_t {

@@ -79,6 +79,9 @@ class RunSession {
   void go_on_from(const std::string& before);
   void keep_earlier_stages(const std::string& before, int old_begin);
   void load_complete_stages();
+  [[nodiscard]] int first_stage_of_input() const;
+  [[nodiscard]] bool needs_relief() const;
+  void begin_with_bare_planet();
   void read_initial_relief();
   void read_given_fields();
   [[nodiscard]] int count_complete_stages() const;
