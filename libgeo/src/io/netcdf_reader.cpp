@@ -119,16 +119,24 @@ nc::File open_input(const std::filesystem::path& path) {
 }
 
 Snapshot read_netcdf(const std::filesystem::path& path) {
-  return read_stage_file(path, [](const nc::File& file) {
+  return read_netcdf(path, [](const FieldSpec&) { return true; });
+}
+
+Snapshot read_netcdf(const std::filesystem::path& path,
+                     const std::function<bool(const FieldSpec&)>& wanted) {
+  return read_stage_file(path, [&](const nc::File& file) {
     Snapshot snapshot;
+    bool holds_fields = false;
     snapshot.grid = std::make_shared<const Grid>(read_grid(file));
     snapshot.stage = required_text(file, "terrane_stage");
     for (int variable = 0; variable < file.variables(); ++variable) {
       const FieldSpec* const spec = field::find(file.variable_name(variable));
       if (spec == nullptr) continue;
+      holds_fields = true;
+      if (!wanted(*spec)) continue;
       snapshot.fields.emplace_back(spec, read_field(file, variable, *spec, *snapshot.grid));
     }
-    if (snapshot.fields.empty()) throw InputError("holds no field that terrane knows");
+    if (!holds_fields) throw InputError("holds no field that terrane knows");
     return snapshot;
   });
 }
