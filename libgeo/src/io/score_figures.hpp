@@ -12,5 +12,10 @@ using Figures = std::map<std::string, double>;
 
 // Each measures what the fields of the state allow, on the whole planet.
 void measure_relief(const State& state, Figures& figures);
+void measure_crust(const State& state, Figures& figures);
+void measure_plates(const State& state, Figures& figures);
+void measure_climate(const State& state, Figures& figures);
+void measure_life(const State& state, Figures& figures);
+void measure_rivers(const State& state, Figures& figures);
 
 }  // namespace geo::io

@@ -1,4 +1,4 @@
-// Figures of the relief: hypsometry.
+// Figures of the relief: hypsometry and spectrum.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +7,7 @@
 
 #include "geo/kernels/hypsometry_figures.hpp"
 #include "geo/kernels/quantiles.hpp"
+#include "geo/kernels/spectrum.hpp"
 #include "score_figures.hpp"
 #include "score_grid.hpp"
 
@@ -40,6 +41,16 @@ void measure_shares(const CoarseField& relief, Figures& figures) {
   }
 }
 
+void measure_spectrum(const State& state, Figures& figures) {
+  // Continents themselves are too few for a law; finer relief than 200 km depends on the grid.
+  constexpr int kFirst = 3, kLast = 96;
+  constexpr double kStepDeg = 0.5;
+  const CoarseField relief = coarsen(state, field::elevation, kStepDeg);
+  if (relief.grid->ny() < 2 * kLast) return;
+  figures["spectral_slope"] =
+      spectral_slope(harmonic_power(*relief.grid, relief.values, kLast), kFirst, kLast);
+}
+
 }  // namespace
 
 void measure_relief(const State& state, Figures& figures) {
@@ -57,6 +68,7 @@ void measure_relief(const State& state, Figures& figures) {
   figures["land_mode"] = modes.land_m;
   figures["antimode"] = modes.antimode_m;
   measure_shares(relief, figures);
+  measure_spectrum(state, figures);
 }
 
 }  // namespace geo::io

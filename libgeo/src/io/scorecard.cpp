@@ -81,7 +81,10 @@ Scorecard score_planet(const State& state) {
     throw InputError("scorecard: the grid covers a part of a planet, must be the whole");
   }
   Figures figures;
-  measure_relief(state, figures);
+  for (const auto measure : {measure_relief, measure_crust, measure_plates, measure_climate,
+                             measure_life, measure_rivers}) {
+    measure(state, figures);
+  }
 
   Scorecard card;
   Reasons reasons;
