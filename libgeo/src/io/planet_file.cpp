@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <optional>
 #include <system_error>
 
 #include "geo/core/error.hpp"
@@ -18,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// "03-erosion.nc" and the like, the last stage first.
+/// "03-erosion.nc" and the like, in the order of the stages.
 std::vector<fs::path> stage_files(const fs::path& folder) {
   std::vector<fs::path> files;
   std::error_code error;
@@ -33,7 +32,7 @@ std::vector<fs::path> stage_files(const fs::path& folder) {
     }
   }
   if (error) throw IoError(fmt::format("{}: could not read: {}", folder.string(), error.message()));
-  std::sort(files.rbegin(), files.rend());
+  std::sort(files.begin(), files.end());
   return files;
 }
 
@@ -53,7 +52,7 @@ State read_stage(const fs::path& path, std::span<const FieldSpec* const> wanted)
   const Snapshot snapshot =
       read_netcdf(path, [&](const FieldSpec& spec) { return is_wanted(spec, wanted); });
   State state(snapshot.grid);
-  for (const auto& [spec, values] : snapshot.fields) state.set(*spec, *values);
+  for (const auto& [spec, values] : snapshot.fields) state.share(*spec, values);
   return state;
 }
 
@@ -67,6 +66,20 @@ void require_whole_planet(const Grid& grid, const std::string& place) {
 
 }  // namespace
 
+State read_planet(std::span<const fs::path> stage_files,
+                  std::span<const FieldSpec* const> wanted) {
+  if (stage_files.empty()) throw InputError("the run holds no complete stage");
+  State state(read_netcdf(stage_files.front(), [](const FieldSpec&) { return false; }).grid);
+  for (auto file = stage_files.rbegin(); file != stage_files.rend(); ++file) {
+    const Snapshot snapshot = read_netcdf(*file, [&](const FieldSpec& spec) {
+      return is_wanted(spec, wanted) && !state.has(spec);
+    });
+    if (!same_cells(*snapshot.grid, state.grid())) continue;
+    for (const auto& [spec, values] : snapshot.fields) state.share(*spec, values);
+  }
+  return state;
+}
+
 State read_planet(const fs::path& folder, std::span<const FieldSpec* const> wanted) {
   const auto files = stage_files(folder);
   if (files.empty()) {
@@ -75,15 +88,7 @@ State read_planet(const fs::path& folder, std::span<const FieldSpec* const> want
         "file",
         folder.string()));
   }
-  // The first stage's grid is the planet's.
-  std::optional<State> state(read_netcdf(files.back(), [](const auto&) { return false; }).grid);
-  for (const fs::path& file : files) {
-    const Snapshot snapshot = read_netcdf(
-        file, [&](const FieldSpec& spec) { return is_wanted(spec, wanted) && !state->has(spec); });
-    if (!same_cells(*snapshot.grid, state->grid())) continue;
-    for (const auto& [spec, values] : snapshot.fields) state->set(*spec, *values);
-  }
-  return std::move(*state);
+  return read_planet(files, wanted);
 }
 
 State read_planet_or_relief(const std::string& place, std::span<const FieldSpec* const> wanted) {

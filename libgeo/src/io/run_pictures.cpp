@@ -9,27 +9,34 @@
 #include "geo/io/config.hpp"
 #include "geo/io/manifest.hpp"
 #include "geo/io/maps.hpp"
+#include "geo/io/planet_file.hpp"
 #include "geo/io/report.hpp"
-#include "geo/io/stage_file.hpp"
+#include "geo/io/scorecard.hpp"
+#include "manifest_events.hpp"
 
 namespace geo::io {
 namespace {
 
-/// The fields of all complete stages together: where two wrote the same, the later one's.
+/// The fields of all complete stages together that pictures and scorecard are made from: where two
+/// stages wrote the same, the later one's.
 State final_state(const RunFolder& folder, const Manifest& manifest) {
-  std::optional<State> state;
+  std::vector<std::filesystem::path> files;
   for (const StageRecord& stage : manifest.stages) {
     for (const std::string& file : stage.files) {
-      if (std::filesystem::path(file).extension() != ".nc") continue;
-      const Snapshot snapshot = read_netcdf(folder.path() / file);
-      if (!state) state.emplace(snapshot.grid);
-      for (const auto& [spec, values] : snapshot.fields) state->set(*spec, *values);
+      if (std::filesystem::path(file).extension() == ".nc") files.push_back(folder.path() / file);
     }
   }
-  if (!state) {
+  if (files.empty()) {
     throw InputError(fmt::format("{}: holds no complete stage to draw", folder.path().string()));
   }
-  return std::move(*state);
+  auto wanted = map_fields();
+  for (const FieldSpec* spec : scorecard_fields()) wanted.push_back(spec);
+  return read_planet(files, wanted);
+}
+
+std::optional<Scorecard> scorecard_of(const State& state) {
+  if (state.grid().topology() != Topology::sphere) return {};
+  return score_planet(state);
 }
 
 }  // namespace
@@ -41,7 +48,9 @@ std::vector<std::filesystem::path> draw_run(const RunFolder& folder, int map_wid
   Report report{.title = fmt::format("terrane: planet of seed {}", manifest.seed),
                 .introduction = fmt::format("{} x {} cells.", state.grid().nx(), state.grid().ny()),
                 .maps = draw_map_files(state, folder.maps(), map_width_px, note),
-                .fields = summarise_fields(state),
+                .scorecard = scorecard_of(state),
+                .events = read_events(folder.manifest()),
+                .fields = field_figures(manifest),
                 .parameters = read_text(folder.config()),
                 .provenance = {{"version", manifest.version},
                                {"commit", manifest.commit},

@@ -75,7 +75,9 @@ void measure_crust_and_relief(const CoarseField& crust, const CoarseField& relie
   figures["land_thickness"] =
       mean_or_nan(grid, thickness, mask_where(cells, [&](std::size_t c) { return z[c] >= 0.0F; })) /
       1000.0;
-  figures["thickness_slope"] = area_regression_slope(grid, thickness, z);
+  figures["thickness_slope"] = area_regression_slope(
+      grid, thickness, z,
+      mask_where(cells, [&](std::size_t c) { return thickness[c] > kContinentalM; }));
   const auto slope_between = [&](float low_m, float high_m) {
     return area_regression_slope(grid, thickness, z, mask_where(cells, [&](std::size_t c) {
                                    return z[c] >= 0.0F && thickness[c] >= low_m &&

@@ -8,9 +8,13 @@
 
 namespace geo::io {
 
-/// The wanted fields of a finished planet from the stage files of a run's folder: where several
-/// stages wrote the same, the last one's; files on another grid (islands) are passed over. Absent
-/// fields stay absent. Throws InputError when the folder holds no stage file.
+/// The wanted fields of a finished planet from the stage files of a run, in the order of the
+/// stages: where several wrote the same, the last one's; files on another grid than the first's
+/// (islands) are passed over. Absent fields stay absent. Throws InputError without any file.
+State read_planet(std::span<const std::filesystem::path> stage_files,
+                  std::span<const FieldSpec* const> wanted);
+
+/// The same from all stage files of a run's folder. Throws InputError when it holds none.
 State read_planet(const std::filesystem::path& folder, std::span<const FieldSpec* const> wanted);
 
 /// The same from what a user names: a run's folder, one stage file, or any lat-lon elevation NetCDF

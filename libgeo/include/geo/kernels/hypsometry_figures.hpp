@@ -32,7 +32,7 @@ struct ElevationModes {
 
 /// Modes of the density of area over elevation. Ocean and antimode: bins of 25 m smoothed by a
 /// Gaussian of 150 m, the highest below 1000 m of depth (shelves are drowned land) and the lowest
-/// between that and the sea surface.
+/// between that and the sea surface, the deepest of equals.
 /// Land: centre of the fullest of the bins of 50 m above zero, each blended 1:2:1 with its
 /// neighbours. NaN where there is no land or no deep sea. Cost: linear.
 ElevationModes elevation_modes(const Grid& grid, std::span<const float> elevation_m);
