@@ -19,12 +19,12 @@ struct Drainage {
 /// receivers. Sea cells end ways. Throws Bug on a cycle. Cost: linear.
 std::vector<float> longest_upstream_m(const Grid& grid, const Drainage& drainage);
 
-/// Hack's (1957) exponent h of L ~ A^h over the basins that drain at least `least_area_m2`, each
+/// Exponent h of L ~ A^h (Hack 1957) over the basins that drain at least `least_area_m2`, each
 /// once, at its mouth (the last land cell), by least squares in logarithms. NaN when there are
 /// fewer than ten.
 double hack_exponent(const Grid& grid, const Drainage& drainage, double least_area_m2);
 
-/// Horton's (1945) ratios from one Strahler order to the next.
+/// Ratios (Horton 1945) from one Strahler order to the next.
 struct HortonRatios {
   double bifurcation, length, area;
 };
