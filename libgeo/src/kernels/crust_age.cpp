@@ -15,10 +15,13 @@ struct RidgePoint {
 
 /// Time against the straight flight: floor moves along the spreading direction; what lies aside
 /// was made by another part of the ridge, or before this one was there.
-double detour(const RidgePoint& ridge, const Vector3& step, double chord2) {
+double detour(const RidgePoint& ridge, const Vector3& here) {
   constexpr double kAside = 0.4;
-  const double along = std::max(0.0, dot(ridge.away, step));
-  return 1.0 / (kAside + (1.0 - kAside) * along * along / chord2);
+  const Vector3 heading = tangent(here, ridge.position);
+  const double size2 = dot(heading, heading);
+  if (size2 <= 0.0) return 1.0;
+  const double along = std::max(0.0, dot(ridge.away, heading));
+  return 1.0 / (kAside + (1.0 - kAside) * along * along / size2);
 }
 
 }  // namespace
@@ -44,11 +47,10 @@ std::vector<float> ocean_age_myr(const CubedSphere& mesh, std::span<const std::i
     const Vector3& here = mesh.position(cell);
     double least2 = 1e30;
     for (const RidgePoint& ridge : ridges[plate[cell]]) {
-      const Vector3 step = add(here, ridge.position, -1.0);
-      const double chord2 = dot(step, step);
+      const double chord2 = std::max(0.0, 2.0 - 2.0 * dot(here, ridge.position));
       const double straight2 = chord2 * ridge.myr_per_rad * ridge.myr_per_rad;
       if (straight2 >= least2) continue;
-      const double factor = chord2 > 0.0 ? detour(ridge, step, chord2) : 1.0;
+      const double factor = detour(ridge, here);
       least2 = std::min(least2, straight2 * factor * factor);
     }
     const double time = std::sqrt(least2);

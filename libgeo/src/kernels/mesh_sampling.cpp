@@ -6,7 +6,7 @@ namespace geo {
 
 MeshStencil stencil_at(const CubedSphere& mesh, const Vector3& unit) {
   // The weight falls to zero, with zero slope, before the next ring of cells begins.
-  constexpr double kReach = 1.3;  // cells
+  constexpr double kReach = 1.2;  // cells
   const double scale = 1.0 / (kReach * mesh.spacing());
   MeshStencil stencil;
   stencil.cell[0] = mesh.locate(unit);

@@ -11,7 +11,7 @@ namespace geo {
 /// How plates are drawn from a seed (Tectonica blueprint, section 2.2).
 struct PlateGrowth {
   std::int64_t count = 15;
-  double speed_cm_yr = 5.0;        ///< middle of the plates' speeds
+  double speed_cm_yr = 5.7;        ///< middle of the plates' speeds
   double mantle_heat = 0.5;        ///< 0 to 1
   double size_spread = 1.1;        ///< standard deviation of ln(size bias)
   double roughness = 1.0;          ///< of the growth's cost

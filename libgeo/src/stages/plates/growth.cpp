@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "geo/core/error.hpp"
 #include "geo/core/random.hpp"
 #include "geo/kernels/continents.hpp"
 #include "geo/kernels/crust_age.hpp"
@@ -24,7 +25,7 @@ namespace geo {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr int kMeshEdge = 256;  // about 36 km on Earth
+constexpr int kMeshEdge = 160;  // about 58 km on Earth
 
 double smooth_step(double from, double to, double x) {
   const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
@@ -283,7 +284,7 @@ class PlatesOnGrid {
 
   /// Continents that grew from cratons: their edge is where the potential with its noise covers the
   /// wanted share; their margin falls off with the distance from it.
-  void draw_cratons(std::span<const std::int16_t> plate) const {
+  void draw_cratons() const {
     std::vector<float> potential(grid_.size());
     const auto& mesh = grown_.mesh();
     const double frequency = radius_km_ / p_.coast_wavelength_km;
@@ -317,7 +318,6 @@ class PlatesOnGrid {
             static_cast<float>(smooth_step(-0.5 * width_km, 0.5 * width_km, inland_km));
       }
     }
-    (void)plate;
   }
 
   /// Continents that are whole plates.
@@ -418,6 +418,9 @@ void report(const GrownPlates& grown, double radius_km, Budget& budget) {
 }  // namespace
 
 void grow(const PlatesParameters& parameters, StageIo& io, Context& context) {
+  if (io.grid().topology() != Topology::sphere) {
+    throw InputError("plates: the grid must be a whole sphere");
+  }
   const double radius_km = 1e-3 * io.grid().figure().radius_m;
   const GrownPlates grown(parameters, radius_km, context.seed);
   context.advance(0.4);
@@ -425,7 +428,7 @@ void grow(const PlatesParameters& parameters, StageIo& io, Context& context) {
   on_grid.draw(io);
   context.advance(0.7);
   if (parameters.continents == "cratons") {
-    on_grid.draw_cratons(io.write(field::plate_id));
+    on_grid.draw_cratons();
   } else {
     on_grid.draw_plates(io.write(field::plate_id), 1.0 - context.planet.ocean_fraction);
   }
