@@ -318,6 +318,13 @@ class PlatesOnGrid {
             static_cast<float>(smooth_step(-0.5 * width_km, 0.5 * width_km, inland_km));
       }
     }
+    // Distances to a frayed edge are creased; margins are not.
+    constexpr double kCreases_m = 30e3;
+    smooth(grid_, fraction_, kCreases_m);
+#pragma omp parallel for schedule(static)
+    for (Index cell = 0; cell < grid_.size(); ++cell) {
+      fraction_[cell] = std::clamp(fraction_[cell], 0.0F, 1.0F);
+    }
   }
 
   /// Continents that are whole plates.
