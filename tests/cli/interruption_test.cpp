@@ -164,6 +164,22 @@ TEST_F(Interruption, SignalDuringAStageStopsIt) {
   EXPECT_TRUE(stages_of(folder).empty());
 }
 
+TEST_F(Interruption, SecondRunKeepsOutOfTheFolderOfTheFirst) {
+  const fs::path folder = folder_ / "shared";
+  std::vector<std::string> arguments = run_into(folder);
+  arguments.insert(arguments.end(), {"--set", "erosion.steps=1000000"});
+  Running first(Call{.arguments = arguments, .environment = {}, .working_folder = {}});
+  ASSERT_TRUE(first.until([&] { return fs::exists(folder / "config.toml"); }));
+  arguments.emplace_back("--overwrite");
+  const Outcome second = terrane(arguments);
+  EXPECT_EQ(second.code, 4);
+  EXPECT_THAT(second.err, HasSubstr("another run is at work in this folder"));
+  first.send(SIGKILL);
+  first.finish();
+  arguments.insert(arguments.end(), {"--set", "erosion.steps=1"});
+  EXPECT_EQ(terrane(arguments).code, 0);
+}
+
 TEST_F(Interruption, DamagedStageIsComputedAgain) {
   for (const std::string damage : {"cut", "changed", "gone"}) {
     SCOPED_TRACE(damage);

@@ -11,7 +11,7 @@
 #include "geo/core/random.hpp"
 #include "geo/kernels/drainage_figures.hpp"
 #include "geo/kernels/hypsometry_figures.hpp"
-#include "geo/kernels/plate_boundaries.hpp"
+#include "geo/kernels/plate_figures.hpp"
 #include "geo/kernels/regression.hpp"
 #include "geo/kernels/spectrum.hpp"
 #include "geo/kernels/zonal_means.hpp"
@@ -168,8 +168,8 @@ struct TwoPlates {
   std::vector<float> continent, east, north;
 };
 
-TEST(PlateBoundaries, AGreatCircleHasItsLengthInWhateverDirection) {
-  const RandomStream random(7, "plate_boundaries_test");
+TEST(PlateFigures, AGreatCircleHasItsLengthInWhateverDirection) {
+  const RandomStream random(7, "plate_figures_test");
   for (const int nx : {360, 720, 1440}) {
     const Grid grid = Grid::sphere(nx, nx / 2);
     const double length_m = 2.0 * kPi * grid.figure().radius_m;
@@ -188,7 +188,7 @@ TEST(PlateBoundaries, AGreatCircleHasItsLengthInWhateverDirection) {
   }
 }
 
-TEST(PlateBoundaries, OpeningIsTheRelativeVelocityAcross) {
+TEST(PlateFigures, OpeningIsTheRelativeVelocityAcross) {
   // The northern half turns about the x axis: across the equator its velocity is -w sin(longitude),
   // so where it parts is as long as where it closes. Half a circle has a mean sine of 2 / pi.
   const Grid grid = Grid::sphere(720, 360);
@@ -207,7 +207,7 @@ TEST(PlateBoundaries, OpeningIsTheRelativeVelocityAcross) {
   EXPECT_NEAR(figures.opening_mm_yr[trench], -figures.opening_mm_yr[ridge], 0.7);
 }
 
-TEST(PlateBoundaries, ContinentsOnBothSidesMakeCollisionsAndRifts) {
+TEST(PlateFigures, ContinentsOnBothSidesMakeCollisionsAndRifts) {
   const Grid grid = Grid::sphere(360, 180);
   TwoPlates plates(grid, {0.0, 1.0, 0.0}, {0.0, 0.0, 0.0}, 1);
   const auto longest = [&] {
@@ -224,7 +224,7 @@ TEST(PlateBoundaries, ContinentsOnBothSidesMakeCollisionsAndRifts) {
   EXPECT_EQ(longest(), static_cast<int>(BoundaryKind::continental_rift));
 }
 
-TEST(PlateBoundaries, SharesOfPlatesAreTheirAreas) {
+TEST(PlateFigures, SharesOfPlatesAreTheirAreas) {
   const Grid grid = Grid::sphere(360, 180);
   const auto plate = field_of(grid, [](auto r) -> std::int16_t { return r[2] > 0.5 ? 4 : 9; });
   const auto shares = plate_shares(grid, plate);
@@ -233,7 +233,7 @@ TEST(PlateBoundaries, SharesOfPlatesAreTheirAreas) {
   EXPECT_NEAR(shares[1], 0.25, 1e-12);
 }
 
-TEST(PlateBoundaries, ARigidlyTurningPlanetRestsWithoutNetRotation) {
+TEST(PlateFigures, ARigidlyTurningPlanetRestsWithoutNetRotation) {
   const Grid grid = Grid::sphere(360, 180);
   TwoPlates all(grid, {0.0, 0.0, 1.0}, {20.0, -30.0, 10.0}, 0);
   TwoPlates rest(grid, {0.0, 0.0, -1.0}, {20.0, -30.0, 10.0}, 0);

@@ -1,6 +1,8 @@
 #include "geo/io/run_folder.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -45,6 +47,20 @@ bool is_stage_file(const fs::path& path) {
 
 RunFolder::RunFolder(fs::path path) : path_(std::move(path)) {}
 
+RunFolder::~RunFolder() {
+  if (locked_ >= 0) ::close(locked_);
+}
+
+/// The kernel drops the lock with the process, so that a killed run leaves none behind. A file
+/// system without locks is used without.
+void RunFolder::lock() {
+  if (locked_ >= 0) return;
+  locked_ = ::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (locked_ >= 0 && ::flock(locked_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    refuse(path_, "another run is at work in this folder: wait for it or choose another");
+  }
+}
+
 fs::path RunFolder::stage_file(int number, std::string_view stage,
                                std::string_view extension) const {
   return path_ / fmt::format("{:02}-{}{}", number, stage, extension);
@@ -80,10 +96,11 @@ void RunFolder::check_writable(double bytes) const {
   }
 }
 
-void RunFolder::open() const {
+void RunFolder::open() {
   std::error_code error;
   fs::create_directories(path_, error);
   if (error) refuse(path_, "could not make the folder: " + error.message());
+  lock();
   remove_leftovers(path_);
   if (fs::is_directory(maps(), error)) remove_leftovers(maps());
 }

@@ -1,7 +1,7 @@
 // Figures of plates: sizes, speeds, boundaries.
 #include <numeric>
 
-#include "geo/kernels/plate_boundaries.hpp"
+#include "geo/kernels/plate_figures.hpp"
 #include "score_figures.hpp"
 
 namespace geo::io {

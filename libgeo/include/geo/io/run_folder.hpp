@@ -10,6 +10,9 @@ namespace geo::io {
 class RunFolder {
  public:
   explicit RunFolder(std::filesystem::path path);
+  ~RunFolder();
+  RunFolder(const RunFolder&) = delete;
+  RunFolder& operator=(const RunFolder&) = delete;
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   [[nodiscard]] std::filesystem::path config() const { return path_ / "config.toml"; }
@@ -26,15 +29,19 @@ class RunFolder {
   /// Checks that the folder is there or can be made, that it can be written, and that the disk has
   /// room for `bytes`. Changes nothing. Throws IoError.
   void check_writable(double bytes) const;
-  /// Makes the folder and clears what a killed run left half-written. Throws IoError.
-  void open() const;
+  /// Makes the folder, keeps other runs out of it until this object ends, and clears what a killed
+  /// run left half-written. Throws IoError, also when another run is at work in it.
+  void open();
   /// Removes the files of one stage. Throws IoError.
   void remove_stage(int number, std::string_view stage) const;
   /// Removes what is made from all stages together: collection, maps, report.
   void remove_summaries() const;
 
  private:
+  void lock();
+
   std::filesystem::path path_;
+  int locked_ = -1;  // descriptor of the folder while it is ours
 };
 
 }  // namespace geo::io

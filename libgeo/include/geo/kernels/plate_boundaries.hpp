@@ -1,61 +1,54 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "geo/core/grid.hpp"
+#include "geo/core/field.hpp"
+#include "geo/core/vector3.hpp"
+#include "geo/kernels/cubed_sphere.hpp"
 
 namespace geo {
 
-/// Kinds of plate boundary as Bird (2003) tells them apart; his ocean-continent and oceanic
-/// convergence are one here.
-enum class BoundaryKind : int {
-  ocean_ridge,
-  continental_rift,
-  ocean_transform,
-  continental_transform,
-  subduction,  ///< convergent with ocean floor on at least one side
-  collision,   ///< convergent between continents
+/// Relative motion across a boundary, mm/yr; of closing and opening one is zero.
+struct RelativeMotion {
+  double closing, opening, shear;
 };
-inline constexpr int kBoundaryKinds = 6;
+/// Motion of `other` as seen from `own`, split along the unit tangent `towards` that points from
+/// one to the other.
+[[nodiscard]] RelativeMotion relative_motion(const Vector3& own_mm_yr, const Vector3& other_mm_yr,
+                                             const Vector3& towards, const Vector3& at);
 
-/// Fields of plates, one value per cell.
-struct PlateFields {
-  std::span<const std::int16_t> plate_id;
-  std::span<const std::int8_t> boundary_type;  ///< of cells near boundaries, else interior
-  std::span<const float> continental_fraction;
-  std::span<const float> velocity_east_mm_yr, velocity_north_mm_yr;
-};
+/// The table of Tectonica blueprint 2.4, with scale = max(1.2 cm/yr, 1.25 plate speed):
+/// convergent if closing > 0.14 scale, >= 0.95 opening and >= 0.75 shear; divergent likewise;
+/// transform if shear > 0.18 scale; else interior.
+[[nodiscard]] BoundaryType classify(const RelativeMotion& motion, double plate_speed_cm_yr);
 
-struct BoundaryFigures {
-  std::array<double, kBoundaryKinds> length_m{};
-  /// Mean speed at which the plates part, across the boundary and by its length; negative where
-  /// they approach. 0 where there is no such boundary.
-  std::array<double, kBoundaryKinds> opening_mm_yr{};
-  double untyped_m = 0.0;  ///< where no cell nearby has a boundary type
-
-  [[nodiscard]] double total_m() const;
+/// A cell of the mesh that touches another plate.
+struct BoundaryPoint {
+  std::int32_t cell;
+  std::int16_t plate, other;
+  Vector3 towards;  ///< tangent to the sphere, normal to the boundary, to the other plate
+  RelativeMotion motion;
+  BoundaryType type;
+  double strength;  ///< dominant component over the largest on the planet, 0 to 1
 };
 
-/// Lengths of plate boundaries on the whole planet. A raster outline is a staircase, too long by up
-/// to 41 %, and finer rasters show more wiggles; so plates are looked at in cells of half a degree
-/// (the step of Bird's digitised boundaries; their own where they are coarser), and the length is
-/// the total variation of each plate's indicator, smoothed 1:2:1 both ways,
-///   L = 1/2 sum_p integral |grad 1_p| dA,
-/// within 2.5 % of the truth for a straight line in any direction. Type and continental crust come
-/// from the cells of the same neighbourhood, the rate from the relative velocity of the two plates
-/// along the gradient. Shapes must fit the grid (InputError). Cost: linear.
-BoundaryFigures measure_boundaries(const Grid& grid, const PlateFields& plates);
+/// All boundary cells of a mesh, by cell. The boundary's direction is taken over about
+/// `smoothing_km`, and so is the motion of each pair of plates, so that the steps of the mesh do
+/// not turn a trench into a chain of transforms.
+std::vector<BoundaryPoint> find_boundaries(const CubedSphere& mesh,
+                                           std::span<const std::int16_t> plate,
+                                           std::span<const Vector3> rotation_rad_myr,
+                                           double plate_speed_cm_yr, double smoothing_km,
+                                           double radius_km);
 
-/// Shares of the area that the plates cover, the largest first.
-std::vector<double> plate_shares(const Grid& grid, std::span<const std::int16_t> plate_id);
-
-/// Root mean square speed over the planet in the frame in which the surface has no net rotation:
-///   W = (3 / 8 pi) integral r x v dOmega, v' = v - W x r   (Solomon & Sleep 1974).
-/// Velocities in mm/yr, one per cell of a sphere.
-double speed_without_net_rotation(const Grid& grid, std::span<const float> velocity_east,
-                                  std::span<const float> velocity_north);
+/// The nearest of some cells of a mesh to every cell, by great circle.
+struct NearestCells {
+  std::vector<std::int32_t> source;  ///< position in `sources`; -1 beyond the reach
+  std::vector<float> angle;          ///< radians
+};
+NearestCells nearest_cells(const CubedSphere& mesh, std::span<const std::int32_t> sources,
+                           double reach_rad = 4.0);
 
 }  // namespace geo
