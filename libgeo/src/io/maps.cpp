@@ -115,7 +115,9 @@ Raster sample_extent(const FieldMap& map, const Scene& scene) {
   };
   if (map.extent == Extent::ocean_floor && scene.state.has(field::continental_fraction)) {
     const auto continent = scene.state.read(field::continental_fraction);
-    return where([=](Index i) { return continent[i] < 0.5F; });
+    // Older crust at sea is stretched continent: subduction leaves no older floor.
+    constexpr float kOldestFloorMyr = 250.0F;
+    return where([=](Index i) { return continent[i] < 0.5F && values[i] <= kOldestFloorMyr; });
   }
   if (map.extent != Extent::everywhere && scene.state.has(field::elevation)) {
     const auto elevation = scene.state.read(field::elevation);

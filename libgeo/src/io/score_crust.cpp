@@ -17,6 +17,8 @@ namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr float kContinentalM = 18000.0F;  // the least thickness of continental crust
+// Older crust at sea is stretched continent: subduction leaves no older floor.
+constexpr float kOldestFloorMyr = 250.0F;
 
 using Mask = std::vector<std::uint8_t>;
 
@@ -123,7 +125,9 @@ void measure_crust(const State& state, Figures& figures) {
   const auto age = state.read(field::crust_age);
   const auto continent = state.read(field::continental_fraction);
   std::vector<float> floor_myr(age.size());
-  for (std::size_t c = 0; c < age.size(); ++c) floor_myr[c] = continent[c] < 0.5F ? age[c] : kNaN;
+  for (std::size_t c = 0; c < age.size(); ++c) {
+    floor_myr[c] = continent[c] < 0.5F && age[c] <= kOldestFloorMyr ? age[c] : kNaN;
+  }
   const Mask floor =
       mask_where(age.size(), [&](std::size_t c) { return floor_myr[c] == floor_myr[c]; });
   const double share = area_share(grid, floor);
