@@ -43,7 +43,8 @@ struct Sources {
   }
   void propagate(const Grid& grid) { nearest_sources(grid, position, handicap_m, nearest); }
   [[nodiscard]] double distance_km(const Grid& grid, Index at) const {
-    return 1e-3 * distance_m(geo::position(grid, at), position[nearest[at]], grid.figure().radius_m);
+    return 1e-3 *
+           distance_m(geo::position(grid, at), position[nearest[at]], grid.figure().radius_m);
   }
 };
 
@@ -93,8 +94,8 @@ ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int1
     // Means of both plates over a window of constant size.
     const int column = grid.column(cell), row = grid.row(cell);
     const int rows = std::max(1, static_cast<int>(kWindow_m / grid.spacing_north_m(grid.ny() / 2)));
-    const int columns = std::clamp(static_cast<int>(kWindow_m / grid.spacing_east_m(row)), 1,
-                                   grid.nx() / 4);
+    const int columns =
+        std::clamp(static_cast<int>(kWindow_m / grid.spacing_east_m(row)), 1, grid.nx() / 4);
     const int stride = std::max(1, columns / (2 * rows));
     std::array<Side, 2> side;
     side[0].plate = plate[cell];

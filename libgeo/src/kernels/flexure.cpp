@@ -28,9 +28,8 @@ std::vector<double> compensation_degrees(const ElasticPlate& plate, int degrees)
     const double lambda = l * (l + 1.0);
     const double gravity =
         1.0 - 3.0 * plate.mantle_kg_m3 / ((2.0 * l + 1.0) * plate.mean_density_kg_m3);
-    const double stiffness =
-        (sigma * lambda * lambda * (lambda - 4.0) + tau * (lambda - 2.0)) /
-        (lambda - 1.0 + plate.poisson_ratio);
+    const double stiffness = (sigma * lambda * lambda * (lambda - 4.0) + tau * (lambda - 2.0)) /
+                             (lambda - 1.0 + plate.poisson_ratio);
     share[l] = gravity / (stiffness + gravity);
   }
   return share;

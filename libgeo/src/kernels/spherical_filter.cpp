@@ -99,7 +99,8 @@ class LegendreOrder {
     ++degree_;
     const double l = degree_, m = order_;
     const double a = std::sqrt((4.0 * l * l - 1.0) / (l * l - m * m));
-    const double b = std::sqrt(((l - 1.0) * (l - 1.0) - m * m) / (4.0 * (l - 1.0) * (l - 1.0) - 1.0));
+    const double b =
+        std::sqrt(((l - 1.0) * (l - 1.0) - m * m) / (4.0 * (l - 1.0) * (l - 1.0) - 1.0));
     for (std::size_t j = 0; j < now_.size(); ++j) {
       const double p = a * (sine_[j] * now_[j] - b * before_[j]);
       before_[j] = now_[j];

@@ -33,7 +33,10 @@ class Swell {
  public:
   Swell(std::uint64_t seed, std::string_view stream, double radius_km, double wavelength_km,
         int octaves, double gain)
-      : noise_(seed, stream), frequency_(radius_km / wavelength_km), octaves_(octaves), gain_(gain) {
+      : noise_(seed, stream),
+        frequency_(radius_km / wavelength_km),
+        octaves_(octaves),
+        gain_(gain) {
     double sum = 0.0, squares = 0.0, amplitude = 1.0;
     for (int k = 0; k < octaves; ++k, amplitude *= gain) {
       sum += amplitude;
@@ -212,9 +215,9 @@ class Isostasy {
     for (Index cell = 0; cell < grid_.size(); ++cell) {
       speed[cell] = std::hypot(east_[cell], north_[cell]);
     }
-    margins_ = convergent_margins(grid, coarse_.middle(plate_), type, strength, fraction,
-                                  coarse_.middle(age_myr_),
-                                  coarse_.middle(std::span<const float>(speed)));
+    margins_ =
+        convergent_margins(grid, coarse_.middle(plate_), type, strength, fraction,
+                           coarse_.middle(age_myr_), coarse_.middle(std::span<const float>(speed)));
   }
 
   // Step 2: cross sections of margins, old belts, broad variation.
@@ -226,8 +229,8 @@ class Isostasy {
     const Swell swell(context_.seed, "isostasy.swells", radius_km_, 2600.0, 5, 0.6);
     const Swell suture(context_.seed, "isostasy.sutures", radius_km_, 4200.0, 4, 0.5);
     const Swell worn(context_.seed, "isostasy.worn", radius_km_, 2000.0, 3, 0.6);
-    for (auto* field : {&t_.thickening, &t_.arc, &t_.trench_m, &t_.thickness_noise_km, &t_.swell_m,
-                        &t_.relict}) {
+    for (auto* field :
+         {&t_.thickening, &t_.arc, &t_.trench_m, &t_.thickness_noise_km, &t_.swell_m, &t_.relict}) {
       field->assign(grid.size(), 0.0F);
     }
 #pragma omp parallel for schedule(dynamic, 8)
@@ -241,9 +244,10 @@ class Isostasy {
         t_.relict[cell] = static_cast<float>(age * bell(suture(at), 0.0, 0.16));
         if (std::abs(margins_.across_km[cell]) > 2500.0F) continue;
         const double far = std::abs(margins_.across_km[cell]);
-        const double across = margins_.across_km[cell] + 55.0 * shift(at) * smooth_step(40, 200, far);
-        const double strength = std::clamp(
-            margins_.strength[cell] * (1.0 + 0.35 * along(at)), 0.05, 1.3);
+        const double across =
+            margins_.across_km[cell] + 55.0 * shift(at) * smooth_step(40, 200, far);
+        const double strength =
+            std::clamp(margins_.strength[cell] * (1.0 + 0.35 * along(at)), 0.05, 1.3);
         switch (margins_.kind[cell]) {
           case Convergence::oceans:
             t_.arc[cell] = static_cast<float>(island_arc(across, strength));
@@ -285,10 +289,9 @@ class Isostasy {
     const double share = p_.density.continental_crust / p_.density.mantle;
     std::vector<float> local(grid.size());
     for (Index cell = 0; cell < grid.size(); ++cell) {
-      local[cell] = static_cast<float>(
-          1e3 * share *
-          (p_.collision_km * t_.thickening[cell] + p_.relict_km * t_.relict[cell] +
-           p_.arc_km * t_.arc[cell]));
+      local[cell] = static_cast<float>(1e3 * share *
+                                       (p_.collision_km * t_.thickening[cell] +
+                                        p_.relict_km * t_.relict[cell] + p_.arc_km * t_.arc[cell]));
     }
     ElasticPlate plate = p_.plate;
     plate.thickness_m = 1e3 * p_.elastic_thickness_km;
@@ -298,7 +301,8 @@ class Isostasy {
     plate.radius_m = 1e3 * radius_km_;
     std::vector<float> flexed(local);
     flex(grid, flexed, plate);
-    for (Index cell = 0; cell < grid.size(); ++cell) t_.flexure_m[cell] = local[cell] - flexed[cell];
+    for (Index cell = 0; cell < grid.size(); ++cell)
+      t_.flexure_m[cell] = local[cell] - flexed[cell];
   }
 
   // Step 4: columns on the full grid.
@@ -341,7 +345,8 @@ class Isostasy {
           const double belt = std::clamp(static_cast<double>(thickening[i]), 0.0, 1.3);
           const double island = std::max(0.0F, arc[i]);
           const double hot = p_.heat_m * heat_[cell];
-          convergent_[cell] = static_cast<float>(std::clamp(share * belt + (1 - share) * island, 0.0, 1.0));
+          convergent_[cell] =
+              static_cast<float>(std::clamp(share * belt + (1 - share) * island, 0.0, 1.0));
           divergent_[cell] = std::clamp(divergent[i], 0.0F, 1.0F);
           transform_[cell] = std::clamp(transform[i], 0.0F, 1.0F);
           weakness_[cell] = std::clamp(weakness[i], 0.0F, 1.0F);
@@ -351,40 +356,44 @@ class Isostasy {
           if (share > 0.0 || island > 0.02) rough = land(at);
           if (share > 0.0) {
             const double fabric = belt > 0.01 || relict[i] > 0.02 ? ranges(at) : 0.0;
-            continent_km = continental_km(noise[i], belt * (1.0 + 0.16 * fabric),
-                                          relict[i] * (1.0 + 0.3 * fabric), divergent[i],
-                                          transform[i]);
+            continent_km =
+                continental_km(noise[i], belt * (1.0 + 0.16 * fabric),
+                               relict[i] * (1.0 + 0.3 * fabric), divergent[i], transform[i]);
             // Thick cratons have thick, heavy roots; belts are warm.
-            const double lithosphere = p_.lithosphere + p_.craton_compensation * craton_slope * noise[i] -
-                                       0.12 * belt;
-            const double valley =
-                divergent[i] * (-1500.0 * bell(rift[i], 0.0, 38.0) + 900.0 * bell(rift[i], 95.0, 55.0));
+            const double lithosphere =
+                p_.lithosphere + p_.craton_compensation * craton_slope * noise[i] - 0.12 * belt;
+            const double valley = divergent[i] * (-1500.0 * bell(rift[i], 0.0, 38.0) +
+                                                  900.0 * bell(rift[i], 95.0, 55.0));
             const double relief = p_.land_roughness_m * (1.0 + 3.0 * belt + 1.5 * relict[i]);
-            continent_m = datum_.loaded(datum_.dry_elevation_m(1e3 * continent_km,
-                                                               p_.density.continental_crust,
-                                                               lithosphere)) +
+            continent_m = datum_.loaded(datum_.dry_elevation_m(
+                              1e3 * continent_km, p_.density.continental_crust, lithosphere)) +
                           swell[i] + valley + relief * rough + hot * 0.6 -
                           p_.margin_tilt_m * std::exp(-inland[i] / p_.margin_tilt_km);
           }
           if (share < 1.0) {
             const double age = age_myr_[cell];
             const double sediment_m =
-                deep_sediment_m(p_.sediment, age, offshore[i]) * (1.0 - 0.6 * std::min(1.0, -trench[i] / 1500.0 > 0 ? -trench[i] / 1500.0 : 0.0));
+                deep_sediment_m(p_.sediment, age, offshore[i]) *
+                (1.0 - 0.6 * std::min(1.0, -trench[i] / 1500.0 > 0 ? -trench[i] / 1500.0 : 0.0));
             const double buried = 1.0 / (1.0 + sediment_m / 700.0);
             const double mount = std::max(0.0, mounts(at) - 1.9);
-            ocean_m = -ocean_depth_m(std::min(age, 200.0)) + datum_.rise_per_sediment() * sediment_m +
+            ocean_m = -ocean_depth_m(std::min(age, 200.0)) +
+                      datum_.rise_per_sediment() * sediment_m +
                       p_.seafloor_roughness_m * buried * hills(at) +
-                      p_.seamount_m * std::min(1.5, mount) + hot * (1.0 - 0.3 * share) - 0.25 * p_.heat_m +
-                      island * (2600.0 + 1500.0 * rough) + trench[i];
+                      p_.seamount_m * std::min(1.5, mount) + hot * (1.0 - 0.3 * share) -
+                      0.25 * p_.heat_m + island * (2600.0 + 1500.0 * rough) + trench[i];
           }
           const double h = share;
           thickness_m_[cell] = static_cast<float>(
               1e3 * std::clamp(p_.oceanic_km + (continent_km - p_.oceanic_km) * h +
-                                   p_.arc_km * island * (1.0 - h), 3.0, 80.0));
-          density_[cell] = static_cast<float>(
-              p_.density.oceanic_crust + (p_.density.continental_crust - p_.density.oceanic_crust) * h);
-          elevation_m_[cell] = static_cast<float>(ocean_m + (continent_m - ocean_m) * h +
-                                                  (share > 0.0 ? trench[i] * 0.5 * h : 0.0) + flexure[i]);
+                                   p_.arc_km * island * (1.0 - h),
+                               3.0, 80.0));
+          density_[cell] =
+              static_cast<float>(p_.density.oceanic_crust +
+                                 (p_.density.continental_crust - p_.density.oceanic_crust) * h);
+          elevation_m_[cell] =
+              static_cast<float>(ocean_m + (continent_m - ocean_m) * h +
+                                 (share > 0.0 ? trench[i] * 0.5 * h : 0.0) + flexure[i]);
         }
       }
     }
@@ -395,7 +404,8 @@ class Isostasy {
     const CubicRows rows(coarse_.grid(), grid_);
     smooth(grid_, fraction_, 1e3 * p_.coast_smoothing_km);
     const Noise coast(context_.seed, "isostasy.coast"), crust(context_.seed, "isostasy.crust"),
-        crust_again(context_.seed, "isostasy.crust_again"), overlay(context_.seed, "isostasy.overlay");
+        crust_again(context_.seed, "isostasy.crust_again"),
+        overlay(context_.seed, "isostasy.overlay");
     const auto octave = [](const Noise& noise, const std::array<double, 3>& at, double f) {
       return noise.value(static_cast<float>(at[0] * f), static_cast<float>(at[1] * f),
                          static_cast<float>(at[2] * f));
@@ -415,7 +425,9 @@ class Isostasy {
     smooth(grid_, fraction_, kThreePasses_m);
     std::vector<float> scratch;
     for (int j = 0; j < grid_.ny(); ++j) {
-      const auto row = [&](std::span<float> field) { return field.subspan(grid_.cell(0, j), grid_.nx()); };
+      const auto row = [&](std::span<float> field) {
+        return field.subspan(grid_.cell(0, j), grid_.nx());
+      };
       rows.read(t_.convergent, j, row(convergent_), scratch);
       rows.read(t_.divergent, j, row(divergent_), scratch);
       rows.read(t_.transform, j, row(transform_), scratch);
@@ -431,11 +443,12 @@ class Isostasy {
         }
         const double share = fraction_[cell];
         if (share > 0.1) convergent_[cell] *= weakness_[cell];
-        const double noise = p_.thickness_noise_km *
-                             (octave(crust, at, 3) + 0.5 * octave(crust_again, at, 6));
+        const double noise =
+            p_.thickness_noise_km * (octave(crust, at, 3) + 0.5 * octave(crust_again, at, 6));
         const double base = p_.oceanic_km + (p_.continental_km + noise - p_.oceanic_km) * share;
-        const double change = convergent_[cell] * (p_.arc_km + (p_.collision_km - p_.arc_km) * share) -
-                              divergent_[cell] * p_.rift_km + transform_[cell] * p_.transpression_km;
+        const double change =
+            convergent_[cell] * (p_.arc_km + (p_.collision_km - p_.arc_km) * share) -
+            divergent_[cell] * p_.rift_km + transform_[cell] * p_.transpression_km;
         thickness_m_[cell] = static_cast<float>(1e3 * std::clamp(base + change, 5.0, 75.0));
       }
     }
@@ -498,7 +511,9 @@ class Isostasy {
           rock = RockType::schist;
         } else {
           const float n = strata.fbm(grid_.unit_vector(i, j), frequency, 4);
-          rock = n < -0.06F ? RockType::limestone : n < 0.06F ? RockType::sandstone : RockType::granite;
+          rock = n < -0.06F  ? RockType::limestone
+                 : n < 0.06F ? RockType::sandstone
+                             : RockType::granite;
         }
         rock_[cell] = static_cast<std::int8_t>(rock);
         const float fault = type_[cell] != 0 ? 1.5F : 1.0F;
@@ -542,7 +557,8 @@ class Isostasy {
   std::span<const std::int16_t> plate_;
   std::span<const std::int8_t> type_;
   std::span<const float> strength_, age_myr_, heat_, east_, north_;
-  std::span<float> fraction_, convergent_, divergent_, transform_, weakness_, thickness_m_, density_;
+  std::span<float> fraction_, convergent_, divergent_, transform_, weakness_, thickness_m_,
+      density_;
   std::span<std::int8_t> rock_;
   std::span<float> erodibility_, elevation_m_;
   Tectonics t_;
@@ -563,9 +579,9 @@ class IsostasyStage final : public Stage {
          &field::plate_velocity_east, &field::plate_velocity_north},
         {},
         {&field::convergent_deformation, &field::divergent_deformation,
-         &field::transform_deformation, &field::lithospheric_weakness,
-         &field::continental_fraction, &field::crust_thickness, &field::crust_density,
-         &field::rock_type, &field::erodibility, &field::elevation}};
+         &field::transform_deformation, &field::lithospheric_weakness, &field::continental_fraction,
+         &field::crust_thickness, &field::crust_density, &field::rock_type, &field::erodibility,
+         &field::elevation}};
     return kInfo;
   }
   [[nodiscard]] std::vector<Parameter> parameters() override { return parameters_.declarations(); }

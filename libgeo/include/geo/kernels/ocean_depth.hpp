@@ -41,8 +41,8 @@ inline double deep_sediment_m(const DeepSediment& s, double age_myr, double from
   const double pelagic = s.early_m * -std::expm1(-t / s.early_time_myr) + s.rate_m_myr * t;
   // Young floor has not been near a continent for long.
   const double grown = -std::expm1(-t / 40.0);
-  return pelagic + grown * s.apron_m * std::exp(-std::fmax(from_continent_km, 0.0) /
-                                                s.apron_length_km);
+  return pelagic +
+         grown * s.apron_m * std::exp(-std::fmax(from_continent_km, 0.0) / s.apron_length_km);
 }
 
 }  // namespace geo
