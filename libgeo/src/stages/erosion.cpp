@@ -52,6 +52,8 @@ std::vector<Parameter> ErosionParameters::declarations() {
            "rock uplift where plates part", "tectonica2026"),
       real("erosion.transform_uplift_mm_yr", transform_uplift_mm_yr, "mm yr-1", -100.0, 100.0,
            "rock uplift where plates shear", "tectonica2026"),
+      real("erosion.erodibility_factor", erodibility_factor, "1", 0.0, 1000.0,
+           "factor of the erodibilities that a field gives", "harel2016"),
       real("erosion.reference_cell_km", reference_cell_km, "km", 0.01, 1000.0,
            "cell size at which the erodibilities hold", "design"),
       real("erosion.subgrid_exponent", subgrid_exponent, "1", 0.0, 2.0,
@@ -311,6 +313,7 @@ class ErosionStage final : public Stage {
   [[nodiscard]] std::vector<float> resolved_erodibility(StageIo& io) const {
     const Grid& grid = io.grid();
     const std::span<const float> given = io.read_optional(field::erodibility);
+    const auto scale = static_cast<float>(parameters_.erodibility_factor);
     std::vector<float> resolved(grid.size());
 #pragma omp parallel for schedule(static)
     for (int j = 0; j < grid.ny(); ++j) {
@@ -319,7 +322,8 @@ class ErosionStage final : public Stage {
           std::pow(cell_km / parameters_.reference_cell_km, -parameters_.subgrid_exponent));
       for (Index cell = grid.cell(0, j); cell < grid.cell(0, j) + grid.nx(); ++cell) {
         resolved[cell] =
-            factor * (given.empty() ? static_cast<float>(parameters_.erodibility_yr) : given[cell]);
+            factor * (given.empty() ? static_cast<float>(parameters_.erodibility_yr)
+                                  : scale * given[cell]);
       }
     }
     return resolved;

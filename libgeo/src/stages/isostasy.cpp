@@ -239,7 +239,9 @@ class Isostasy {
         const Index cell = grid.cell(i, j);
         const auto at = grid.unit_vector(i, j);
         t_.thickness_noise_km[cell] = static_cast<float>(p_.thickness_noise_km * noise(at));
-        t_.swell_m[cell] = static_cast<float>(p_.swell_m * swell(at));
+        // Plateaus stand further above the middle of continents than basins lie below it.
+        const double up = std::exp(0.6 * swell(at)) - std::exp(0.18);
+        t_.swell_m[cell] = static_cast<float>(p_.swell_m * up / 0.8);
         const double age = smooth_step(-0.4, 1.2, worn(at));
         t_.relict[cell] = static_cast<float>(age * bell(suture(at), 0.0, 0.16));
         if (std::abs(margins_.across_km[cell]) > 2500.0F) continue;
@@ -481,7 +483,7 @@ class Isostasy {
       float& z = elevation_m_[cell];
       z -= level;
       if (!shelves || z >= 0.0F) continue;
-      const double on_shelf = smooth_step(0.5, 0.8, fraction_[cell]);
+      const double on_shelf = smooth_step(0.62, 0.9, fraction_[cell]);
       if (on_shelf <= 0.0) continue;
       const double filled = -p_.shelf_depth_m * -std::expm1(z / p_.shelf_depth_m);
       z = std::min(-1e-3F, static_cast<float>(z + on_shelf * (filled - z)));
