@@ -110,6 +110,7 @@ std::vector<float> craton_potential(const Cratons& model, const CubedSphere& mes
   const std::array<Noise, 3> bend{Noise(seed, "plates.craton_bend_x"),
                                   Noise(seed, "plates.craton_bend_y"),
                                   Noise(seed, "plates.craton_bend_z")};
+  const Noise history(seed, "plates.rifting");
   std::vector<float> potential(mesh.size());
 #pragma omp parallel for schedule(static)
   for (std::int32_t cell = 0; cell < mesh.size(); ++cell) {
@@ -126,7 +127,9 @@ std::vector<float> craton_potential(const Cratons& model, const CubedSphere& mes
       sum += std::exp(-far * far);
     }
     const double ridge_km = to_ridge.angle[cell] * model.radius_km;
-    const double opened = 6.0 * std::exp(-ridge_km / model.ridge_clearance_km);
+    // Some ridges have made oceans, others only begin to tear a continent.
+    const double begun = std::clamp(0.65 + 3.0 * history.fbm(p, 1.2, 3), 0.0, 1.0);
+    const double opened = 6.0 * begun * std::exp(-ridge_km / model.ridge_clearance_km);
     potential[cell] = static_cast<float>(std::max(-6.0, std::log(sum + 1e-9)) - opened);
   }
   return potential;

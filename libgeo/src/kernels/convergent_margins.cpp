@@ -58,13 +58,13 @@ struct Side {
 }  // namespace
 
 double andean_thickening(double across_km, double strength) {
-  const double inner = 250.0 + 250.0 * strength, outer = inner + 350.0;
+  const double inner = 250.0 + 250.0 * strength, outer = inner + 600.0;
   return std::pow(strength, 0.6) * smooth_step(50.0, 190.0, across_km) *
          (1.0 - smooth_step(inner, outer, across_km));
 }
 
 double himalayan_thickening(double across_km, double strength) {
-  const double inner = 250.0 + 600.0 * strength, outer = inner + 500.0;
+  const double inner = 250.0 + 600.0 * strength, outer = inner + 750.0;
   return std::pow(strength, 0.5) * smooth_step(-110.0, 60.0, across_km) *
          (1.0 - smooth_step(inner, outer, across_km));
 }

@@ -483,7 +483,7 @@ class Isostasy {
       float& z = elevation_m_[cell];
       z -= level;
       if (!shelves || z >= 0.0F) continue;
-      const double on_shelf = smooth_step(0.62, 0.9, fraction_[cell]);
+      const double on_shelf = smooth_step(0.7, 0.95, fraction_[cell]);
       if (on_shelf <= 0.0) continue;
       const double filled = -p_.shelf_depth_m * -std::expm1(z / p_.shelf_depth_m);
       z = std::min(-1e-3F, static_cast<float>(z + on_shelf * (filled - z)));

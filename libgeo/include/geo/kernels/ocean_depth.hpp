@@ -31,9 +31,9 @@ inline double ocean_heat_flow_mw_m2(double age_myr) {
 struct DeepSediment {
   double early_m = 250.0;
   double early_time_myr = 8.0;
-  double rate_m_myr = 4.0;
-  double apron_m = 2500.0;
-  double apron_length_km = 250.0;
+  double rate_m_myr = 4.5;
+  double apron_m = 3000.0;
+  double apron_length_km = 320.0;
 };
 
 inline double deep_sediment_m(const DeepSediment& s, double age_myr, double from_continent_km) {

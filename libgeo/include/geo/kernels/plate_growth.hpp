@@ -10,10 +10,10 @@ namespace geo {
 
 /// How plates are drawn from a seed (Tectonica blueprint, section 2.2).
 struct PlateGrowth {
-  std::int64_t count = 15;
+  std::int64_t count = 22;
   double speed_cm_yr = 5.7;        ///< middle of the plates' speeds
   double mantle_heat = 0.5;        ///< 0 to 1
-  double size_spread = 1.1;        ///< standard deviation of ln(size bias)
+  double size_spread = 1.6;        ///< standard deviation of ln(size bias)
   double roughness = 1.0;          ///< of the growth's cost
   double structure_km = 1200.0;    ///< wavelength of weak and strong zones
   double polar_resistance = 0.0;   ///< extra cost at the poles; the blueprint's is 0.1

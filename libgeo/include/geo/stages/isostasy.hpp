@@ -28,7 +28,7 @@ struct IsostasyParameters {
   double continental_km = 36.4;
   double oceanic_km = 7.0;
   double thickness_noise_km = 4.5;
-  double collision_km = 32.0;
+  double collision_km = 18.5;
   double arc_km = 13.0;
   double rift_km = 20.0;
   double transpression_km = 2.0;
@@ -36,11 +36,11 @@ struct IsostasyParameters {
   double coast_smoothing_km = 80.0;
 
   double lithosphere = 1.22;
-  double craton_compensation = 0.8;
-  double swell_m = 300.0;
+  double craton_compensation = 0.95;
+  double swell_m = 420.0;
   double margin_tilt_m = 700.0;
   double margin_tilt_km = 260.0;
-  double relict_km = 9.0;
+  double relict_km = 7.5;
   double heat_m = 700.0;
   double thermal_coefficient = 0.02;
   double shelf_depth_m = 130.0;
