@@ -13,8 +13,13 @@ std::vector<Parameter> Planet::parameters() {
            "tilt of the axis, which sets the seasons", "berger1978"),
       real("planet.pressure_bar", pressure_bar, "bar", 0.0, 100.0,
            "surface pressure of the atmosphere", "holton2013"),
+      choice("planet.sea_level", sea_level, {"fraction", "volume"},
+             "whether the sea covers a share of the area or fills its basins with a volume",
+             "cogley1984"),
       real("planet.ocean_fraction", ocean_fraction, "1", 0.0, 1.0,
            "share of the area below sea level", "cogley1984"),
+      real("planet.water_volume_km3", water_volume_km3, "km3", 1.0, 1e12,
+           "water of the sea, where planet.sea_level is volume", "cogley1984"),
   };
 }
 

@@ -12,6 +12,7 @@
 #include "geo/io/atomic_file.hpp"
 #include "geo/io/background_writer.hpp"
 #include "geo/io/build_info.hpp"
+#include "geo/io/hypsography.hpp"
 #include "geo/io/run_pictures.hpp"
 #include "geo/io/source_date.hpp"
 
@@ -142,6 +143,7 @@ void RunSession::compute(const RunEvents& events) {
   Context context;
   context.planet = planet_;
   context.seed = static_cast<std::uint64_t>(settings_.seed);
+  context.hypsography = read_hypsography(settings_.hypsography);
   context.on_progress = events.progress;
   context.stop = events.stop;
 

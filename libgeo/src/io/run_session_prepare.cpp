@@ -9,6 +9,7 @@
 #include "geo/io/build_info.hpp"
 #include "geo/io/config.hpp"
 #include "geo/io/dem.hpp"
+#include "geo/io/hypsography.hpp"
 #include "geo/io/run_session.hpp"
 #include "geo/io/source_date.hpp"
 #include "geo/kernels/quantiles.hpp"
@@ -100,6 +101,7 @@ void RunSession::prepare() {
     begin_with_bare_planet();
   }
   read_given_fields();
+  (void)read_hypsography(settings_.hypsography);  // refuses a bad one before anything is computed
   pipeline_.check(state_->present(), first_, last_);
   config_ = resolved_config();
 }

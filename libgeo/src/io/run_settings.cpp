@@ -32,6 +32,10 @@ std::vector<Parameter> RunSettings::parameters() {
            "design"),
       text("fields.uplift_rate", uplift_rate,
            "FILE[:VARIABLE] with the rock uplift of each place, as a velocity", "design"),
+      text("fields.hypsography", hypsography,
+           "what erosion.hypsometry = rank aims at: earth, earth-statistical, or a CSV file with "
+           "columns quantile,elevation_m",
+           "design"),
       flag("output.vtk", vtk, "write a VTK file beside each NetCDF file", "design"),
       flag("output.maps", maps, "draw the maps and the report", "design"),
       integer("output.map_width_px", map_width_px, "1", 300, 20000, "width of the maps in pixels",

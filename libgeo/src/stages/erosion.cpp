@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "finish_relief.hpp"
 #include "geo/kernels/depressions.hpp"
 #include "geo/kernels/diffusion.hpp"
 #include "geo/kernels/flow_graph.hpp"
@@ -67,9 +68,23 @@ std::vector<Parameter> ErosionParameters::declarations() {
            "length over which the plate's stiffness spreads the rebound", "watts2001"),
       real("erosion.rebound_time_yr", rebound_time_yr, "yr", 1.0, 1e9,
            "relaxation time of the mantle", "turcotte2002"),
+      real("erosion.noise_injection_m", noise_injection_m, "m", 0.0, 1000.0,
+           "noise added to the land after erosion", "tectonica2026"),
       real("erosion.relaxation_fraction", relaxation_fraction, "1", 0.0, 1.0,
            "share by which the land returns to its initial, isostatic elevation at the end",
            "tectonica2026"),
+      real("erosion.land_smoothing_km", land_smoothing_km, "km", 0.0, 1000.0,
+           "length over which the land is smoothed after that", "tectonica2026"),
+      choice("erosion.hypsometry", hypsometry, {"none", "power-law", "rank"},
+             "whether the relief keeps its own hypsometric curve, has its land bent to a median "
+             "height, or takes over a given curve by rank",
+             "tectonica2026"),
+      real("erosion.hypsometry_median_m", hypsometry_median_m, "m", 1.0, 20000.0,
+           "median height of land, with power-law", "cogley1984"),
+      real("erosion.hypsometry_smoothing_km", hypsometry_smoothing_km, "km", 0.0, 1000.0,
+           "length over which the bending is smoothed", "tectonica2026"),
+      real("erosion.detail_noise", detail_noise, "1", 0.0, 100.0,
+           "factor of the blueprint's terrain noise", "tectonica2026"),
   };
 }
 
@@ -148,6 +163,15 @@ class Landscape {
     rebound_m3_ += volume_since_before();
   }
 
+  /// Lets `reshape` change the relief at will, and finds land and sea again if it did.
+  template <class Reshape>
+  void book_reshaping(Reshape&& reshape) {
+    before_.assign(z_.begin(), z_.end());
+    if (!reshape()) return;
+    reshaped_m3_ += volume_since_before();
+    outlets_ = find_outlets(grid_, z_);
+  }
+
   void report(std::span<double> area_m2, std::span<Index> receiver, std::span<float> rate_m_yr,
               Budget& budget) const {
     std::copy(area_m2_.begin(), area_m2_.end(), area_m2.begin());
@@ -163,13 +187,16 @@ class Landscape {
     }
     const double stored =
         area_sum(grid_, [&](Index c) { return static_cast<double>(z_[c]) - initial_[c]; });
-    const double scale = std::max({std::abs(uplifted_m3_), std::abs(eroded_m3_), 1.0});
+    const double scale =
+        std::max({std::abs(uplifted_m3_), std::abs(eroded_m3_), std::abs(reshaped_m3_), 1.0});
     budget["rock_uplifted_m3"] = uplifted_m3_;
     budget["rock_rebound_m3"] = rebound_m3_;
     budget["rock_eroded_m3"] = eroded_m3_;
+    budget["rock_reshaped_m3"] = reshaped_m3_;
     budget["rock_stored_m3"] = stored;
     budget["rock_exported_m3"] = eroded_m3_;
-    budget["rock_closing_error"] = (uplifted_m3_ + rebound_m3_ - eroded_m3_ - stored) / scale;
+    budget["rock_closing_error"] =
+        (uplifted_m3_ + rebound_m3_ + reshaped_m3_ - eroded_m3_ - stored) / scale;
     budget["time_yr"] = time_yr;
   }
 
@@ -241,7 +268,7 @@ class Landscape {
   std::vector<float> lowered_, before_, owed_m_;
   FlowGraph graph_;
   std::vector<double> area_m2_;
-  double uplifted_m3_ = 0.0, eroded_m3_ = 0.0, rebound_m3_ = 0.0;
+  double uplifted_m3_ = 0.0, eroded_m3_ = 0.0, rebound_m3_ = 0.0, reshaped_m3_ = 0.0;
 };
 
 class ErosionStage final : public Stage {
@@ -273,7 +300,10 @@ class ErosionStage final : public Stage {
       landscape.step();
       context.advance(static_cast<double>(step + 1) / static_cast<double>(steps + 1));
     }
+    const ReliefFinish finish(parameters_, grid, context);
+    landscape.book_reshaping([&] { return finish.inject_noise(elevation); });
     landscape.relax();
+    landscape.book_reshaping([&] { return finish.reshape(elevation); });
     landscape.route();
     landscape.report(io.write(field::drainage_area), io.write(field::flow_receiver),
                      io.write(field::erosion_rate), context.budget);
@@ -321,9 +351,8 @@ class ErosionStage final : public Stage {
       const auto factor = static_cast<float>(
           std::pow(cell_km / parameters_.reference_cell_km, -parameters_.subgrid_exponent));
       for (Index cell = grid.cell(0, j); cell < grid.cell(0, j) + grid.nx(); ++cell) {
-        resolved[cell] =
-            factor * (given.empty() ? static_cast<float>(parameters_.erodibility_yr)
-                                  : scale * given[cell]);
+        resolved[cell] = factor * (given.empty() ? static_cast<float>(parameters_.erodibility_yr)
+                                                 : scale * given[cell]);
       }
     }
     return resolved;

@@ -8,8 +8,8 @@
 #include "geo/kernels/convergent_margins.hpp"
 #include "geo/kernels/cubic_rows.hpp"
 #include "geo/kernels/noise.hpp"
-#include "geo/kernels/quantiles.hpp"
 #include "geo/kernels/smoothing.hpp"
+#include "geo/stages/sea_level.hpp"
 
 namespace geo {
 namespace {
@@ -475,7 +475,7 @@ class Isostasy {
 
   // Step 5: the sea covers its share; sediment builds its margins up towards its level.
   void set_sea_level() {
-    const float level = level_for_fraction(grid_, elevation_m_, context_.planet.ocean_fraction);
+    const auto level = static_cast<float>(sea_level_m(grid_, elevation_m_, context_.planet));
     shift_m_ = level;
     const bool shelves = p_.crust == "margins" && p_.shelf_depth_m > 0.0;
 #pragma omp parallel for schedule(static)

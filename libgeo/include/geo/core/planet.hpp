@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "geo/core/grid.hpp"
@@ -14,7 +15,9 @@ struct Planet {
   double gravity_m_s2 = 9.81;
   double obliquity_deg = 23.44;
   double pressure_bar = 1.0;
+  std::string sea_level = "fraction";
   double ocean_fraction = 0.71;
+  double water_volume_km3 = 1.334e9;
 
   [[nodiscard]] Ellipsoid figure() const { return {radius_km * 1000.0, flattening}; }
   /// Declarations of the members above, section "planet".

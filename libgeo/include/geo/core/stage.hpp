@@ -27,10 +27,18 @@ struct StageInfo {
 /// Named sums that must close: rock, water. Written to the manifest.
 using Budget = std::map<std::string, double>;
 
+/// A distribution of elevations by its quantiles: `fraction` of the area below `elevation_m`, both
+/// ascending, `fraction` strictly from 0 to 1.
+struct Hypsography {
+  std::vector<double> fraction, elevation_m;
+};
+
 /// What a run gives a stage besides fields: the planet, the seed, and ways to be heard.
 struct Context {
   Planet planet;
   std::uint64_t seed = 1;
+  /// What hypsometry by rank aims at; empty unless asked for.
+  Hypsography hypsography;
   /// Called with the fraction of the stage that is done; may be empty.
   std::function<void(double fraction)> on_progress;
   /// Set by a signal handler; stages look at it between steps.

@@ -28,6 +28,7 @@ struct RunSettings {
   std::string dem_sea_level = "datum";
   std::string erodibility;  ///< FILE[:VARIABLE]
   std::string uplift_rate;  ///< FILE[:VARIABLE]
+  std::string hypsography = "earth";
 
   bool vtk = true;
   bool maps = true;

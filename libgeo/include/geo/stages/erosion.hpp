@@ -25,13 +25,19 @@ struct ErosionParameters {
   double subgrid_exponent = 0.3;
   double uplift_mm_yr = 0.0;
   std::string uplift_from = "deformation";
-  double convergent_uplift_mm_yr = 0.1;
+  double convergent_uplift_mm_yr = 0.06;
   double divergent_uplift_mm_yr = -0.02;
   double transform_uplift_mm_yr = 0.03;
   double rebound_fraction = 0.8;
   double rebound_length_km = 100.0;
   double rebound_time_yr = 1e6;
+  double noise_injection_m = 0.0;
   double relaxation_fraction = 0.0;
+  double land_smoothing_km = 0.0;
+  std::string hypsometry = "none";
+  double hypsometry_median_m = 400.0;
+  double hypsometry_smoothing_km = 31.0;
+  double detail_noise = 0.0;
 
   [[nodiscard]] std::vector<Parameter> declarations();
 };

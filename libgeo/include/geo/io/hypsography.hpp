@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+
+#include "geo/core/stage.hpp"
+
+namespace geo::io {
+
+/// A distribution of elevations: "earth" (ETOPO5), "earth-statistical" (71 % normal about -4019 m,
+/// deviation 1113 m, and 29 % about 797 m, deviation 1169 m), or a CSV file with a header line
+/// `quantile,elevation_m` and rows that ascend from quantile 0 to 1. Errors name file and line.
+/// Throws InputError, IoError.
+[[nodiscard]] Hypsography read_hypsography(const std::string& name_or_file);
+
+}  // namespace geo::io

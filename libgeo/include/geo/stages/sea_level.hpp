@@ -1,0 +1,15 @@
+#pragma once
+
+#include <span>
+
+#include "geo/core/grid.hpp"
+#include "geo/core/planet.hpp"
+
+namespace geo {
+
+/// Where the sea of a planet stands over a relief, m on its datum: at the level that covers
+/// planet.ocean_fraction of the area, or that planet.water_volume_km3 fills the basins to.
+[[nodiscard]] double sea_level_m(const Grid& grid, std::span<const float> elevation_m,
+                                 const Planet& planet);
+
+}  // namespace geo

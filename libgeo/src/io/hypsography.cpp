@@ -1,0 +1,91 @@
+#include "geo/io/hypsography.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include "embedded_data.hpp"
+#include "geo/core/error.hpp"
+#include "geo/io/config.hpp"
+
+namespace geo::io {
+namespace {
+
+/// Share of the mixture of two normal distributions below an elevation.
+double mixture_below(double elevation_m) {
+  const auto normal = [&](double mean, double deviation) {
+    return 0.5 * std::erfc((mean - elevation_m) / (deviation * std::numbers::sqrt2));
+  };
+  return 0.71 * normal(-4019.0, 1113.0) + 0.29 * normal(797.0, 1169.0);
+}
+
+Hypsography statistical_earth() {
+  constexpr int kSteps = 2000;
+  constexpr double kDeepest_m = -9000.0, kHighest_m = 6500.0;
+  const double least = mixture_below(kDeepest_m), most = mixture_below(kHighest_m);
+  Hypsography curve;
+  for (int k = 0; k <= kSteps; ++k) {
+    const double elevation_m = kDeepest_m + (kHighest_m - kDeepest_m) * k / kSteps;
+    curve.elevation_m.push_back(elevation_m);
+    curve.fraction.push_back((mixture_below(elevation_m) - least) / (most - least));
+  }
+  return curve;
+}
+
+Hypsography parse(std::string_view text, const std::string& source) {
+  Hypsography curve;
+  int number = 0;
+  const auto refuse = [&](std::string_view what) {
+    throw InputError(fmt::format("{}:{}: {}", source, number, what));
+  };
+  while (!text.empty()) {
+    ++number;
+    const auto end = text.find('\n');
+    std::string_view line = text.substr(0, end);
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    if (number == 1 && line == "quantile,elevation_m") continue;
+    if (number == 1) refuse("must begin with the line quantile,elevation_m");
+    if (line.empty() || line.starts_with('#')) continue;
+    double fraction = 0.0, elevation_m = 0.0;
+    const char* const stop = line.data() + line.size();
+    const auto [comma, error] = std::from_chars(line.data(), stop, fraction);
+    const bool pair = error == std::errc() && comma != stop && *comma == ',';
+    const auto [last, error_2] = pair ? std::from_chars(comma + 1, stop, elevation_m)
+                                      : std::from_chars_result{comma, std::errc::invalid_argument};
+    if (error_2 != std::errc() || last != stop || !std::isfinite(elevation_m)) {
+      refuse("must be two numbers, quantile,elevation_m");
+    }
+    if (curve.fraction.empty() && fraction != 0.0) refuse("the first quantile must be 0");
+    if (!curve.fraction.empty() && !(fraction > curve.fraction.back())) {
+      refuse("quantiles must ascend");
+    }
+    if (!curve.elevation_m.empty() && elevation_m < curve.elevation_m.back()) {
+      refuse("elevations must not fall");
+    }
+    curve.fraction.push_back(fraction);
+    curve.elevation_m.push_back(elevation_m);
+  }
+  if (curve.fraction.size() < 2 || curve.fraction.back() != 1.0) {
+    refuse("the last quantile must be 1");
+  }
+  return curve;
+}
+
+}  // namespace
+
+Hypsography read_hypsography(const std::string& name_or_file) {
+  if (name_or_file == "earth") return parse(embedded_file("targets/earth.csv"), "earth");
+  if (name_or_file == "earth-statistical") return statistical_earth();
+  if (!std::filesystem::exists(name_or_file)) {
+    throw InputError(fmt::format(
+        "fields.hypsography: {}: no such file; must be earth, earth-statistical or a CSV file",
+        name_or_file));
+  }
+  return parse(read_text(name_or_file), name_or_file);
+}
+
+}  // namespace geo::io
