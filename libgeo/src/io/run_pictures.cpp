@@ -15,16 +15,17 @@
 namespace geo::io {
 namespace {
 
-/// The fields of all complete stages together: where two wrote the same, the later one's.
+void add_fields(const RunFolder& folder, const StageRecord& record, std::optional<State>& state) {
+  const Snapshot snapshot = read_netcdf(folder.path() / netcdf_of(record));
+  if (!state) state.emplace(snapshot.grid);
+  for (const auto& [spec, values] : snapshot.fields) state->set(*spec, *values);
+}
+
+/// The fields of all complete stages of the planet: where two wrote the same, the later one's.
 State final_state(const RunFolder& folder, const Manifest& manifest) {
   std::optional<State> state;
-  for (const StageRecord& stage : manifest.stages) {
-    for (const std::string& file : stage.files) {
-      if (std::filesystem::path(file).extension() != ".nc") continue;
-      const Snapshot snapshot = read_netcdf(folder.path() / file);
-      if (!state) state.emplace(snapshot.grid);
-      for (const auto& [spec, values] : snapshot.fields) state->set(*spec, *values);
-    }
+  for (const StageRecord& record : manifest.stages) {
+    if (!is_island(record)) add_fields(folder, record, state);
   }
   if (!state) {
     throw InputError(fmt::format("{}: holds no complete stage to draw", folder.path().string()));
@@ -32,26 +33,51 @@ State final_state(const RunFolder& folder, const Manifest& manifest) {
   return std::move(*state);
 }
 
+State island_state(const RunFolder& folder, const StageRecord& record) {
+  std::optional<State> state;
+  add_fields(folder, record, state);
+  return std::move(*state);
+}
+
+void append(std::vector<MapFile>& maps, std::vector<MapFile> more) {
+  maps.insert(maps.end(), more.begin(), more.end());
+}
+
 }  // namespace
 
-std::vector<std::filesystem::path> draw_run(const RunFolder& folder, int map_width_px) {
+std::vector<std::filesystem::path> draw_run(const RunFolder& folder, int map_width_px,
+                                            std::string_view only_island) {
   const Manifest manifest = read_manifest(folder.manifest());
   const State state = final_state(folder, manifest);
+  const bool all = only_island.empty();
   const std::string note = fmt::format("seed {}, terrane {}", manifest.seed, manifest.version);
   Report report{.title = fmt::format("terrane: planet of seed {}", manifest.seed),
                 .introduction = fmt::format("{} x {} cells.", state.grid().nx(), state.grid().ny()),
-                .maps = draw_map_files(state, folder.maps(), map_width_px, note),
+                .maps = all ? draw_map_files(state, folder.maps(), map_width_px, note)
+                            : list_map_files(state, folder.maps(), map_width_px),
                 .fields = summarise_fields(state),
                 .parameters = read_text(folder.config()),
                 .provenance = {{"version", manifest.version},
                                {"commit", manifest.commit},
                                {"compiler", manifest.compiler},
                                {"seed", fmt::format("{}", manifest.seed)}}};
+  for (const StageRecord& record : manifest.stages) {
+    if (!is_island(record)) continue;
+    const State island = island_state(folder, record);
+    append(report.maps,
+           all || record.name == only_island
+               ? draw_island_files(island, folder.maps(), record.name, map_width_px, note)
+               : list_island_files(island, folder.maps(), record.name, map_width_px));
+  }
   if (state.has(field::elevation)) {
     report.maps.push_back(draw_hypsometry_file(state, folder.maps(), note));
   }
   std::vector<std::filesystem::path> written;
-  for (const MapFile& map : report.maps) written.push_back(map.path);
+  for (const MapFile& map : report.maps) {
+    if (std::filesystem::exists(map.path)) written.push_back(map.path);
+  }
+  std::erase_if(report.maps,
+                [](const MapFile& map) { return !std::filesystem::exists(map.path); });
   written.push_back(write_report(folder.path(), report));
   return written;
 }

@@ -54,7 +54,7 @@ std::vector<Parameter> IslandParameters::declarations() {
       real("island.channel_area_km2", channel_area_km2, "km2", 0.0, 1e8,
            "drainage area from which a channel has a stream order", "design"),
       real("island.lift_reach_km", lift_reach_km, "km", 0.1, 1000.0,
-           "how far upwind the air remembers the fine relief that lifts it", "smith2004"),
+           "how far upwind the air remembers the fine relief that lifts it", "smith1979"),
       real("island.climate_smoothing_km", climate_smoothing_km, "km", 0.0, 1000.0,
            "length over which temperature and precipitation are smoothed", "tectonica2026"),
       real("island.biome_smoothing_km", biome_smoothing_km, "km", 0.0, 1000.0,
