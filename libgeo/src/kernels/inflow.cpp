@@ -16,6 +16,7 @@ struct Stretch {
   Index first = 0;
   Index step = 1;
   int count = 0;
+  double share = 0.0;  ///< of the way from outside to inside
 };
 
 /// The rectangle of a fine grid on its map.
@@ -48,17 +49,18 @@ class Frame {
     const double dx = fine_.spacing_east_m(0), dy = fine_.step_north_m();
     if (across >= up) {
       const Index column = outside[0] < 0.0 ? 0 : fine_.nx() - 1;
-      return along((y + half_height_) / dy, reach_m / dy, fine_.ny(), column, fine_.nx());
+      return along((y + half_height_) / dy, reach_m / dy, fine_.ny(), column, fine_.nx(), t);
     }
     const Index row = outside[1] < 0.0 ? 0 : fine_.ny() - 1;
-    return along((x + half_width_) / dx, reach_m / dx, fine_.nx(), row * fine_.nx(), 1);
+    return along((x + half_width_) / dx, reach_m / dx, fine_.nx(), row * fine_.nx(), 1, t);
   }
 
  private:
-  static Stretch along(double position, double reach, int cells, Index origin, Index step) {
+  static Stretch along(double position, double reach, int cells, Index origin, Index step,
+                       double share) {
     const int first = std::clamp(static_cast<int>(std::floor(position - reach)), 0, cells - 1);
     const int last = std::clamp(static_cast<int>(std::floor(position + reach)), 0, cells - 1);
-    return {origin + first * step, step, last - first + 1};
+    return {origin + first * step, step, last - first + 1, share};
   }
   const Grid& fine_;
   EqualAreaProjection projection_;
@@ -101,7 +103,7 @@ class Discharge {
 }  // namespace
 
 void find_inflow(const PlanetCells& cells, const PlanetWater& water,
-                 std::span<const float> elevation_m, std::span<double> inflow_area_m2,
+                 std::span<float> elevation_m, std::span<double> inflow_area_m2,
                  std::span<float> inflow_m3_s) {
   const Grid& planet = cells.planet();
   const Frame frame(cells.fine());
@@ -117,7 +119,8 @@ void find_inflow(const PlanetCells& cells, const PlanetWater& water,
     const double reach_m = 0.5 * std::min(planet.spacing_east_m(j), planet.face_east_m(j));
     for (Index from = planet.cell(0, j); from < planet.cell(0, j) + planet.nx(); ++from) {
       const Index to = water.receiver[from];
-      if (to == from) continue;
+      const double area = water.drainage_area_m2[from];
+      if (to == from || area < kRiverCells * planet.area_m2(j)) continue;
       const auto start = place(from), end = place(to);
       const bool starts_inside = frame.holds(start);
       if (starts_inside == frame.holds(end)) continue;
@@ -125,7 +128,11 @@ void find_inflow(const PlanetCells& cells, const PlanetWater& water,
                                             : frame.crossing(start, end, reach_m);
       const Index lowest = lowest_land(stretch, elevation_m);
       if (lowest == kNoCell) continue;  // straight into the sea
-      const double area = water.drainage_area_m2[from], own = std::min(planet.area_m2(j), area);
+      const double own = planet.area_m2(j);
+      const double way = starts_inside ? 1.0 - stretch.share : stretch.share;
+      const double level_m = std::lerp(std::max(water.elevation_m[from], 0.0F),
+                                       std::max(water.elevation_m[to], 0.0F), way);
+      elevation_m[lowest] = std::min(elevation_m[lowest], static_cast<float>(level_m));
       if (starts_inside) {
         exits[lowest] = std::max(exits[lowest], area);
         continue;

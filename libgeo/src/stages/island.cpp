@@ -122,7 +122,7 @@ class IslandStage final : public Stage {
     const auto inflow_area = state.update(field::inflow_area);
     const auto inflow = state.update(field::inflow_discharge);
     find_inflow(cells,
-                {io.read(field::flow_receiver), io.read(field::drainage_area),
+                {planet.elevation_m, io.read(field::flow_receiver), io.read(field::drainage_area),
                  io.read(field::discharge), io.read_optional(field::lake_id)},
                 z, inflow_area, inflow);
     Bytes outlets = find_outlets(fine, z), held = outlets;

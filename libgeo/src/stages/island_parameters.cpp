@@ -19,6 +19,8 @@ std::vector<Parameter> IslandParameters::declarations() {
            "standard deviation of detail over the roughness of the planet's cells", "huang1989"),
       real("island.detail_hurst", detail_hurst, "1", 0.0, 1.0,
            "Hurst exponent of detail that follows roughness", "huang1989"),
+      real("island.least_roughness_m", least_roughness_m, "m", 0.0, 1000.0,
+           "roughness that even plains and flat shores have", "design"),
       real("island.height_amplitude", height_amplitude, "1", 0.0, 1.0,
            "amplitude of detail over height, where it follows height", "tectonica2026"),
       real("island.height_frequency", height_frequency, "1", 0.1, 1000.0,

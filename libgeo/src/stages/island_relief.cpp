@@ -20,8 +20,13 @@ void on_cells(const Grid& grid, Change&& change) {
   }
 }
 
-/// Width over which detail and corrections fade in from the edge: one planet cell.
-double seam_m(const PlanetCells& cells) { return cells.planet().face_east_m(cells.first_row()); }
+/// Width over which detail and corrections fade in from the edge, where heights are the planet's: a
+/// quarter of a planet cell, as long as that is little of the island.
+double seam_m(const PlanetCells& cells) {
+  const Grid& fine = cells.fine();
+  const double extent_m = std::min(fine.nx() * fine.spacing_east_m(0), fine.ny() * fine.step_north_m());
+  return std::min(0.25 * cells.planet().face_east_m(cells.first_row()), 0.05 * extent_m);
+}
 
 /// Detail that continues the planet's roughness, its mean over each planet cell taken out.
 void add_rough_detail(const PlanetCells& cells, std::span<const float> planet_elevation_m,
@@ -36,6 +41,9 @@ void add_rough_detail(const PlanetCells& cells, std::span<const float> planet_el
   std::vector<float> detail(fine.size()), roughness(cells.size());
   unit_detail(fine, law, seed, detail);
   local_roughness(cells, planet_elevation_m, roughness);
+  for (float& rough_m : roughness) {
+    rough_m = std::max(rough_m, static_cast<float>(p.least_roughness_m));
+  }
   on_cells(fine, [&](int i, int j, Index c) {
     const double rough_m = std::max(0.0, cells.interpolate(roughness, i, j));
     detail[c] *= static_cast<float>(p.detail_amplitude * rough_m);
@@ -79,11 +87,38 @@ void sink_edges(const Grid& fine, const IslandParameters& p, std::uint64_t seed,
   });
 }
 
+/// Land that detail or the interpolation dipped below the sea level stays land unless the sea, as
+/// the planet has it, reaches it.
+void dry_inland_dips(const PlanetCells& cells, std::span<const float> planet_elevation_m,
+                     std::span<float> z) {
+  const Grid& fine = cells.fine();
+  std::vector<std::uint8_t> wet(fine.size());
+  std::vector<Index> front;
+  for (Index c = 0; c < fine.size(); ++c) {
+    if (z[c] >= 0.0F || planet_elevation_m[cells.cell_of()[c]] >= 0.0F) continue;
+    wet[c] = 1;
+    front.push_back(c);
+  }
+  while (!front.empty()) {
+    const Index c = front.back();
+    front.pop_back();
+    for (int k = 0; k < kDirections; ++k) {
+      const Index next = fine.neighbour(c, k);
+      if (next == kNoCell || wet[next] != 0 || z[next] >= 0.0F) continue;
+      wet[next] = 1;
+      front.push_back(next);
+    }
+  }
+  for (Index c = 0; c < fine.size(); ++c) {
+    if (z[c] < 0.0F && wet[c] == 0) z[c] = 0.0F;
+  }
+}
+
 /// Raises land so that its mean over each planet cell is `target` again.
 void restore_means(const PlanetCells& cells, std::span<const float> target,
                    std::span<const std::uint8_t> land, std::span<const std::uint8_t> held,
                    std::span<float> z, std::span<float> raised_m) {
-  constexpr float kLow_m = 1.0F, kMost = 2.0F;
+  constexpr float kLow_m = 1.0F, kMost = 1.1F;
   std::vector<float> factor = cells.means(z, land, 0.0F);
   for (std::size_t k = 0; k < factor.size(); ++k) {
     factor[k] = factor[k] > kLow_m ? std::clamp(target[k] / factor[k], 1.0F, kMost) : 1.0F;
@@ -112,6 +147,7 @@ void raise_island(const PlanetCells& cells, const PlanetRelief& planet, const Is
   } else {
     add_height_detail(cells, p, seed, elevation_m);
   }
+  dry_inland_dips(cells, planet.elevation_m, elevation_m);
   if (p.edge_fade) sink_edges(cells.fine(), p, seed, elevation_m);
 }
 
