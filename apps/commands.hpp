@@ -20,5 +20,6 @@ void add_params_command(CLI::App& program, Action& action);
 void add_fields_command(CLI::App& program, Action& action);
 void add_info_command(CLI::App& program, Action& action);
 void add_presets_command(CLI::App& program, Action& action);
+void add_score_command(CLI::App& program, Action& action);
 
 }  // namespace terrane

@@ -295,6 +295,24 @@ const BadInput kCommandLines[] = {
      run_with({"--resume"})},
     {"InfoWithoutFile", kConfiguration, {"info: which FILE?"}, words({"info"})},
     {"MapsWithoutFolder", kConfiguration, {"maps:", "folder"}, words({"maps"})},
+    {"ScoreOfNothing", kConfiguration, {"score:", "which planet?"}, words({"score"})},
+    {"ScoreOfNoSuchFile",
+     kIo,
+     {"cannot read nowhere.nc", "No such file"},
+     words({"score", "nowhere.nc"})},
+    {"ScoreOfAFolderWithoutStages",
+     kInput,
+     {"/usr: holds no stage file", "03-erosion.nc"},
+     words({"score", "/usr"})},
+    {"ScoreOfAPartOfAPlanet",
+     kInput,
+     {"part.nc:z: covers a part of a planet only", "pole to pole"},
+     [](const fs::path& folder) {
+       ReliefFile part;
+       part.north_deg = 30.0;
+       part.write(folder / "part.nc");
+       return Words{"score", folder / "part.nc"};
+     }},
     {"MapsOfNoRun", kConfiguration, {"maps:", "holds no run"}, words({"maps", "/usr"})},
     {"ParamsOfUnknownStage",
      kConfiguration,

@@ -36,7 +36,7 @@ TEST(Version, NamesProgramCommitAndLibraries) {
 
 TEST(Help, ListsEveryCommandAndEveryCommandHasItsOwn) {
   const std::string all = told_by({"--help"});
-  for (const std::string command : {"run", "maps", "params", "info", "presets"}) {
+  for (const std::string command : {"run", "score", "maps", "params", "info", "presets"}) {
     EXPECT_THAT(all, HasSubstr(command));
     EXPECT_THAT(told_by({command, "--help"}), HasSubstr("terrane " + command));
   }
@@ -131,6 +131,38 @@ TEST_F(FinishedRun, InfoTellsWhatTheManifestTells) {
       }
     }
   }
+}
+
+TEST_F(FinishedRun, ScoreTellsTheSameAsTableAndAsJson) {
+  const std::string table = told_by({"score", run_});
+  const auto json = nlohmann::json::parse(told_by({"score", run_, "--json"}));
+  EXPECT_EQ(json.at("nx"), 72);
+  const auto& figures = json.at("figures");
+  ASSERT_GT(figures.size(), 50U);
+  int within = 0;
+  for (const auto& figure : figures) {
+    for (const char* key : {"group", "name", "unit", "value", "target", "tolerance", "within"}) {
+      ASSERT_TRUE(figure.contains(key)) << figure << ' ' << key;
+    }
+    const double off =
+        std::abs(figure.at("value").get<double>() - figure.at("target").get<double>());
+    EXPECT_EQ(figure.at("within"), off <= figure.at("tolerance").get<double>()) << figure;
+    within += figure.at("within").get<bool>() ? 1 : 0;
+    EXPECT_THAT(table, HasSubstr(figure.at("words").get<std::string>()));
+  }
+  EXPECT_EQ(json.at("totals").at("figures"), figures.size());
+  EXPECT_EQ(json.at("totals").at("within"), within);
+  EXPECT_THAT(table, HasSubstr(std::to_string(within) + " of " + std::to_string(figures.size())));
+  EXPECT_THAT(table, HasSubstr("left out, no plate_id"));
+}
+
+TEST_F(FinishedRun, ScoreTakesAStageFileAndAReliefToo) {
+  const auto stage = nlohmann::json::parse(told_by({"score", run_ / "03-erosion.nc", "--json"}));
+  const auto relief =
+      nlohmann::json::parse(told_by({"score", (folder_ / "relief.nc").string() + ":z", "--json"}));
+  EXPECT_LT(stage.at("figures").size(), 60U);
+  EXPECT_EQ(relief.at("figures").at(0).at("name"), "land_fraction");
+  EXPECT_EQ(relief.at("ny"), 36);
 }
 
 TEST_F(FinishedRun, MapsAreDrawnAgain) {

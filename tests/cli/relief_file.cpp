@@ -43,7 +43,7 @@ void ReliefFile::write(const std::filesystem::path& path) const {
   good(nc_put_att_double(id, z, "_FillValue", NC_DOUBLE, 1, &fill));
   good(nc_enddef(id));
   std::vector<double> rows, columns, values;
-  for (int j = 0; j < ny; ++j) rows.push_back(-90.0 + (j + 0.5) * 180.0 / ny);
+  for (int j = 0; j < ny; ++j) rows.push_back(-90.0 + (j + 0.5) * (90.0 + north_deg) / ny);
   for (int i = 0; i < nx; ++i) columns.push_back(-180.0 + (i + 0.5) * 360.0 / nx);
   for (const double row : rows) {
     for (const double column : columns) values.push_back(elevation_m(row, column));

@@ -13,6 +13,7 @@ struct ReliefFile {
   std::string variable = "z", units = "m";
   std::optional<double> hole = {};  ///< stands in one cell
   double fill = -32768.0;           ///< the file's _FillValue
+  double north_deg = 90.0;          ///< where its rows end
   double latitude_kink_deg = 0.0;   ///< added to one latitude
   bool one_dimensional = false;     ///< the variable has no columns
 

@@ -83,6 +83,14 @@ TEST(References, HaveWhatSourcesCiteAndNothingElse) {
       used.insert((*at)[1]);
     }
   }
+  // The last column of the scorecard's table names the origin of Earth's value.
+  const std::string table =
+      test::read_text(test::repository() / "data/targets/earth_scorecard.csv");
+  static const std::regex kSource(",([a-z]+(?:18|19|20)[0-9]{2})\n");
+  for (std::sregex_iterator at(table.begin(), table.end(), kSource), end; at != end; ++at) {
+    EXPECT_TRUE(entries.contains((*at)[1])) << "the scorecard cites " << (*at)[1];
+    used.insert((*at)[1]);
+  }
   for (const auto& [key, entry] : entries) {
     EXPECT_TRUE(used.contains(key)) << key << " is cited nowhere";
   }

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "geo/io/dem.hpp"
+#include "geo/io/scorecard.hpp"
 #include "geo/kernels/depressions.hpp"
 #include "geo/kernels/flow_graph.hpp"
 #include "geo/stages/stages.hpp"
@@ -139,6 +140,21 @@ TEST_F(Earth, LargestBasinsAreThoseOfTheAtlas) {
     }
     EXPECT_NEAR(area / real.area_m2, 1.0, 0.25) << real.river;
   }
+}
+
+TEST_F(Earth, HypsometryAndSpectrumLieWithinTheScorecardsTolerances) {
+  const auto card = io::score_planet(*state_);
+  int lines = 0;
+  for (const auto& line : card.lines) {
+    if (line.group != "hypsometry" && line.group != "share of the globe" &&
+        line.group != "spectrum") {
+      continue;
+    }
+    ++lines;
+    EXPECT_TRUE(line.within()) << line.name << " is " << line.value << " must be " << line.earth
+                               << " +- " << line.tolerance;
+  }
+  EXPECT_EQ(lines, 34);
 }
 
 // Area-weighted means of NCEP/NCAR air temperature and of CMAP precipitation, 1981-2010, in bands

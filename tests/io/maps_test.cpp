@@ -106,6 +106,26 @@ State full_state() {
   state.set(field::koppen_class, koppen);
   state.set(field::net_primary_productivity, rain);
   state.set(field::settlement_suitability, std::vector<float>(n, 0.5F));
+  std::vector<std::int16_t> plate(n);
+  std::vector<std::int8_t> boundary(n, 0), rock(n);
+  std::vector<float> age(n), thickness(n), continent(n);
+  for (Index i = 0; i < grid.size(); ++i) {
+    const double longitude = grid.longitude_deg(grid.column(i));
+    plate[i] = static_cast<std::int16_t>(longitude < 90.0 ? grid.row(i) / 60 : 7);
+    if (std::abs(longitude - 90.0) < 3.0) boundary[i] = 2;
+    rock[i] = static_cast<std::int8_t>(grid.row(i) % 6);
+    continent[i] = std::abs(longitude) < 70.0 ? 1.0F : 0.0F;
+    age[i] = static_cast<float>(std::abs(longitude - 90.0));
+    thickness[i] = continent[i] > 0.0F ? 38000.0F : 7000.0F;
+  }
+  state.set(field::plate_id, plate);
+  state.set(field::boundary_type, boundary);
+  state.set(field::plate_velocity_east, std::vector<float>(n, 40.0F));
+  state.set(field::plate_velocity_north, std::vector<float>(n, -20.0F));
+  state.set(field::continental_fraction, continent);
+  state.set(field::crust_age, age);
+  state.set(field::crust_thickness, thickness);
+  state.set(field::rock_type, rock);
   return state;
 }
 
@@ -134,9 +154,10 @@ TEST(Maps, EveryFieldHasItsPictureOfTheRightSizeAndNoneIsBlank) {
     EXPECT_FALSE(file.title.empty());
     EXPECT_FALSE(file.caption.empty());
   }
-  EXPECT_THAT(names, testing::UnorderedElementsAre("elevation", "temperature", "precipitation",
-                                                   "wind", "rivers", "biomes", "koppen",
-                                                   "productivity", "settlement"));
+  EXPECT_THAT(names, testing::UnorderedElementsAre("elevation", "plates", "crust_age",
+                                                   "crust_thickness", "rock_type", "temperature",
+                                                   "precipitation", "wind", "rivers", "biomes",
+                                                   "koppen", "productivity", "settlement"));
 }
 
 TEST(Maps, AStateWithoutFieldsHasNoPictures) {
@@ -330,6 +351,33 @@ TEST(Maps, WindowsAndPlanesKeepTheirShape) {
                ConfigurationError);
 }
 
+TEST(Maps, PlateBoundariesHaveTheColourOfTheirTypeAndNeighboursDiffer) {
+  const TemporaryFolder folder;
+  const State state = full_state();
+  const auto files = draw_map_files(state, folder.path(), kWidth);
+  const Picture picture(folder / "plates.png", map_layout(state.grid(), kWidth));
+  const auto is_red = [](Colour c) { return c.r > c.g + 80 && c.r > c.b + 80; };
+  // Types reach 3 degrees, 6 pixels, to either side.
+  int red_on_ridge = 0, red_elsewhere = 0;
+  for (int y = 20; y < kWidth / 2 - 20; ++y) {
+    for (int x = 2; x < kWidth - 2; ++x) {
+      if (!is_red(picture.map(x, y))) continue;
+      (std::abs(x - 3 * kWidth / 4) <= 8 ? red_on_ridge : red_elsewhere) += 1;
+    }
+  }
+  EXPECT_GT(red_on_ridge, kWidth / 4);
+  EXPECT_EQ(red_elsewhere, 0);
+  const int sea = kWidth / 9;  // 140 degrees west
+  EXPECT_NE(picture.map(sea + 7, 40), picture.map(sea + 7, kWidth / 4));
+}
+
+TEST(Maps, EveryFieldThatIsDrawnIsAskedFor) {
+  const auto fields = map_fields();
+  for (const FieldSpec* spec : full_state().present()) {
+    EXPECT_NE(std::find(fields.begin(), fields.end(), spec), fields.end()) << spec->name;
+  }
+}
+
 TEST(Maps, AnyKindOfGridIsDrawn) {
   const TemporaryFolder folder;
   const std::vector<Grid> grids{Grid::window(90, 60, {30, 50, -10, 20}),
@@ -384,26 +432,47 @@ TEST(Report, EscapesTextAndReferencesPicturesRelatively) {
   EXPECT_THAT(page, testing::HasSubstr("<td class=\"number\">1.5</td>"));
 }
 
-TEST(Report, MeansAreWeightedByTrueAreaAndSkipMissingCells) {
-  State state(small_sphere());
-  const Grid& grid = state.grid();
-  std::vector<float> latitude(grid.size());
-  for (Index i = 0; i < grid.size(); ++i) {
-    const double sine = std::sin(grid.latitude_deg(grid.row(i)) * std::numbers::pi / 180.0);
-    latitude[i] = static_cast<float>(sine * sine);
-  }
-  state.set(field::temperature, latitude);
-  std::vector<float> rain(grid.size(), std::nanf(""));
-  rain[7] = 3.0F;
-  state.set(field::precipitation, rain);
-  state.set(field::flow_receiver, std::vector<Index>(grid.size(), 0));
-  const auto fields = summarise_fields(state);
-  ASSERT_EQ(fields.size(), 2U);
-  EXPECT_NEAR(fields[0].mean, 1.0 / 3.0, 1e-4);  // the mean of sin² over the sphere
-  EXPECT_EQ(fields[1].name, "precipitation");
-  EXPECT_DOUBLE_EQ(fields[1].min, 3.0);
-  EXPECT_DOUBLE_EQ(fields[1].mean, 3.0);
-  EXPECT_DOUBLE_EQ(fields[1].max, 3.0);
+TEST(Report, FiguresAreThoseOfTheLastStageThatWroteTheField) {
+  const auto record = [](const char* name, double mean) {
+    return FieldRecord{name, "", mean - 1.0, mean, mean + 1.0, 0, ""};
+  };
+  const auto stage = [](const char* name, std::vector<FieldRecord> fields) {
+    StageRecord written;
+    written.name = name;
+    written.fields = std::move(fields);
+    return written;
+  };
+  Manifest manifest;
+  manifest.stages = {stage("erosion", {record("elevation", 1.0)}),
+                     stage("hydrology", {record("discharge", 5.0), record("lake_id", 7.0),
+                                         record("elevation", 2.0)}),
+                     stage("island", {record("elevation", 3.0)})};
+  const auto fields = field_figures(manifest);
+  ASSERT_EQ(fields.size(), 2U);  // a number of a lake is no figure
+  EXPECT_EQ(fields[0].name, "elevation");
+  EXPECT_EQ(fields[0].mean, 2.0);
+  EXPECT_EQ(fields[0].max, 3.0);
+  EXPECT_EQ(fields[0].units, "m");
+  EXPECT_EQ(fields[1].name, "discharge");
+}
+
+TEST(Report, ScorecardMarksWhatLiesWithinBySignAndStyle) {
+  const TemporaryFolder folder;
+  Report report;
+  report.scorecard.emplace();
+  report.scorecard->lines = {{"relief", "land", "land <", "%", "x", 30.0, 29.0, 1.5, true},
+                             {"relief", "mean", "mean", "m", "x", -3000.0, -3686.0, 150.0, false}};
+  report.scorecard->left_out = {"no plate_id: plates"};
+  report.events = {"impact & rift"};
+  const std::string page = text_of(write_report(folder.path(), report));
+  EXPECT_THAT(page, testing::HasSubstr("1 of 2 figures"));
+  EXPECT_THAT(page, testing::HasSubstr("land &lt;"));
+  EXPECT_THAT(page, testing::HasSubstr("<td class=\"within\">\u2713 within</td>"));
+  EXPECT_THAT(page, testing::HasSubstr("<td class=\"outside\">\u2717 outside</td>"));
+  EXPECT_THAT(page, testing::HasSubstr("\u00b1 1.5*"));
+  EXPECT_THAT(page, testing::HasSubstr("\u22123000"));
+  EXPECT_THAT(page, testing::HasSubstr("no plate_id"));
+  EXPECT_THAT(page, testing::HasSubstr("impact &amp; rift"));
 }
 
 }  // namespace

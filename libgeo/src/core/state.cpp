@@ -3,14 +3,19 @@
 namespace geo {
 
 void State::set(const FieldSpec& spec, Values values) {
-  const auto size = std::visit([](const auto& array) { return array.size(); }, values);
+  share(spec, std::make_shared<Values>(std::move(values)));
+}
+
+void State::share(const FieldSpec& spec, std::shared_ptr<const Values> values) {
+  const auto size = std::visit([](const auto& array) { return array.size(); }, *values);
   if (size != static_cast<std::size_t>(grid_->size())) {
     throw Bug("field " + std::string(spec.name) + ": array does not fit the grid");
   }
-  if (values.index() != static_cast<std::size_t>(spec.type)) {
+  if (values->index() != static_cast<std::size_t>(spec.type)) {
     throw Bug("field " + std::string(spec.name) + ": array of another type");
   }
-  fields_[spec.name] = {&spec, std::make_shared<Values>(std::move(values))};
+  // No values are made constant: only their sole holder changes them.
+  fields_[spec.name] = {&spec, std::const_pointer_cast<Values>(std::move(values))};
 }
 
 std::shared_ptr<const Values> State::values(const FieldSpec& spec) const {

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "map_canvas.hpp"
+#include "map_plates.hpp"
 #include "map_relief.hpp"
 #include "map_rivers.hpp"
 #include "map_wind.hpp"
@@ -36,36 +37,50 @@ struct Plan {
   std::function<void(const Scene&, MapCanvas&)> draw;
 };
 
+/// Where a field says something worth a colour.
+enum class Extent { everywhere, land, ocean_floor };
+
 /// A map of one field in the colours of one colour map.
 struct FieldMap {
   const Field<float>* field;
   const char *file, *title, *units, *colours, *caption;
-  bool land_only;
+  Extent extent;
+  float scale = 1.0F;  ///< from the field's unit to that of the colours
 };
 
-constexpr std::array<FieldMap, 4> kFieldMaps{{
+constexpr std::array<FieldMap, 6> kFieldMaps{{
     {&field::temperature, "temperature", "Temperature", "annual mean near the surface, °C",
      "temperature", "Annual mean air temperature near the surface in classes, over shaded relief.",
-     false},
+     Extent::everywhere},
     {&field::precipitation, "precipitation", "Precipitation", "annual, mm per year",
-     "precipitation", "Annual precipitation in classes, over shaded relief.", false},
+     "precipitation", "Annual precipitation in classes, over shaded relief.", Extent::everywhere},
     {&field::net_primary_productivity, "productivity", "Net primary productivity",
      "dry matter, g per m² and year", "net_primary_productivity",
-     "Dry matter that plants build up in a year (Miami model).", true},
+     "Dry matter that plants build up in a year (Miami model).", Extent::land},
     {&field::settlement_suitability, "settlement", "Suitability for settlement",
      "0 (none) to 1 (best)", "settlement_suitability",
-     "Suitability for agriculture and settlement, from climate, slope and water.", true},
+     "Suitability for agriculture and settlement, from climate, slope and water.", Extent::land},
+    {&field::crust_age, "crust_age", "Age of the ocean floor", "million years", "crust_age",
+     "Age of oceanic crust in classes: the borders between colours are isochrons.",
+     Extent::ocean_floor},
+    {&field::crust_thickness, "crust_thickness", "Thickness of the crust", "km", "crust_thickness",
+     "Thickness of the crystalline crust in classes, over shaded relief.", Extent::everywhere,
+     1e-3F},
 }};
 
 struct CategoryMap {
   const Field<std::int8_t>* field;
   const char *file, *title, *units, *caption;
+  float pale_sea;  ///< by how much the sea's own categories fade
 };
 
-constexpr std::array<CategoryMap, 2> kCategoryMaps{{
-    {&field::biome, "biomes", "Biomes", "after Whittaker", "Biomes by temperature and moisture."},
+constexpr std::array<CategoryMap, 3> kCategoryMaps{{
+    {&field::biome, "biomes", "Biomes", "after Whittaker", "Biomes by temperature and moisture.",
+     0.0F},
     {&field::koppen_class, "koppen", "Climate classes", "after Köppen and Geiger",
-     "Climate classes after Köppen and Geiger."},
+     "Climate classes after Köppen and Geiger.", 0.0F},
+    {&field::rock_type, "rock_type", "Rocks", "at the surface, paler under the sea",
+     "Rock at the surface, as rivers feel it.", 0.6F},
 }};
 
 Rgb with_coast(const MapBase& base, int x, int y, Rgb colour) {
@@ -90,28 +105,44 @@ void draw_elevation(const Scene& scene, MapCanvas& canvas) {
   canvas.colour_bar(maps, false);
 }
 
+/// Values of a field where its map shows it, NaN elsewhere.
+Raster sample_extent(const FieldMap& map, const Scene& scene) {
+  const auto values = scene.state.read(*map.field);
+  const auto where = [&](const auto& shown) {
+    return sample(scene.frame, Filter::linear,
+                  [&](Index i) { return shown(i) ? map.scale * values[i] : kNaN; })
+        .mean;
+  };
+  if (map.extent == Extent::ocean_floor && scene.state.has(field::continental_fraction)) {
+    const auto continent = scene.state.read(field::continental_fraction);
+    // Older crust at sea is stretched continent: subduction leaves no older floor.
+    constexpr float kOldestFloorMyr = 250.0F;
+    return where([=](Index i) { return continent[i] < 0.5F && values[i] <= kOldestFloorMyr; });
+  }
+  if (map.extent != Extent::everywhere && scene.state.has(field::elevation)) {
+    const auto elevation = scene.state.read(field::elevation);
+    const bool land = map.extent == Extent::land;
+    return where([=](Index i) { return (elevation[i] >= 0.0F) == land; });
+  }
+  return where([](Index) { return true; });
+}
+
 void draw_field(const FieldMap& map, const Scene& scene, MapCanvas& canvas) {
   const ColourMap colours(map.colours);
-  const auto values = scene.state.read(*map.field);
-  std::span<const float> elevation;
-  if (map.land_only && scene.state.has(field::elevation)) {
-    elevation = scene.state.read(field::elevation);
-  }
   const MapBase& base = scene.base;
-  Raster position = sample(scene.frame, Filter::linear, [&](Index i) {
-                      return elevation.empty() || elevation[i] >= 0.0F ? values[i] : kNaN;
-                    }).mean;
+  Raster position = sample_extent(map, scene);
   for (float& value : position.values) {
     if (value == value) value = colours.position(value);
   }
   canvas.paint([&](int x, int y) {
     const float at = position.at(x, y), cover = base.land_cover.at(x, y);
     const float shade = base.shade.at(x, y);
-    Rgb colour = kPaleSea;
+    Rgb colour =
+        map.extent == Extent::ocean_floor ? lit(kPaleLand, shade, 0.12F + 0.4F * cover) : kPaleSea;
     if (at == at) {
       colour = colours.classed(at, change_per_pixel(position, x, y));
       colour = lit(colour, shade, 0.06F + 0.36F * cover);
-      if (map.land_only) colour = mix(kPaleSea, colour, cover);
+      if (map.extent == Extent::land) colour = mix(kPaleSea, colour, cover);
     }
     return with_coast(base, x, y, colour);
   });
@@ -129,7 +160,8 @@ void draw_categories(const CategoryMap& map, const Scene& scene, MapCanvas& canv
   const Raster category = sample_majority(scene.frame, scene.state.read(*map.field));
   const MapBase& base = scene.base;
   canvas.paint([&](int x, int y) {
-    const Rgb colour = colour_of(static_cast<int>(category.at(x, y)));
+    const float faded = map.pale_sea * (1.0F - base.land_cover.at(x, y));
+    const Rgb colour = mix(colour_of(static_cast<int>(category.at(x, y))), kPaleSea, faded);
     const Rgb shaded = lit(colour, base.shade.at(x, y), 0.34F * base.land_cover.at(x, y));
     return mix(shaded, kInk, 0.4F * base.coast.at(x, y));
   });
@@ -213,12 +245,28 @@ std::vector<Plan> plan_maps(const State& state) {
                      "Elevation in colours over relief shaded from the north-west.",
                      draw_elevation});
   }
+  if (state.has(field::plate_id)) {
+    plans.push_back({"plates", "Plates", "boundaries and velocities",
+                     "Plates in colours, their boundaries by what happens there, and velocities.",
+                     [](const Scene& scene, MapCanvas& canvas) {
+                       draw_plates(canvas, scene.frame, scene.state, scene.base);
+                     }});
+  }
   const auto add_field = [&](const FieldMap& map) {
     if (!state.has(*map.field)) return;
     plans.push_back(
         {map.file, map.title, map.units, map.caption,
          [&map](const Scene& scene, MapCanvas& canvas) { draw_field(map, scene, canvas); }});
   };
+  const auto add_categories = [&](const CategoryMap& map) {
+    if (!state.has(*map.field)) return;
+    plans.push_back(
+        {map.file, map.title, map.units, map.caption,
+         [&map](const Scene& scene, MapCanvas& canvas) { draw_categories(map, scene, canvas); }});
+  };
+  add_field(kFieldMaps[4]);
+  add_field(kFieldMaps[5]);
+  add_categories(kCategoryMaps[2]);
   add_field(kFieldMaps[0]);
   add_field(kFieldMaps[1]);
   if (state.has(field::wind_east) && state.has(field::wind_north)) {
@@ -230,12 +278,8 @@ std::vector<Plan> plan_maps(const State& state) {
                      "The larger rivers and lakes; lines widen with the square root of the flow.",
                      draw_river_map});
   }
-  for (const auto& map : kCategoryMaps) {
-    if (!state.has(*map.field)) continue;
-    plans.push_back(
-        {map.file, map.title, map.units, map.caption,
-         [&map](const Scene& scene, MapCanvas& canvas) { draw_categories(map, scene, canvas); }});
-  }
+  add_categories(kCategoryMaps[0]);
+  add_categories(kCategoryMaps[1]);
   add_field(kFieldMaps[2]);
   add_field(kFieldMaps[3]);
   return plans;
@@ -272,6 +316,24 @@ MapLayout map_layout(const Grid& grid, int width_px) {
   layout.width_px = layout.map_left + layout.map_width + scaled(50);
   layout.height_px = layout.map_top + layout.map_height + scaled(126);
   return layout;
+}
+
+std::vector<const FieldSpec*> map_fields() {
+  std::vector<const FieldSpec*> fields{&field::elevation,
+                                       &field::lake_depth,
+                                       &field::plate_id,
+                                       &field::boundary_type,
+                                       &field::plate_velocity_east,
+                                       &field::plate_velocity_north,
+                                       &field::continental_fraction,
+                                       &field::wind_east,
+                                       &field::wind_north,
+                                       &field::flow_receiver,
+                                       &field::drainage_area,
+                                       &field::discharge};
+  for (const auto& map : kFieldMaps) fields.push_back(map.field);
+  for (const auto& map : kCategoryMaps) fields.push_back(map.field);
+  return fields;
 }
 
 namespace {

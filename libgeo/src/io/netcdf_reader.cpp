@@ -4,6 +4,7 @@
 #include <charconv>
 #include <system_error>
 
+#include "chunk_reader.hpp"
 #include "geo/core/error.hpp"
 #include "geo/io/stage_file.hpp"
 #include "grid_description.hpp"
@@ -36,8 +37,8 @@ bool lies_on_grid(const nc::File& file, int variable, const Grid& grid) {
          file.dimension_name(dimensions[1]) == names.column;
 }
 
-std::shared_ptr<const Values> read_field(const nc::File& file, int variable, const FieldSpec& spec,
-                                         const Grid& grid) {
+std::shared_ptr<const Values> read_field(const nc::File& file, const ChunkReader& chunks,
+                                         int variable, const FieldSpec& spec, const Grid& grid) {
   const std::string name(spec.name);
   if (!lies_on_grid(file, variable, grid)) {
     throw InputError(fmt::format("variable {}: dimensions are not those of the grid", name));
@@ -53,14 +54,15 @@ std::shared_ptr<const Values> read_field(const nc::File& file, int variable, con
     throw InputError(
         fmt::format("variable {}: units are \"{}\", must be \"{}\"", name, units, spec.units));
   }
-  Values values = empty_values(spec.type, grid.size());
+  const auto values = std::make_shared<Values>(empty_values(spec.type, grid.size()));
+  if (chunks.read(name, *values, grid.ny(), grid.nx())) return values;
   try {
     std::visit([&](auto& array) { nc::check(nc_get_var(file.id(), variable, array.data())); },
-               values);
+               *values);
   } catch (const nc::Failure& failure) {
     throw InputError(fmt::format("variable {}: truncated or damaged ({})", name, failure.what()));
   }
-  return std::make_shared<const Values>(std::move(values));
+  return values;
 }
 
 std::string required_text(const nc::File& file, const char* name) {
@@ -119,16 +121,25 @@ nc::File open_input(const std::filesystem::path& path) {
 }
 
 Snapshot read_netcdf(const std::filesystem::path& path) {
-  return read_stage_file(path, [](const nc::File& file) {
+  return read_netcdf(path, [](const FieldSpec&) { return true; });
+}
+
+Snapshot read_netcdf(const std::filesystem::path& path,
+                     const std::function<bool(const FieldSpec&)>& wanted) {
+  return read_stage_file(path, [&](const nc::File& file) {
     Snapshot snapshot;
+    const ChunkReader chunks(path);
+    bool holds_fields = false;
     snapshot.grid = std::make_shared<const Grid>(read_grid(file));
     snapshot.stage = required_text(file, "terrane_stage");
     for (int variable = 0; variable < file.variables(); ++variable) {
       const FieldSpec* const spec = field::find(file.variable_name(variable));
       if (spec == nullptr) continue;
-      snapshot.fields.emplace_back(spec, read_field(file, variable, *spec, *snapshot.grid));
+      holds_fields = true;
+      if (!wanted(*spec)) continue;
+      snapshot.fields.emplace_back(spec, read_field(file, chunks, variable, *spec, *snapshot.grid));
     }
-    if (snapshot.fields.empty()) throw InputError("holds no field that terrane knows");
+    if (!holds_fields) throw InputError("holds no field that terrane knows");
     return snapshot;
   });
 }

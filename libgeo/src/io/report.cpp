@@ -3,40 +3,34 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 #include <pugixml.hpp>
 #include <sstream>
 
 #include "embedded_data.hpp"
 #include "geo/io/atomic_file.hpp"
+#include "report_scorecard.hpp"
 
 namespace geo::io {
 namespace {
 
-pugi::xml_node add(pugi::xml_node parent, const char* tag, const std::string& text = {}) {
-  auto node = parent.append_child(tag);
-  if (!text.empty()) node.append_child(pugi::node_pcdata).set_value(text.c_str());
-  return node;
-}
-
 void add_head(pugi::xml_node html, const std::string& title) {
-  auto head = add(html, "head");
-  add(head, "meta").append_attribute("charset") = "utf-8";
-  auto viewport = add(head, "meta");
+  auto head = add_element(html, "head");
+  add_element(head, "meta").append_attribute("charset") = "utf-8";
+  auto viewport = add_element(head, "meta");
   viewport.append_attribute("name") = "viewport";
   viewport.append_attribute("content") = "width=device-width, initial-scale=1";
-  add(head, "title", title);
-  add(head, "style", std::string(embedded_file("report/report.css")));
+  add_element(head, "title", title);
+  add_element(head, "style", std::string(embedded_file("report/report.css")));
 }
 
 void add_pictures(pugi::xml_node main, const std::filesystem::path& folder,
                   const std::vector<MapFile>& maps) {
   for (const auto& map : maps) {
-    auto figure = add(main, "figure");
+    auto figure = add_element(main, "figure");
     const std::string path = map.path.lexically_proximate(folder).generic_string();
-    auto link = add(figure, "a");
+    auto link = add_element(figure, "a");
     link.append_attribute("href") = path.c_str();
-    auto image = add(link, "img");
+    auto image = add_element(link, "img");
     image.append_attribute("src") = path.c_str();
     image.append_attribute("alt") = map.title.c_str();
     image.append_attribute("loading") = "lazy";
@@ -44,8 +38,8 @@ void add_pictures(pugi::xml_node main, const std::filesystem::path& folder,
       image.append_attribute("width") = map.width_px;
       image.append_attribute("height") = map.height_px;
     }
-    auto caption = add(figure, "figcaption");
-    add(caption, "strong", map.title);
+    auto caption = add_element(figure, "figcaption");
+    add_element(caption, "strong", map.title);
     caption.append_child(pugi::node_pcdata).set_value((" " + map.caption).c_str());
   }
 }
@@ -55,78 +49,40 @@ std::string shown(double value) {
 }
 
 void add_fields(pugi::xml_node main, const std::vector<FieldFigures>& fields) {
-  add(main, "h2", "Fields");
-  auto scroll = add(main, "div");
+  add_element(main, "h2", "Fields");
+  auto scroll = add_element(main, "div");
   scroll.append_attribute("class") = "wide";
-  auto table = add(scroll, "table");
-  auto heads = add(add(table, "thead"), "tr");
+  auto table = add_element(scroll, "table");
+  auto heads = add_element(add_element(table, "thead"), "tr");
   for (const char* head : {"field", "min", "mean", "max", "unit", "meaning"}) {
-    add(heads, "th", head).append_attribute("scope") = "col";
+    add_element(heads, "th", head).append_attribute("scope") = "col";
   }
-  auto body = add(table, "tbody");
+  auto body = add_element(table, "tbody");
   for (const auto& field : fields) {
-    auto row = add(body, "tr");
-    add(add(row, "td"), "code", field.name);
+    auto row = add_element(body, "tr");
+    add_element(add_element(row, "td"), "code", field.name);
     for (const double value : {field.min, field.mean, field.max}) {
-      add(row, "td", shown(value)).append_attribute("class") = "number";
+      add_element(row, "td", shown(value)).append_attribute("class") = "number";
     }
-    add(row, "td", field.units);
-    add(row, "td", field.doc);
+    add_element(row, "td", field.units);
+    add_element(row, "td", field.doc);
   }
+}
+
+void add_events(pugi::xml_node main, const std::vector<std::string>& events) {
+  add_element(main, "h2", "Events");
+  auto list = add_element(main, "ol");
+  for (const auto& event : events) add_element(list, "li", event);
 }
 
 void add_provenance(pugi::xml_node main,
                     const std::vector<std::pair<std::string, std::string>>& provenance) {
-  add(main, "h2", "Provenance");
-  auto list = add(main, "dl");
+  add_element(main, "h2", "Provenance");
+  auto list = add_element(main, "dl");
   for (const auto& [name, value] : provenance) {
-    add(list, "dt", name);
-    add(list, "dd", value);
+    add_element(list, "dt", name);
+    add_element(list, "dd", value);
   }
-}
-
-template <class T>
-bool is_value(T value, int missing) {
-  if constexpr (std::is_floating_point_v<T>) {
-    return std::isfinite(value);
-  } else {
-    return value != missing;
-  }
-}
-
-template <class T>
-FieldFigures summarise(const Grid& grid, const FieldSpec& spec, const std::vector<T>& values) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  struct Row {
-    double sum = 0.0, area = 0.0, min = kInfinity, max = -kInfinity;
-  };
-  std::vector<Row> rows(grid.ny());
-#pragma omp parallel for schedule(static)
-  for (int row = 0; row < grid.ny(); ++row) {
-    Row& here = rows[row];
-    for (int column = 0; column < grid.nx(); ++column) {
-      const T value = values[grid.cell(column, row)];
-      if (!is_value(value, spec.missing)) continue;
-      here.sum += static_cast<double>(value) * grid.area_m2(row);
-      here.area += grid.area_m2(row);
-      here.min = std::min(here.min, static_cast<double>(value));
-      here.max = std::max(here.max, static_cast<double>(value));
-    }
-  }
-  Row all;
-  for (const Row& row : rows) {
-    all.sum += row.sum;
-    all.area += row.area;
-    all.min = std::min(all.min, row.min);
-    all.max = std::max(all.max, row.max);
-  }
-  FieldFigures summary{std::string(spec.name), std::string(spec.units), std::string(spec.doc)};
-  const bool empty = !(all.area > 0.0);
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  summary.min = empty ? kNaN : all.min;
-  summary.mean = empty ? kNaN : all.sum / all.area;
-  summary.max = empty ? kNaN : all.max;
-  return summary;
 }
 
 // Numbers of cells, lakes and basins are integers without flags.
@@ -136,15 +92,22 @@ bool is_measured(const FieldSpec& spec) {
 
 }  // namespace
 
-std::vector<FieldFigures> summarise_fields(const State& state) {
-  std::vector<FieldFigures> summaries;
-  for (const FieldSpec* spec : state.present()) {
+std::vector<FieldFigures> field_figures(const Manifest& manifest) {
+  std::vector<FieldFigures> figures;
+  for (const FieldSpec* spec : field::all()) {
     if (!is_measured(*spec)) continue;
-    std::visit(
-        [&](const auto& values) { summaries.push_back(summarise(state.grid(), *spec, values)); },
-        *state.values(*spec));
+    const FieldRecord* last = nullptr;
+    for (const StageRecord& stage : manifest.stages) {
+      if (stage.name.starts_with("island")) continue;  // a grid of its own
+      for (const FieldRecord& field : stage.fields) {
+        if (field.name == spec->name) last = &field;
+      }
+    }
+    if (last == nullptr) continue;
+    figures.push_back({std::string(spec->name), std::string(spec->units), std::string(spec->doc),
+                       last->min, last->mean, last->max});
   }
-  return summaries;
+  return figures;
 }
 
 std::filesystem::path write_report(const std::filesystem::path& folder, const Report& report) {
@@ -153,15 +116,19 @@ std::filesystem::path write_report(const std::filesystem::path& folder, const Re
   auto html = document.append_child("html");
   html.append_attribute("lang") = "en";
   add_head(html, report.title);
-  auto main = add(add(html, "body"), "main");
-  add(main, "h1", report.title);
-  if (!report.introduction.empty()) add(main, "p", report.introduction);
+  auto main = add_element(add_element(html, "body"), "main");
+  add_element(main, "h1", report.title);
+  if (!report.introduction.empty()) add_element(main, "p", report.introduction);
   add_pictures(main, folder, report.maps);
+  if (report.scorecard && !report.scorecard->lines.empty()) {
+    add_scorecard(main, *report.scorecard);
+  }
+  if (!report.events.empty()) add_events(main, report.events);
   if (!report.fields.empty()) add_fields(main, report.fields);
   if (!report.parameters.empty()) {
-    auto details = add(main, "details");
-    add(details, "summary", "Parameters");
-    add(details, "pre", report.parameters);
+    auto details = add_element(main, "details");
+    add_element(details, "summary", "Parameters");
+    add_element(details, "pre", report.parameters);
   }
   if (!report.provenance.empty()) add_provenance(main, report.provenance);
 

@@ -9,34 +9,39 @@
 #include "geo/io/config.hpp"
 #include "geo/io/manifest.hpp"
 #include "geo/io/maps.hpp"
+#include "geo/io/planet_file.hpp"
 #include "geo/io/report.hpp"
-#include "geo/io/stage_file.hpp"
+#include "geo/io/scorecard.hpp"
+#include "manifest_events.hpp"
 
 namespace geo::io {
 namespace {
 
-void add_fields(const RunFolder& folder, const StageRecord& record, std::optional<State>& state) {
-  const Snapshot snapshot = read_netcdf(folder.path() / netcdf_of(record));
-  if (!state) state.emplace(snapshot.grid);
-  for (const auto& [spec, values] : snapshot.fields) state->set(*spec, *values);
-}
-
-/// The fields of all complete stages of the planet: where two wrote the same, the later one's.
+/// The fields of all complete stages of the planet that pictures and scorecard are made from: where
+/// two stages wrote the same, the later one's.
 State final_state(const RunFolder& folder, const Manifest& manifest) {
-  std::optional<State> state;
+  std::vector<std::filesystem::path> files;
   for (const StageRecord& record : manifest.stages) {
-    if (!is_island(record)) add_fields(folder, record, state);
+    if (!is_island(record)) files.push_back(folder.path() / netcdf_of(record));
   }
-  if (!state) {
+  if (files.empty()) {
     throw InputError(fmt::format("{}: holds no complete stage to draw", folder.path().string()));
   }
-  return std::move(*state);
+  auto wanted = map_fields();
+  for (const FieldSpec* spec : scorecard_fields()) wanted.push_back(spec);
+  return read_planet(files, wanted);
+}
+
+std::optional<Scorecard> scorecard_of(const State& state) {
+  if (state.grid().topology() != Topology::sphere) return {};
+  return score_planet(state);
 }
 
 State island_state(const RunFolder& folder, const StageRecord& record) {
-  std::optional<State> state;
-  add_fields(folder, record, state);
-  return std::move(*state);
+  const Snapshot snapshot = read_netcdf(folder.path() / netcdf_of(record));
+  State state(snapshot.grid);
+  for (const auto& [spec, values] : snapshot.fields) state.set(*spec, *values);
+  return state;
 }
 
 void append(std::vector<MapFile>& maps, std::vector<MapFile> more) {
@@ -55,7 +60,9 @@ std::vector<std::filesystem::path> draw_run(const RunFolder& folder, int map_wid
                 .introduction = fmt::format("{} x {} cells.", state.grid().nx(), state.grid().ny()),
                 .maps = all ? draw_map_files(state, folder.maps(), map_width_px, note)
                             : list_map_files(state, folder.maps(), map_width_px),
-                .fields = summarise_fields(state),
+                .scorecard = scorecard_of(state),
+                .events = read_events(folder.manifest()),
+                .fields = field_figures(manifest),
                 .parameters = read_text(folder.config()),
                 .provenance = {{"version", manifest.version},
                                {"commit", manifest.commit},

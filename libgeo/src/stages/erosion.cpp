@@ -1,6 +1,7 @@
 #include "geo/stages/erosion.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -41,6 +42,24 @@ std::vector<Parameter> ErosionParameters::declarations() {
              "cordonnier2019"),
       real("erosion.uplift_mm_yr", uplift_mm_yr, "mm yr-1", -100.0, 100.0,
            "rock uplift of all land, on top of a field of uplift", "design"),
+      choice("erosion.uplift_from", uplift_from, {"deformation", "boundaries", "none"},
+             "where plates raise the ground: over the belts of deformation, on the cells of their "
+             "boundaries, or nowhere",
+             "tectonica2026"),
+      real("erosion.convergent_uplift_mm_yr", convergent_uplift_mm_yr, "mm yr-1", -100.0, 100.0,
+           "rock uplift where plates converge, at full strength", "tectonica2026"),
+      real("erosion.divergent_uplift_mm_yr", divergent_uplift_mm_yr, "mm yr-1", -100.0, 100.0,
+           "rock uplift where plates part", "tectonica2026"),
+      real("erosion.transform_uplift_mm_yr", transform_uplift_mm_yr, "mm yr-1", -100.0, 100.0,
+           "rock uplift where plates shear", "tectonica2026"),
+      real("erosion.erodibility_factor", erodibility_factor, "1", 0.0, 1000.0,
+           "factor of the erodibilities that a field gives", "harel2016"),
+      real("erosion.reference_cell_km", reference_cell_km, "km", 0.01, 1000.0,
+           "cell size at which the erodibilities hold", "design"),
+      real("erosion.subgrid_exponent", subgrid_exponent, "1", 0.0, 2.0,
+           "erodibility falls with the cell size to this power, for the relief that larger cells "
+           "do not resolve",
+           "hack1957"),
       real("erosion.rebound_fraction", rebound_fraction, "1", 0.0, 1.0,
            "share of the eroded thickness that the crust rises again, density of crust over mantle",
            "turcotte2002"),
@@ -231,7 +250,9 @@ class ErosionStage final : public Stage {
     static const StageInfo kInfo{"erosion",
                                  "rivers and hillslopes wear the land down",
                                  {&field::elevation},
-                                 {&field::erodibility, &field::uplift_rate},
+                                 {&field::erodibility, &field::uplift_rate, &field::boundary_type,
+                                  &field::boundary_strength, &field::convergent_deformation,
+                                  &field::divergent_deformation, &field::transform_deformation},
                                  {&field::elevation, &field::uplift_rate, &field::erosion_rate,
                                   &field::drainage_area, &field::flow_receiver}};
     return kInfo;
@@ -242,11 +263,10 @@ class ErosionStage final : public Stage {
     const Grid& grid = io.grid();
     const std::span<float> elevation = io.write(field::elevation);
     const std::span<float> uplift = io.write(field::uplift_rate);
-    const std::span<const float> erodibility = io.read_optional(field::erodibility);
-    const std::vector<float> single{static_cast<float>(parameters_.erodibility_yr)};
+    add_tectonic_uplift(io, uplift);
+    const std::vector<float> erodibility = resolved_erodibility(io);
 
-    Landscape landscape(parameters_, grid, elevation, uplift,
-                        erodibility.empty() ? std::span<const float>(single) : erodibility);
+    Landscape landscape(parameters_, grid, elevation, uplift, erodibility);
     const std::int64_t steps = parameters_.steps;
     for (std::int64_t step = 0; step < steps; ++step) {
       if (step % parameters_.route_every == 0) landscape.route();
@@ -261,6 +281,53 @@ class ErosionStage final : public Stage {
   }
 
  private:
+  /// Rock uplift by plates (Tectonica blueprint 4.5).
+  void add_tectonic_uplift(StageIo& io, std::span<float> uplift_m_yr) const {
+    const auto convergent = static_cast<float>(1e-3 * parameters_.convergent_uplift_mm_yr);
+    const auto divergent = static_cast<float>(1e-3 * parameters_.divergent_uplift_mm_yr);
+    const auto transform = static_cast<float>(1e-3 * parameters_.transform_uplift_mm_yr);
+    if (parameters_.uplift_from == "deformation") {
+      const auto closing = io.read_optional(field::convergent_deformation);
+      const auto opening = io.read_optional(field::divergent_deformation);
+      const auto shear = io.read_optional(field::transform_deformation);
+      if (closing.empty() || opening.empty() || shear.empty()) return;
+#pragma omp parallel for schedule(static)
+      for (std::size_t cell = 0; cell < uplift_m_yr.size(); ++cell) {
+        uplift_m_yr[cell] +=
+            convergent * closing[cell] + divergent * opening[cell] + transform * shear[cell];
+      }
+    } else if (parameters_.uplift_from == "boundaries") {
+      const auto type = io.read_optional(field::boundary_type);
+      const auto strength = io.read_optional(field::boundary_strength);
+      if (type.empty() || strength.empty()) return;
+      const std::array<float, 4> rate{0.0F, convergent, divergent, transform};
+#pragma omp parallel for schedule(static)
+      for (std::size_t cell = 0; cell < uplift_m_yr.size(); ++cell) {
+        uplift_m_yr[cell] += rate[type[cell]] * strength[cell];
+      }
+    }
+  }
+  /// Erodibility for the cells of this grid. A cell's own hillslopes and brooks rise above its
+  /// outlet by a height that grows with its size; a grid of larger cells lacks it, so its rivers
+  /// must be steeper by as much for the mean height of the land to be the same.
+  [[nodiscard]] std::vector<float> resolved_erodibility(StageIo& io) const {
+    const Grid& grid = io.grid();
+    const std::span<const float> given = io.read_optional(field::erodibility);
+    const auto scale = static_cast<float>(parameters_.erodibility_factor);
+    std::vector<float> resolved(grid.size());
+#pragma omp parallel for schedule(static)
+    for (int j = 0; j < grid.ny(); ++j) {
+      const double cell_km = 1e-3 * std::sqrt(grid.area_m2(j));
+      const auto factor = static_cast<float>(
+          std::pow(cell_km / parameters_.reference_cell_km, -parameters_.subgrid_exponent));
+      for (Index cell = grid.cell(0, j); cell < grid.cell(0, j) + grid.nx(); ++cell) {
+        resolved[cell] =
+            factor * (given.empty() ? static_cast<float>(parameters_.erodibility_yr)
+                                  : scale * given[cell]);
+      }
+    }
+    return resolved;
+  }
   /// What the file reports is the whole uplift of the land.
   void add_uniform_uplift(std::span<const float> elevation, std::span<float> uplift) const {
     const auto everywhere = static_cast<float>(1e-3 * parameters_.uplift_mm_yr);

@@ -8,11 +8,15 @@
 #include "geo/stages/erosion.hpp"
 #include "geo/stages/hydrology.hpp"
 #include "geo/stages/island.hpp"
+#include "geo/stages/isostasy.hpp"
+#include "geo/stages/plates.hpp"
 
 namespace geo {
 
 std::span<const StageEntry> stage_table() {
-  static constexpr std::array<StageEntry, 5> kStages{{
+  static constexpr std::array<StageEntry, 7> kStages{{
+      {1, "plates", [] { return make_plates_stage(); }},
+      {2, "isostasy", [] { return make_isostasy_stage(); }},
       {3, "erosion", [] { return make_erosion_stage(); }},
       {4, "climate", [] { return make_climate_stage(); }},
       {5, "hydrology", [] { return make_hydrology_stage(); }},

@@ -55,6 +55,8 @@ class State {
     fields_[spec.name] = {&spec, std::make_shared<Values>(std::move(values))};
   }
   void set(const FieldSpec& spec, Values values);
+  /// The same of values that somebody else may hold too; then they are copied before a change.
+  void share(const FieldSpec& spec, std::shared_ptr<const Values> values);
 
   void erase(const FieldSpec& spec) { fields_.erase(spec.name); }
 

@@ -29,12 +29,15 @@ struct MapLayout {
 /// 300 to 20000; throws ConfigurationError.
 MapLayout map_layout(const Grid& grid, int width_px = 1800);
 
+/// The fields that maps are drawn from.
+std::vector<const FieldSpec*> map_fields();
+
 /// Draws the PNG maps that the fields of a state allow into a folder (created when absent), with
-/// title, units, legend and graticule: elevation, temperature, precipitation, wind, rivers, biomes,
-/// koppen, productivity, settlement. `width_px` is the width of the map itself, `note` a short
-/// remark for the upper right corner (seed, version). Maps are drawn at the same time on as many
-/// threads as OpenMP has; the pictures do not depend on how many. Each appears under its name only
-/// when it is whole. Throws IoError.
+/// title, units, legend and graticule: elevation, plates, crust_age, crust_thickness, rock_type,
+/// temperature, precipitation, wind, rivers, biomes, koppen, productivity, settlement. `width_px`
+/// is the width of the map itself, `note` a short remark for the upper right corner (seed,
+/// version). Maps are drawn at the same time on as many threads as OpenMP has; the pictures do not
+/// depend on how many. Each appears under its name only when it is whole. Throws IoError.
 std::vector<MapFile> draw_map_files(const State& state, const std::filesystem::path& folder,
                                     int width_px = 1800, std::string_view note = {});
 

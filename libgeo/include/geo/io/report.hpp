@@ -1,12 +1,15 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "geo/core/state.hpp"
+#include "geo/io/manifest.hpp"
 #include "geo/io/maps.hpp"
+#include "geo/io/scorecard.hpp"
 
 namespace geo::io {
 
@@ -17,15 +20,17 @@ struct FieldFigures {
   double min = 0.0, mean = 0.0, max = 0.0;
 };
 
-/// Summaries of the fields of a state, in vocabulary order; enumerations and cell numbers, whose
-/// mean says nothing, are left out. Rows are summed in order: the same for any number of threads.
-std::vector<FieldFigures> summarise_fields(const State& state);
+/// Figures of the fields of a run from its manifest, in vocabulary order, each as the last stage
+/// left it; enumerations and cell numbers, whose mean says nothing, are left out.
+std::vector<FieldFigures> field_figures(const Manifest& manifest);
 
 /// What a report shows.
 struct Report {
   std::string title;  ///< "terrane: planet of seed 1"
   std::string introduction;
   std::vector<MapFile> maps;
+  std::optional<Scorecard> scorecard;  ///< whole planets have one
+  std::vector<std::string> events;     ///< what struck the planet, a line each
   std::vector<FieldFigures> fields;
   std::string parameters;  ///< the resolved configuration, as text
   std::vector<std::pair<std::string, std::string>> provenance;  ///< ("seed", "1") …

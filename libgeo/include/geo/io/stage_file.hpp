@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -41,6 +42,9 @@ void write_pvd(const std::filesystem::path& path, const std::vector<std::filesys
 /// Reads back the grid and the vocabulary fields of a stage file, bit for bit. InputError when it
 /// is not one (names path and what is missing), IoError when it cannot be read.
 Snapshot read_netcdf(const std::filesystem::path& path);
+/// The same of those fields alone that `wanted` says yes to; perhaps none.
+Snapshot read_netcdf(const std::filesystem::path& path,
+                     const std::function<bool(const FieldSpec&)>& wanted);
 /// Provenance of a stage file.
 Provenance read_provenance(const std::filesystem::path& path);
 

@@ -10,8 +10,8 @@ namespace geo {
 
 /// Settings of the erosion stage, section "erosion".
 struct ErosionParameters {
-  std::int64_t steps = 20;
-  double time_step_yr = 100e3;
+  std::int64_t steps = 10;
+  double time_step_yr = 2e6;
   std::int64_t route_every = 1;
   double area_exponent = 0.5;
   double slope_exponent = 1.0;
@@ -20,8 +20,15 @@ struct ErosionParameters {
   std::string flow_routing = "mfd";
   double flow_exponent = 1.1;
   std::string depressions = "fill";
+  double erodibility_factor = 0.3;
+  double reference_cell_km = 10.0;
+  double subgrid_exponent = 0.3;
   double uplift_mm_yr = 0.0;
-  double rebound_fraction = 0.0;
+  std::string uplift_from = "deformation";
+  double convergent_uplift_mm_yr = 0.15;
+  double divergent_uplift_mm_yr = -0.02;
+  double transform_uplift_mm_yr = 0.03;
+  double rebound_fraction = 0.8;
   double rebound_length_km = 100.0;
   double rebound_time_yr = 1e6;
   double relaxation_fraction = 0.0;

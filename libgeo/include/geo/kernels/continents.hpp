@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "geo/kernels/cubed_sphere.hpp"
+#include "geo/kernels/plate_boundaries.hpp"
+#include "geo/kernels/plate_growth.hpp"
+
+namespace geo {
+
+/// Whole plates as continents (Tectonica blueprint 3.1b): the most buoyant first, until their area
+/// is as near as it gets to `share` of the sphere. One entry per plate.
+std::vector<std::uint8_t> continental_plates(const CubedSphere& mesh,
+                                             std::span<const std::int16_t> plate,
+                                             const std::vector<Plate>& plates, double share);
+
+/// How continents are put together from cratons.
+struct Cratons {
+  double share = 0.40;         ///< of the sphere that is continental crust
+  double plate_share = 0.72;   ///< of the sphere whose plates carry cratons
+  double per_sphere = 28.0;    ///< cratons, if they covered all of it
+  double smallest_km = 830.0;  ///< radii
+  double largest_km = 1900.0;
+  double warp = 0.30;  ///< bending of their outlines, in radii of the planet
+  double ridge_clearance_km = 900.0;
+  double radius_km = 6371.0;
+};
+
+/// A potential that is high in continents: the logarithm of a sum of bells about the cratons of
+/// each continental plate, bent by noise, lowered where a ridge has made ocean floor. Continents
+/// are where it exceeds a level; finer noise may be added first. One value per cell of the mesh.
+std::vector<float> craton_potential(const Cratons& model, const CubedSphere& mesh,
+                                    std::span<const std::int16_t> plate,
+                                    const std::vector<Plate>& plates,
+                                    std::span<const BoundaryPoint> boundaries, std::uint64_t seed);
+
+}  // namespace geo

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "geo/core/grid.hpp"
+
+namespace geo {
+
+/// Cross sections of convergent margins. `across_km` is the distance from the boundary, positive on
+/// the overriding plate and negative on the one that goes down; `strength` is that of the boundary,
+/// 0 to 1. Heights are shares of the largest unless they carry a unit. The shapes are drawn after
+/// the Andes, Tibet and the western Pacific arcs (Turcotte & Schubert 2002, chapter 2).
+
+/// Thickening of a continent above a subducting ocean: nothing up to the fore-arc, a range some
+/// 200 km from the trench, a plateau behind it that is wider where plates close faster.
+[[nodiscard]] double andean_thickening(double across_km, double strength);
+/// Thickening where continents meet: a steep front on the plate that goes down, a broad plateau.
+[[nodiscard]] double himalayan_thickening(double across_km, double strength);
+/// A volcanic arc above ocean that goes below ocean.
+[[nodiscard]] double island_arc(double across_km, double strength);
+/// Trench and outer rise, m, negative down.
+[[nodiscard]] double trench_m(double across_km, double strength);
+
+/// What meets at a convergent boundary.
+enum class Convergence : std::uint8_t { none, oceans, ocean_continent, continents };
+
+/// The convergent margin that governs each cell.
+struct ConvergentMargins {
+  std::vector<float> across_km;  ///< signed distance; far away where there is none
+  std::vector<float> strength;
+  std::vector<Convergence> kind;
+};
+
+/// Which plate goes down at each convergent boundary, and how far each cell is from it. The less
+/// continental plate goes down; of two oceans the older; of two continents the faster.
+/// @param plate, boundary_type, boundary_strength, continental_fraction, age_myr, speed_mm_yr  per
+///        cell of a sphere grid
+ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int16_t> plate,
+                                     std::span<const std::int8_t> boundary_type,
+                                     std::span<const float> boundary_strength,
+                                     std::span<const float> continental_fraction,
+                                     std::span<const float> age_myr,
+                                     std::span<const float> speed_mm_yr);
+
+/// Deformation that boundaries of one type spread around them (England & McKenzie 1982): the
+/// largest over all of strength exp(-distance / length). Sphere grids; linear cost.
+std::vector<float> propagated_deformation(const Grid& grid,
+                                          std::span<const std::int8_t> boundary_type,
+                                          std::span<const float> boundary_strength,
+                                          std::int8_t type, double length_km);
+
+/// Distance of each cell to the nearest cell whose byte is not zero, km; 1e9 without any.
+std::vector<float> distance_to_marked_km(const Grid& grid, std::span<const std::uint8_t> marked);
+
+}  // namespace geo

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "geo/core/grid.hpp"
+
+namespace geo {
+
+/// A drained planet, one value per cell.
+struct Drainage {
+  std::span<const float> elevation_m;      ///< sea below zero
+  std::span<const std::int32_t> receiver;  ///< itself at the end of the way
+  std::span<const double> area_m2;         ///< upstream, the cell included
+};
+
+/// Length of the longest way of water to each cell from upstream, m: centre to centre along
+/// receivers. Sea cells end ways. Throws Bug on a cycle. Cost: linear.
+std::vector<float> longest_upstream_m(const Grid& grid, const Drainage& drainage);
+
+/// Exponent h of L ~ A^h (Hack 1957) over the basins that drain at least `least_area_m2`, each
+/// once, at its mouth (the last land cell), by least squares in logarithms. NaN when there are
+/// fewer than ten.
+double hack_exponent(const Grid& grid, const Drainage& drainage, double least_area_m2);
+
+/// Ratios (Horton 1945) from one Strahler order to the next.
+struct HortonRatios {
+  double bifurcation, length, area;
+};
+/// Numbers, mean lengths and mean areas of streams by order, as straight lines in the logarithm.
+/// Orders with fewer than five streams do not count; NaN with fewer than three orders left.
+HortonRatios horton_ratios(const Grid& grid, const Drainage& drainage,
+                           std::span<const std::int8_t> stream_order);
+
+/// Areas of the basins on land by number (`basin_id`, 1 the first; position 0 unused), and whether
+/// each ends on land.
+struct Basins {
+  std::vector<double> area_m2;
+  std::vector<std::uint8_t> is_endorheic;
+};
+Basins measure_basins(const Grid& grid, const Drainage& drainage,
+                      std::span<const std::int32_t> basin_id);
+
+/// Area-weighted mean of a field over the land of each basin, by number; NaN where it has none.
+std::vector<double> basin_means(const Grid& grid, std::span<const float> elevation_m,
+                                std::span<const std::int32_t> basin_id,
+                                std::span<const float> field);
+
+}  // namespace geo

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cmath>
+
+namespace geo {
+
+/// How deep the ocean floor lies at an age, before any sediment.
+enum class DepthModel {
+  gdh1,  ///< Stein & Stein (1992): 2600 + 365 sqrt(t) to 20 Myr, then 5651 - 2473 exp(-0.0278 t)
+  ps77,  ///< Parsons & Sclater (1977): 2500 + 350 sqrt(t) to 70 Myr, 6400 - 3200 exp(-t / 62.8)
+};
+
+/// Depth below sea level, m; ages below 0 count as 0.
+inline double ocean_depth_m(double age_myr, DepthModel model = DepthModel::gdh1) {
+  const double t = age_myr > 0.0 ? age_myr : 0.0;
+  if (model == DepthModel::gdh1) {
+    return t < 20.0 ? 2600.0 + 365.0 * std::sqrt(t) : 5651.0 - 2473.0 * std::exp(-0.0278 * t);
+  }
+  return t < 70.0 ? 2500.0 + 350.0 * std::sqrt(t) : 6400.0 - 3200.0 * std::exp(-t / 62.8);
+}
+
+/// Heat flow through the floor, mW m-2: 510 / sqrt(t) to 55 Myr, then 48 + 96 exp(-0.0278 t)
+/// (Stein & Stein 1992).
+inline double ocean_heat_flow_mw_m2(double age_myr) {
+  return age_myr <= 55.0 ? 510.0 / std::sqrt(age_myr) : 48.0 + 96.0 * std::exp(-0.0278 * age_myr);
+}
+
+/// Sediment on the deep floor, m: the rain of plankton and dust, first filling the hollows of the
+/// hills within a few Myr, then piling up, and the apron of what rivers bring, which thins away
+/// from the foot of the continent.
+struct DeepSediment {
+  double early_m = 250.0;
+  double early_time_myr = 8.0;
+  double rate_m_myr = 4.0;
+  double apron_m = 2500.0;
+  double apron_length_km = 250.0;
+};
+
+inline double deep_sediment_m(const DeepSediment& s, double age_myr, double from_continent_km) {
+  const double t = age_myr > 0.0 ? age_myr : 0.0;
+  const double pelagic = s.early_m * -std::expm1(-t / s.early_time_myr) + s.rate_m_myr * t;
+  // Young floor has not been near a continent for long.
+  const double grown = -std::expm1(-t / 40.0);
+  return pelagic +
+         grown * s.apron_m * std::exp(-std::fmax(from_continent_km, 0.0) / s.apron_length_km);
+}
+
+}  // namespace geo

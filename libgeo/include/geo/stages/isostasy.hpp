@@ -1,0 +1,60 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "geo/core/stage.hpp"
+#include "geo/kernels/airy.hpp"
+#include "geo/kernels/flexure.hpp"
+#include "geo/kernels/ocean_depth.hpp"
+
+namespace geo {
+
+/// Settings of the stage isostasy, section "isostasy".
+struct IsostasyParameters {
+  std::string crust = "margins";
+  std::string compensation = "flexural";
+  ColumnDensities density;
+  ElasticPlate plate{.thickness_m = 20e3};
+  double elastic_thickness_km = 20.0;
+
+  double convergent_length_km = 200.0;
+  double divergent_length_km = 150.0;
+  double transform_length_km = 100.0;
+  double weakness_length_km = 300.0;
+  double deformation_smoothing_km = 30.0;
+
+  double continental_km = 36.4;
+  double oceanic_km = 7.0;
+  double thickness_noise_km = 4.5;
+  double collision_km = 32.0;
+  double arc_km = 13.0;
+  double rift_km = 20.0;
+  double transpression_km = 2.0;
+  double crust_smoothing_km = 70.0;
+  double coast_smoothing_km = 80.0;
+
+  double lithosphere = 1.22;
+  double craton_compensation = 0.8;
+  double swell_m = 300.0;
+  double margin_tilt_m = 700.0;
+  double margin_tilt_km = 260.0;
+  double relict_km = 9.0;
+  double heat_m = 700.0;
+  double thermal_coefficient = 0.02;
+  double shelf_depth_m = 130.0;
+  double seamount_m = 1800.0;
+  double seafloor_roughness_m = 130.0;
+  double land_roughness_m = 60.0;
+  double noise_m = 1.0;
+  DeepSediment sediment;
+
+  [[nodiscard]] std::vector<Parameter> declarations();
+};
+
+/// Crust and how it floats: what plate boundaries do to it, how thick and dense it is, what rock is
+/// on top, and how high it stands in balance with the mantle, the sea and its own stiffness.
+std::unique_ptr<Stage> make_isostasy_stage(IsostasyParameters parameters = {});
+
+}  // namespace geo

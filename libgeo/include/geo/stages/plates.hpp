@@ -1,0 +1,41 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "geo/core/stage.hpp"
+#include "geo/kernels/continents.hpp"
+#include "geo/kernels/plate_growth.hpp"
+
+namespace geo {
+
+/// Settings of the stage plates, section "plates".
+struct PlatesParameters {
+  std::string model = "growth";
+  PlateGrowth growth;
+  bool no_net_rotation = true;
+  std::int64_t evolution_steps = 6;
+  double boundary_smoothing_km = 180.0;
+  double boundary_width_km = 80.0;
+  double outline_bending_km = 70.0;
+  std::string continents = "cratons";
+  Cratons cratons;
+  double land_buffer = 0.20;
+  double coast_roughness = 0.9;
+  double coast_wavelength_km = 2100.0;
+  double passive_margin_km = 320.0;
+  double active_margin_km = 90.0;
+  double oldest_floor_myr = 150.0;
+  double plumes = 12.0;
+  double orogeny_reach_km = 700.0;
+
+  [[nodiscard]] std::vector<Parameter> declarations();
+};
+
+/// Plates of a planet: who belongs to which, how each moves, what happens at their boundaries, how
+/// old the sea floor is and where continents are. Everything is a function of the seed and of
+/// places on the sphere: the size of the grid's cells changes only how finely it is seen.
+std::unique_ptr<Stage> make_plates_stage(PlatesParameters parameters = {});
+
+}  // namespace geo

@@ -1,0 +1,269 @@
+#include "map_plates.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "map_outlines.hpp"
+
+namespace geo::io {
+namespace {
+
+constexpr Rgb kWhite{1.0F, 1.0F, 1.0F};
+
+/// The cell in the middle of each pixel.
+class PixelCells {
+ public:
+  explicit PixelCells(const MapFrame& frame) : frame_(frame) {}
+  [[nodiscard]] Index at(int x, int y) const {
+    const Grid& grid = frame_.grid();
+    const int column = static_cast<int>((x + 0.5) / frame_.pixels_per_column());
+    const int row = static_cast<int>((frame_.height() - y - 0.5) / frame_.pixels_per_row());
+    return grid.cell(std::clamp(column, 0, grid.nx() - 1), std::clamp(row, 0, grid.ny() - 1));
+  }
+
+ private:
+  const MapFrame& frame_;
+};
+
+Raster sample_plates(const MapFrame& frame, std::span<const std::int16_t> plate_id) {
+  const PixelCells cells(frame);
+  Raster plates(frame);
+  for (int y = 0; y < plates.height; ++y) {
+    for (int x = 0; x < plates.width; ++x) plates.at(x, y) = plate_id[cells.at(x, y)];
+  }
+  return plates;
+}
+
+/// A number of a colour for each plate, so that no neighbours share one and all are used about
+/// equally: the largest plates choose first.
+std::map<int, int> colour_numbers(const Raster& plates, int colours) {
+  std::map<int, int> pixels;
+  std::map<int, std::set<int>> neighbours;
+  for (int y = 0; y < plates.height; ++y) {
+    for (int x = 0; x < plates.width; ++x) {
+      const int own = static_cast<int>(plates.at(x, y));
+      ++pixels[own];
+      for (const float other :
+           {plates.at(plates.east_of(x), y), plates.at(x, std::min(y + 1, plates.height - 1))}) {
+        if (static_cast<int>(other) == own) continue;
+        neighbours[own].insert(static_cast<int>(other));
+        neighbours[static_cast<int>(other)].insert(own);
+      }
+    }
+  }
+  std::vector<int> order;
+  for (const auto& [plate, count] : pixels) order.push_back(plate);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return pixels[a] > pixels[b]; });
+  std::map<int, int> chosen;
+  std::vector<int> used(colours, 0);
+  for (const int plate : order) {
+    int best = 0, least = std::numeric_limits<int>::max();
+    for (int colour = 0; colour < colours; ++colour) {
+      int cost = used[colour];
+      for (const int other : neighbours[plate]) {
+        const auto at = chosen.find(other);
+        if (at != chosen.end() && at->second == colour) cost += 1000;
+      }
+      if (cost < least) {
+        least = cost;
+        best = colour;
+      }
+    }
+    chosen[plate] = best;
+    ++used[best];
+  }
+  return chosen;
+}
+
+/// Which boundary lies at a point of the map: the commonest type of the cells around it.
+class BoundaryTypes {
+ public:
+  BoundaryTypes(const MapFrame& frame, std::span<const std::int8_t> types)
+      : frame_(frame),
+        types_(types),
+        reach_(std::max(1, static_cast<int>(std::ceil(1.5 / frame.pixels_per_row())))) {}
+
+  [[nodiscard]] int at(const OutlinePoint& point) const {
+    const Grid& grid = frame_.grid();
+    const int column = static_cast<int>(std::floor(point.x / frame_.pixels_per_column()));
+    const int row =
+        static_cast<int>(std::floor((frame_.height() - point.y) / frame_.pixels_per_row()));
+    std::array<int, 4> count{};
+    for (int j = std::max(row - reach_, 0); j <= std::min(row + reach_, grid.ny() - 1); ++j) {
+      for (int i = column - reach_; i <= column + reach_; ++i) {
+        if (!frame_.wraps_east() && (i < 0 || i >= grid.nx())) continue;
+        const int type = types_[grid.cell((i % grid.nx() + grid.nx()) % grid.nx(), j)];
+        if (type > 0 && type < 4) ++count[type];
+      }
+    }
+    const auto most = std::max_element(count.begin() + 1, count.end());
+    return *most > 0 ? static_cast<int>(most - count.begin()) : 0;
+  }
+
+ private:
+  const MapFrame& frame_;
+  std::span<const std::int8_t> types_;
+  int reach_;
+};
+
+void stroke(MapCanvas& canvas, const Outline& line, std::size_t begin, std::size_t end) {
+  for (std::size_t i = begin; i <= end; ++i) cairo_line_to(canvas.pen(), line[i].x, line[i].y);
+  cairo_stroke(canvas.pen());
+}
+
+constexpr double kLinePx = 3.0, kCasingPx = 5.4;
+
+void draw_boundaries(MapCanvas& canvas, const MapFrame& frame, const Raster& plates,
+                     std::span<const std::int8_t> types) {
+  const ColourMap colours("boundary_type");
+  // Where cells are larger than pixels their steps are, too.
+  const auto lines = trace_outlines(plates, 1.2 * std::max(1.5, frame.pixels_per_row()));
+  cairo_t* pen = canvas.pen();
+  canvas.inside([&] {
+    cairo_set_line_join(pen, CAIRO_LINE_JOIN_ROUND);
+    cairo_set_line_cap(pen, CAIRO_LINE_CAP_ROUND);
+    canvas.colour(kWhite, 0.75);
+    cairo_set_line_width(pen, kCasingPx * canvas.unit());
+    for (const Outline& line : lines) stroke(canvas, line, 0, line.size() - 1);
+    cairo_set_line_cap(pen, CAIRO_LINE_CAP_BUTT);
+    cairo_set_line_width(pen, kLinePx * canvas.unit());
+    const std::optional<BoundaryTypes> known =
+        types.empty() ? std::nullopt : std::make_optional<BoundaryTypes>(frame, types);
+    for (const Outline& line : lines) {
+      std::vector<int> type(line.size(), 0);
+      for (std::size_t i = 0; known && i < line.size(); ++i) type[i] = known->at(line[i]);
+      for (std::size_t begin = 0; begin + 1 < line.size();) {
+        std::size_t end = begin + 1;
+        while (end + 1 < line.size() && type[end] == type[begin]) ++end;
+        canvas.colour(colours.category(type[begin])->colour);
+        stroke(canvas, line, begin, end);
+        begin = end;
+      }
+    }
+  });
+}
+
+void draw_arrow(MapCanvas& canvas, double x, double y, double dx, double dy) {
+  cairo_t* pen = canvas.pen();
+  const double length = std::hypot(dx, dy), head = std::min(9.0 * canvas.unit(), 0.5 * length);
+  const double ux = dx / length, uy = dy / length;
+  cairo_move_to(pen, x, y);
+  cairo_line_to(pen, x + dx - 0.8 * head * ux, y + dy - 0.8 * head * uy);
+  cairo_stroke(pen);
+  cairo_move_to(pen, x + dx, y + dy);
+  cairo_line_to(pen, x + dx - head * ux - 0.42 * head * uy, y + dy - head * uy + 0.42 * head * ux);
+  cairo_line_to(pen, x + dx - head * ux + 0.42 * head * uy, y + dy - head * uy - 0.42 * head * ux);
+  cairo_close_path(pen);
+  cairo_fill(pen);
+}
+
+constexpr double kArrowSpacingPx = 62.0;
+
+/// Length of an arrow per mm/yr, so that all but the fastest twentieth fit one spacing: small
+/// plates that race must not make the others look at rest.
+double arrow_scale(const MapCanvas& canvas, std::span<const float> east,
+                   std::span<const float> north) {
+  std::vector<float> speeds;
+  for (std::size_t c = 0; c < east.size(); c += 61) speeds.push_back(std::hypot(east[c], north[c]));
+  const auto fast = speeds.begin() + static_cast<std::ptrdiff_t>(speeds.size() * 95 / 100);
+  std::nth_element(speeds.begin(), fast, speeds.end());
+  return kArrowSpacingPx * canvas.unit() / std::max(*fast, 1.0F);
+}
+
+void draw_velocities(MapCanvas& canvas, const MapFrame& frame, std::span<const float> east,
+                     std::span<const float> north, double px_per_mm_yr) {
+  const PixelCells cells(frame);
+  const int columns =
+      std::max(2, static_cast<int>(std::lround(frame.width() / (kArrowSpacingPx * canvas.unit()))));
+  const double spacing = double(frame.width()) / columns;
+  canvas.inside([&] {
+    canvas.colour(kInk, 0.85);
+    cairo_set_line_width(canvas.pen(), 1.6 * canvas.unit());
+    int row = 0;
+    for (double y = 0.5 * spacing; y < frame.height(); y += 0.866 * spacing, ++row) {
+      for (int i = 0; i < columns; ++i) {
+        const double x = (i + (row % 2 == 0 ? 0.25 : 0.75)) * spacing;
+        const Index c = cells.at(static_cast<int>(x), static_cast<int>(y));
+        const double dx = px_per_mm_yr * east[c], dy = -px_per_mm_yr * north[c];
+        if (std::hypot(dx, dy) < 3.0 * canvas.unit()) continue;
+        // About its place, so that arrows of neighbours keep apart.
+        draw_arrow(canvas, x - 0.5 * dx, y - 0.5 * dy, dx, dy);
+      }
+    }
+  });
+}
+
+void draw_legend(MapCanvas& canvas, bool with_types, double px_per_mm_yr) {
+  const ColourMap colours("boundary_type");
+  cairo_t* pen = canvas.pen();
+  const double unit = canvas.unit(), sample = 60 * unit, gap = 12 * unit;
+  const auto& layout = canvas.layout();
+  const double y = std::floor(layout.map_top + layout.map_height + 62 * unit) + 0.5;
+  double x = layout.map_left;
+  canvas.font(18 * unit);
+  for (const auto& stop : colours.stops()) {
+    if (!with_types || stop.value == 0.0F) continue;
+    canvas.colour(stop.colour);
+    cairo_set_line_width(pen, 1.3 * kLinePx * unit);
+    cairo_move_to(pen, x, y);
+    cairo_line_to(pen, x + sample, y);
+    cairo_stroke(pen);
+    canvas.colour(kInk);
+    canvas.text(x + sample + gap, y + 6 * unit, stop.name);
+    x += sample + gap + canvas.text_width(stop.name) + 44 * unit;
+  }
+  if (!(px_per_mm_yr > 0.0)) return;
+  const double speed = round_down_nicely(kArrowSpacingPx * unit / px_per_mm_yr * 1.001);
+  const double length = speed * px_per_mm_yr;
+  canvas.colour(kInk);
+  cairo_set_line_width(pen, 1.6 * unit);
+  draw_arrow(canvas, x, y, length, 0.0);
+  canvas.text(x + length + gap, y + 6 * unit, label_of(speed) + " mm per year");
+}
+
+}  // namespace
+
+void draw_plates(MapCanvas& canvas, const MapFrame& frame, const State& state,
+                 const MapBase& base) {
+  const ColourMap colours("plates");
+  const Raster plates = sample_plates(frame, state.read(field::plate_id));
+  const auto numbers = colour_numbers(plates, static_cast<int>(colours.stops().size()));
+  std::map<int, Rgb> colour_of;
+  for (const auto& [plate, number] : numbers) colour_of[plate] = colours.stops()[number].colour;
+  const bool has_relief = state.has(field::elevation);
+  int seen = -1;
+  Rgb own{};
+  canvas.paint([&](int x, int y) {
+    const int plate = static_cast<int>(plates.at(x, y));
+    if (plate != seen) {  // plates come in long runs
+      own = colour_of[plate];
+      seen = plate;
+    }
+    if (!has_relief) return own;
+    const float land = base.land_cover.at(x, y);
+    const Rgb tint = mix(mix(own, kWhite, 0.45F), mix(own, kInk, 0.08F), land);
+    return mix(lit(tint, base.shade.at(x, y), 0.26F + 0.3F * land), kInk,
+               0.35F * base.coast.at(x, y));
+  });
+  const bool typed = state.has(field::boundary_type);
+  draw_boundaries(canvas, frame, plates,
+                  typed ? state.read(field::boundary_type) : std::span<const std::int8_t>{});
+  double px_per_mm_yr = 0.0;
+  if (state.has(field::plate_velocity_east) && state.has(field::plate_velocity_north)) {
+    const auto east = state.read(field::plate_velocity_east);
+    const auto north = state.read(field::plate_velocity_north);
+    px_per_mm_yr = arrow_scale(canvas, east, north);
+    draw_velocities(canvas, frame, east, north, px_per_mm_yr);
+  }
+  canvas.frame();
+  draw_legend(canvas, typed, px_per_mm_yr);
+}
+
+}  // namespace geo::io

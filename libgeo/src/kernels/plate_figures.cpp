@@ -1,0 +1,267 @@
+#include "geo/kernels/plate_figures.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <numbers>
+#include <numeric>
+#include <string>
+
+#include "geo/core/error.hpp"
+
+namespace geo {
+namespace {
+
+constexpr int kColumns = 720;
+constexpr int kTypes = 3;  // convergent, divergent, transform
+constexpr int kReach = 4;  // cells across the neighbourhood of a corner
+
+void check_shape(const Grid& grid, std::size_t size, const char* what) {
+  if (size != static_cast<std::size_t>(grid.size())) {
+    throw InputError(std::string("plate boundaries: ") + what + " has " + std::to_string(size) +
+                     " values, the grid " + std::to_string(grid.size()) + " cells");
+  }
+}
+
+/// What a cell of the coarse raster knows: plate and velocity of its middle, the rest of all of it.
+struct Patch {
+  std::int16_t plate = -1;
+  float east = 0.0F, north = 0.0F;
+  double continent = 0.0;
+  std::array<std::int32_t, kTypes> types{};
+};
+
+class Patches {
+ public:
+  Patches(const Grid& grid, const PlateFields& fields)
+      : grid_(grid.nx() <= kColumns ? grid : Grid::sphere(kColumns, kColumns / 2, grid.figure())),
+        patches_(grid_.size()) {
+    const int nx = grid.nx(), ny = grid.ny();
+    std::vector<std::int32_t> cells(patches_.size(), 0);
+    for (int j = 0; j < ny; ++j) {
+      const int row = scaled(j, grid_.ny(), ny);
+      for (int i = 0; i < nx; ++i) {
+        const Index from = grid.cell(i, j), to = grid_.cell(scaled(i, grid_.nx(), nx), row);
+        Patch& patch = patches_[to];
+        patch.continent += fields.continental_fraction[from];
+        ++cells[to];
+        const int type = fields.boundary_type[from];
+        if (type >= 1 && type <= kTypes) ++patch.types[type - 1];
+      }
+    }
+    for (int row = 0; row < grid_.ny(); ++row) {
+      for (int column = 0; column < grid_.nx(); ++column) {
+        const Index to = grid_.cell(column, row);
+        const Index middle = grid.cell(scaled(column, nx, grid_.nx()), scaled(row, ny, grid_.ny()));
+        Patch& patch = patches_[to];
+        patch.plate = fields.plate_id[middle];
+        patch.east = fields.velocity_east_mm_yr[middle];
+        patch.north = fields.velocity_north_mm_yr[middle];
+        patch.continent /= std::max(cells[to], 1);
+      }
+    }
+  }
+
+  [[nodiscard]] const Grid& grid() const { return grid_; }
+  /// Beyond a pole lies the same row, half-way round.
+  [[nodiscard]] const Patch& at(int column, int row) const {
+    const int ny = grid_.ny(), nx = grid_.nx();
+    if (row < 0 || row >= ny) {
+      row = row < 0 ? -1 - row : 2 * ny - 1 - row;
+      column += nx / 2;
+    }
+    return patches_[grid_.cell((column % nx + nx) % nx, row)];
+  }
+
+ private:
+  /// Cell of an axis of `to` cells in which the middle of cell i of `from` cells lies.
+  static int scaled(int i, int to, int from) {
+    return static_cast<int>((2 * std::int64_t(i) + 1) * to / (2 * std::int64_t(from)));
+  }
+
+  Grid grid_;
+  std::vector<Patch> patches_;
+};
+
+/// One plate in the neighbourhood of a corner.
+struct Side {
+  std::int16_t plate;
+  double gradient_east = 0.0, gradient_north = 0.0;  // of its indicator, per m
+  double east = 0.0, north = 0.0, continent = 0.0;   // sums over its cells
+  int cells = 0;
+
+  [[nodiscard]] double steepness() const { return std::hypot(gradient_east, gradient_north); }
+  [[nodiscard]] bool is_continent() const { return continent >= 0.5 * cells; }
+};
+
+/// The plates around the corner above and to the right of a cell, and what joins them.
+class Corner {
+ public:
+  Corner(const Patches& patches, int column, int row) {
+    constexpr std::array kAcross{0.125, 0.375, 0.375, 0.125};  // 1:2:1 smoothing, halved cells
+    constexpr std::array kAlong{-0.25, -0.25, 0.25, 0.25};     // its difference
+    const double east_m = patches.grid().face_north_m(row);
+    const double north_m = patches.grid().spacing_north_m(row);
+    for (int j = 0; j < kReach; ++j) {
+      for (int i = 0; i < kReach; ++i) {
+        const Patch& patch = patches.at(column - 1 + i, row - 1 + j);
+        Side& side = side_of(patch.plate);
+        side.gradient_east += kAlong[i] * kAcross[j] / east_m;
+        side.gradient_north += kAlong[j] * kAcross[i] / north_m;
+        side.east += patch.east;
+        side.north += patch.north;
+        side.continent += patch.continent;
+        ++side.cells;
+        for (int t = 0; t < kTypes; ++t) types_[t] += patch.types[t];
+      }
+    }
+    area_m2_ = east_m * north_m;
+    std::partial_sort(sides_.begin(), sides_.begin() + std::min<int>(2, count_),
+                      sides_.begin() + count_,
+                      [](const Side& a, const Side& b) { return a.steepness() > b.steepness(); });
+  }
+
+  [[nodiscard]] bool has_boundary() const { return count_ > 1; }
+  [[nodiscard]] double length_m() const {
+    double sum = 0.0;
+    for (int s = 0; s < count_; ++s) sum += sides_[s].steepness();
+    return 0.5 * sum * area_m2_;
+  }
+  [[nodiscard]] double opening_mm_yr() const {
+    const Side &a = sides_[0], &b = sides_[1];
+    const double steepness = a.steepness();
+    if (steepness == 0.0) return 0.0;
+    const double east = a.east / a.cells - b.east / b.cells;
+    const double north = a.north / a.cells - b.north / b.cells;
+    return (east * a.gradient_east + north * a.gradient_north) / steepness;
+  }
+  [[nodiscard]] bool has_type() const { return types_ != std::array<std::int64_t, kTypes>{}; }
+  [[nodiscard]] BoundaryKind kind() const {
+    const bool continents = sides_[0].is_continent() && sides_[1].is_continent();
+    switch (std::max_element(types_.begin(), types_.end()) - types_.begin()) {
+      case 0:
+        return continents ? BoundaryKind::collision : BoundaryKind::subduction;
+      case 1:
+        return continents ? BoundaryKind::continental_rift : BoundaryKind::ocean_ridge;
+      default:
+        return continents ? BoundaryKind::continental_transform : BoundaryKind::ocean_transform;
+    }
+  }
+
+ private:
+  Side& side_of(std::int16_t plate) {
+    for (int s = 0; s < count_; ++s) {
+      if (sides_[s].plate == plate) return sides_[s];
+    }
+    sides_[count_] = Side{.plate = plate};
+    return sides_[count_++];
+  }
+
+  std::array<Side, kReach * kReach> sides_{};
+  int count_ = 0;
+  std::array<std::int64_t, kTypes> types_{};
+  double area_m2_ = 0.0;
+};
+
+}  // namespace
+
+double BoundaryFigures::total_m() const {
+  return std::accumulate(length_m.begin(), length_m.end(), untyped_m);
+}
+
+BoundaryFigures measure_boundaries(const Grid& grid, const PlateFields& plates) {
+  check_shape(grid, plates.plate_id.size(), "plate_id");
+  check_shape(grid, plates.boundary_type.size(), "boundary_type");
+  check_shape(grid, plates.continental_fraction.size(), "continental_fraction");
+  check_shape(grid, plates.velocity_east_mm_yr.size(), "plate_velocity_east");
+  check_shape(grid, plates.velocity_north_mm_yr.size(), "plate_velocity_north");
+  const Patches patches(grid, plates);
+  BoundaryFigures figures;
+  for (int row = 0; row + 1 < patches.grid().ny(); ++row) {
+    for (int column = 0; column < patches.grid().nx(); ++column) {
+      const Corner corner(patches, column, row);
+      if (!corner.has_boundary()) continue;
+      const double length = corner.length_m();
+      if (!corner.has_type()) {
+        figures.untyped_m += length;
+        continue;
+      }
+      const int kind = static_cast<int>(corner.kind());
+      figures.length_m[kind] += length;
+      figures.opening_mm_yr[kind] += length * corner.opening_mm_yr();
+    }
+  }
+  for (int kind = 0; kind < kBoundaryKinds; ++kind) {
+    if (figures.length_m[kind] > 0.0) figures.opening_mm_yr[kind] /= figures.length_m[kind];
+  }
+  return figures;
+}
+
+std::vector<double> plate_shares(const Grid& grid, std::span<const std::int16_t> plate_id) {
+  check_shape(grid, plate_id.size(), "plate_id");
+  std::map<std::int16_t, double> area;
+  for (int j = 0; j < grid.ny(); ++j) {
+    // Cells of a row come in long runs of one plate.
+    const auto row = plate_id.subspan(std::size_t(j) * grid.nx(), grid.nx());
+    for (auto at = row.begin(); at != row.end();) {
+      const auto end = std::find_if(at, row.end(), [&](std::int16_t id) { return id != *at; });
+      if (*at >= 0) area[*at] += grid.area_m2(j) * static_cast<double>(end - at);
+      at = end;
+    }
+  }
+  std::vector<double> shares;
+  for (const auto& [plate, m2] : area) shares.push_back(m2 / grid.total_area_m2());
+  std::sort(shares.begin(), shares.end(), std::greater<>());
+  return shares;
+}
+
+double speed_without_net_rotation(const Grid& grid, std::span<const float> velocity_east,
+                                  std::span<const float> velocity_north) {
+  check_shape(grid, velocity_east.size(), "plate_velocity_east");
+  check_shape(grid, velocity_north.size(), "plate_velocity_north");
+  const int nx = grid.nx(), ny = grid.ny();
+  // Local east and north at a cell.
+  const auto axes = [&](int i, int j) {
+    const auto r = grid.unit_vector(i, j);
+    const double across = std::max(std::hypot(r[0], r[1]), 1e-300);
+    const std::array east{-r[1] / across, r[0] / across, 0.0};
+    const std::array north{-r[2] * east[1], r[2] * east[0], across};
+    return std::pair{east, north};
+  };
+  std::vector<std::array<double, 3>> turn(ny);
+#pragma omp parallel for schedule(static)
+  for (int j = 0; j < ny; ++j) {
+    std::array<double, 3> sum{};
+    for (int i = 0; i < nx; ++i) {
+      const auto [east, north] = axes(i, j);
+      const Index c = grid.cell(i, j);
+      for (int k = 0; k < 3; ++k)
+        sum[k] += velocity_east[c] * north[k] - velocity_north[c] * east[k];
+    }
+    turn[j] = sum;
+  }
+  std::array<double, 3> net{};
+  for (int j = 0; j < ny; ++j) {
+    for (int k = 0; k < 3; ++k) net[k] += 1.5 * turn[j][k] * grid.area_m2(j) / grid.total_area_m2();
+  }
+  std::vector<double> squares(ny, 0.0);
+#pragma omp parallel for schedule(static)
+  for (int j = 0; j < ny; ++j) {
+    for (int i = 0; i < nx; ++i) {
+      const auto [east, north] = axes(i, j);
+      const Index c = grid.cell(i, j);
+      double u = velocity_east[c], v = velocity_north[c];
+      for (int k = 0; k < 3; ++k) {
+        u -= net[k] * north[k];
+        v += net[k] * east[k];
+      }
+      squares[j] += u * u + v * v;
+    }
+  }
+  double sum = 0.0;
+  for (int j = 0; j < ny; ++j) sum += squares[j] * grid.area_m2(j);
+  return std::sqrt(sum / grid.total_area_m2());
+}
+
+}  // namespace geo

@@ -1,0 +1,186 @@
+// The plates of whole planets.
+#include "geo/stages/plates.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <numeric>
+
+#include "geo/core/vector3.hpp"
+
+namespace geo {
+namespace {
+
+State planet(int nx, std::uint64_t seed, PlatesParameters parameters = {}) {
+  State state(std::make_shared<Grid>(Grid::sphere(nx, nx / 2)));
+  const auto stage = make_plates_stage(std::move(parameters));
+  StageIo io(state, stage->info());
+  Context context;
+  context.seed = seed;
+  stage->run(io, context);
+  return state;
+}
+
+double area_where(const State& state, const std::function<bool(Index)>& holds) {
+  const Grid& grid = state.grid();
+  double area = 0.0;
+  for (Index cell = 0; cell < grid.size(); ++cell) {
+    if (holds(cell)) area += grid.area_m2(grid.row(cell));
+  }
+  return area / grid.total_area_m2();
+}
+
+TEST(Plates, MoveAsRigidBodies) {
+  const State state = planet(256, 3);
+  const Grid& grid = state.grid();
+  const auto plate = state.read(field::plate_id);
+  const auto east = state.read(field::plate_velocity_east);
+  const auto north = state.read(field::plate_velocity_north);
+  // Least squares for each plate's rotation; what is left must be round-off of single precision.
+  std::map<int, std::array<std::array<double, 4>, 3>> normal;
+  const auto axes = [&](Index cell) {
+    const Vector3 r = grid.unit_vector(grid.column(cell), grid.row(cell));
+    const double c = std::hypot(r[0], r[1]);
+    const Vector3 e{-r[1] / c, r[0] / c, 0.0};
+    return std::array<Vector3, 3>{r, e, cross(r, e)};
+  };
+  for (Index cell = 0; cell < grid.size(); ++cell) {
+    const auto [r, e, n] = axes(cell);
+    // v . e = omega . (r x e)
+    for (const auto& [row, value] : {std::pair{cross(r, e), static_cast<double>(east[cell])},
+                                     std::pair{cross(r, n), static_cast<double>(north[cell])}}) {
+      auto& m = normal[plate[cell]];
+      for (int a = 0; a < 3; ++a) {
+        for (int b = 0; b < 3; ++b) m[a][b] += row[a] * row[b];
+        m[a][3] += row[a] * value;
+      }
+    }
+  }
+  std::map<int, Vector3> omega;
+  for (auto& [id, m] : normal) {
+    for (int a = 0; a < 3; ++a) {
+      for (int b = 0; b < 3; ++b) {
+        if (a == b) continue;
+        const double f = m[b][a] / m[a][a];
+        for (int c = 0; c < 4; ++c) m[b][c] -= f * m[a][c];
+      }
+    }
+    omega[id] = {m[0][3] / m[0][0], m[1][3] / m[1][1], m[2][3] / m[2][2]};
+  }
+  for (Index cell = 0; cell < grid.size(); ++cell) {
+    const auto [r, e, n] = axes(cell);
+    const Vector3 v = cross(omega[plate[cell]], r);
+    ASSERT_NEAR(east[cell], dot(v, e), 1e-3);
+    ASSERT_NEAR(north[cell], dot(v, n), 1e-3);
+  }
+}
+
+TEST(Plates, AreTheSameAtEveryResolution) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const State coarse = planet(256, seed), fine = planet(1024, seed);
+    const auto few = coarse.read(field::plate_id), many = fine.read(field::plate_id);
+    const auto low = coarse.read(field::continental_fraction);
+    const auto high = fine.read(field::continental_fraction);
+    const auto same = [&](Index cell, auto&& agree) {
+      const int i = coarse.grid().column(cell), j = coarse.grid().row(cell);
+      double share = 0.0;
+      for (int v = 0; v < 4; ++v) {
+        for (int u = 0; u < 4; ++u) share += agree(cell, fine.grid().cell(4 * i + u, 4 * j + v));
+      }
+      return share / 16.0;
+    };
+    double plates = 0.0, land = 0.0;
+    for (Index cell = 0; cell < coarse.grid().size(); ++cell) {
+      const double weight =
+          coarse.grid().area_m2(coarse.grid().row(cell)) / coarse.grid().total_area_m2();
+      plates += weight * same(cell, [&](Index a, Index b) { return few[a] == many[b]; });
+      land += weight *
+              same(cell, [&](Index a, Index b) { return (low[a] > 0.5F) == (high[b] > 0.5F); });
+    }
+    EXPECT_GT(plates, 0.97) << "seed " << seed;
+    EXPECT_GT(land, 0.96) << "seed " << seed;
+  }
+}
+
+TEST(Plates, OfManySeedsAndCountsStayInRange) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    PlatesParameters parameters;
+    constexpr std::array kCounts{2, 3, 7, 15, 30, 100};
+    parameters.growth.count = kCounts[seed % kCounts.size()];
+    parameters.continents = seed % 3 == 0 ? "plates" : "cratons";
+    const State state = planet(128, seed, parameters);
+    const auto plate = state.read(field::plate_id);
+    const auto fraction = state.read(field::continental_fraction);
+    const auto strength = state.read(field::boundary_strength);
+    const auto type = state.read(field::boundary_type), orogeny = state.read(field::orogeny_type);
+    const auto age = state.read(field::crust_age), heat = state.read(field::heat_anomaly);
+    for (Index cell = 0; cell < state.grid().size(); ++cell) {
+      ASSERT_TRUE(plate[cell] >= 0 && plate[cell] < parameters.growth.count);
+      ASSERT_TRUE(fraction[cell] >= 0.0F && fraction[cell] <= 1.0F);
+      ASSERT_TRUE(strength[cell] >= 0.0F && strength[cell] <= 1.0F);
+      ASSERT_TRUE(heat[cell] >= 0.0F && heat[cell] <= 1.0F);
+      ASSERT_TRUE(age[cell] >= 0.0F && age[cell] < 4000.0F);
+      ASSERT_TRUE(type[cell] >= 0 && type[cell] <= 3);
+      ASSERT_TRUE(orogeny[cell] >= 0 && orogeny[cell] <= 2);
+      ASSERT_TRUE(type[cell] != 0 || strength[cell] == 0.0F);
+    }
+    if (parameters.continents == "cratons") {
+      EXPECT_NEAR(area_where(state, [&](Index c) { return fraction[c] > 0.5F; }), 0.40, 0.01);
+    }
+  }
+}
+
+TEST(Plates, SeaFloorIsYoungAtRidgesAndAsOldAsEarths) {
+  double mean = 0.0;
+  constexpr int kSeeds = 8;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const State state = planet(256, seed);
+    const auto age = state.read(field::crust_age);
+    const auto fraction = state.read(field::continental_fraction);
+    const auto type = state.read(field::boundary_type);
+    double sum = 0.0, area = 0.0, ridge = 0.0, ridge_area = 0.0;
+    for (Index cell = 0; cell < state.grid().size(); ++cell) {
+      if (fraction[cell] > 0.05F) continue;
+      const double weight = state.grid().area_m2(state.grid().row(cell));
+      sum += weight * age[cell];
+      area += weight;
+      if (type[cell] != static_cast<int>(BoundaryType::divergent)) continue;
+      ridge += weight * age[cell];
+      ridge_area += weight;
+    }
+    mean += sum / area / kSeeds;
+    EXPECT_LT(ridge / ridge_area, 4.0) << "seed " << seed;
+  }
+  EXPECT_NEAR(mean, 64.0, 12.0);
+}
+
+TEST(Plates, TurnNoFasterWithoutNetRotation) {
+  const State state = planet(128, 6);
+  const Grid& grid = state.grid();
+  const auto east = state.read(field::plate_velocity_east);
+  const auto north = state.read(field::plate_velocity_north);
+  Vector3 net{};
+  for (Index cell = 0; cell < grid.size(); ++cell) {
+    const Vector3 r = grid.unit_vector(grid.column(cell), grid.row(cell));
+    const double c = std::hypot(r[0], r[1]);
+    const Vector3 e{-r[1] / c, r[0] / c, 0.0};
+    const Vector3 v = add(scaled(e, east[cell]), cross(r, e), north[cell]);
+    net = add(net, cross(r, v), grid.area_m2(grid.row(cell)) / grid.total_area_m2());
+  }
+  EXPECT_LT(length(net), 0.4);  // mm/yr; what the coarse grid makes of the outlines
+}
+
+TEST(Plates, NeedAWholeSphere) {
+  State state(std::make_shared<Grid>(Grid::plane(16, 16, 1000.0, 1000.0)));
+  const auto stage = make_plates_stage();
+  StageIo io(state, stage->info());
+  Context context;
+  EXPECT_THROW(stage->run(io, context), InputError);
+}
+
+}  // namespace
+}  // namespace geo
