@@ -14,6 +14,7 @@ using Action = std::function<void()>;
 // Each adds its subcommand with its options to the program; when it is the chosen one, `action`
 // is what runs.
 void add_run_command(CLI::App& program, Action& action);
+void add_island_command(CLI::App& program, Action& action);
 void add_maps_command(CLI::App& program, Action& action);
 void add_params_command(CLI::App& program, Action& action);
 void add_fields_command(CLI::App& program, Action& action);

@@ -91,6 +91,7 @@ void run_program(int argc, char** argv) {
   program.footer("terrane COMMAND --help tells more.");
   terrane::Action action;
   terrane::add_run_command(program, action);
+  terrane::add_island_command(program, action);
   terrane::add_score_command(program, action);
   terrane::add_maps_command(program, action);
   terrane::add_params_command(program, action);

@@ -108,6 +108,22 @@ const Field<double> drainage_area{{"drainage_area",
                                    {},
                                    -1,
                                    "area: point"}};
+const Field<double> inflow_area{{"inflow_area",
+                                 "m2",
+                                 "",
+                                 "drainage area beyond the edge whose water enters here",
+                                 Type::float64,
+                                 {},
+                                 -1,
+                                 "area: point"}};
+const Field<float> inflow_discharge{{"inflow_discharge",
+                                     "m3 s-1",
+                                     "",
+                                     "mean discharge that enters here from beyond the edge",
+                                     Type::float32,
+                                     {},
+                                     -1,
+                                     "area: point"}};
 const Field<std::int32_t> flow_receiver{
     {"flow_receiver",
      "1",
@@ -213,7 +229,7 @@ const Field<float> settlement_suitability{{"settlement_suitability", "1", "",
                                            Type::float32}};
 
 std::span<const FieldSpec* const> all() {
-  static const std::array<const FieldSpec*, 42> kAll{&plate_id,
+  static const std::array<const FieldSpec*, 44> kAll{&plate_id,
                                                      &continental_fraction,
                                                      &plate_velocity_east,
                                                      &plate_velocity_north,
@@ -234,6 +250,8 @@ std::span<const FieldSpec* const> all() {
                                                      &uplift_rate,
                                                      &erosion_rate,
                                                      &drainage_area,
+                                                     &inflow_area,
+                                                     &inflow_discharge,
                                                      &flow_receiver,
                                                      &flow_direction,
                                                      &temperature,

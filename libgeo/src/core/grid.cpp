@@ -8,6 +8,7 @@
 #include <string>
 
 #include "geo/core/error.hpp"
+#include "geo/core/projection.hpp"
 
 namespace geo {
 namespace {
@@ -78,6 +79,41 @@ Grid Grid::plane(int nx, int ny, double dx_m, double dy_m, Edges edges,
     for (int i = 0; i < nx; ++i) {
       grid.longitude_deg_.push_back(centre->longitude_deg + grid.x_m(i) / parallel_m);
     }
+  }
+  grid.finish();
+  return grid;
+}
+
+Grid Grid::equal_area(int nx, int ny, double cell_m, Centre centre, Ellipsoid figure,
+                      Edges edges) {
+  if (!(std::abs(centre.latitude_deg) <= 90.0 && std::abs(centre.longitude_deg) <= 360.0)) {
+    throw ConfigurationError("centre of an equal-area grid: latitude must be within 90 degrees");
+  }
+  Grid grid(Topology::plane, edges, nx, ny, figure);
+  grid.set_plane_metric(cell_m, cell_m);
+  grid.centre_ = centre;
+  const EqualAreaProjection projection(centre, figure);
+  // The rim of the hemisphere lies at sqrt(2) authalic radii.
+  if (std::hypot(0.5 * nx * cell_m, 0.5 * ny * cell_m) >
+      std::numbers::sqrt2 * projection.authalic_radius_m()) {
+    throw ConfigurationError("equal-area grid of " + std::to_string(nx) + " x " +
+                             std::to_string(ny) + " cells reaches beyond half of the planet");
+  }
+  grid.cell_latitude_deg_.resize(grid.size());
+  grid.cell_longitude_deg_.resize(grid.size());
+#pragma omp parallel for schedule(static)
+  for (int j = 0; j < ny; ++j) {
+    for (int i = 0; i < nx; ++i) {
+      const Centre here = projection.unproject(grid.x_m(i), grid.y_m(j));
+      grid.cell_latitude_deg_[grid.cell(i, j)] = here.latitude_deg;
+      grid.cell_longitude_deg_[grid.cell(i, j)] = here.longitude_deg;
+    }
+  }
+  for (int j = 0; j < ny; ++j) {
+    grid.latitude_deg_.push_back(projection.unproject(0.0, grid.y_m(j)).latitude_deg);
+  }
+  for (int i = 0; i < nx; ++i) {
+    grid.longitude_deg_.push_back(projection.unproject(grid.x_m(i), 0.0).longitude_deg);
   }
   grid.finish();
   return grid;
@@ -209,6 +245,12 @@ std::array<Index, kDirections> Grid::offsets() const noexcept {
 }
 
 std::array<double, 3> Grid::unit_vector(int column, int row) const noexcept {
+  if (is_projected()) {
+    const double latitude = cell_latitude_deg_[cell(column, row)] * kRadiansPerDegree;
+    const double longitude = cell_longitude_deg_[cell(column, row)] * kRadiansPerDegree;
+    const double ring = std::cos(latitude);
+    return {ring * std::cos(longitude), ring * std::sin(longitude), std::sin(latitude)};
+  }
   if (is_geographic()) {
     return {cos_lat_[row] * cos_lon_[column], cos_lat_[row] * sin_lon_[column], sin_lat_[row]};
   }

@@ -26,8 +26,26 @@ void StageIo::check_readable(const FieldSpec& spec) const {
 }
 
 void StageIo::check_writable(const FieldSpec& spec) const {
-  if (lists(info_.writes, spec)) return;
+  if (lists(info_.writes, spec) && !info_.own_grid) return;
   throw Bug(fmt::format("stage {} writes {} without declaring it", info_.name, spec.name));
+}
+
+void StageIo::hand_over(State result) {
+  for (const FieldSpec* spec : result.present()) {
+    if (info_.own_grid && lists(info_.writes, *spec)) continue;
+    throw Bug(fmt::format("stage {} hands over {} without declaring it", info_.name, spec->name));
+  }
+  for (const FieldSpec* spec : info_.writes) {
+    if (result.has(*spec)) continue;
+    throw Bug(fmt::format("stage {} does not hand over {}", info_.name, spec->name));
+  }
+  handed_over_ = std::move(result);
+}
+
+const State& StageIo::result() const {
+  if (!info_.own_grid) return state_;
+  if (!handed_over_) throw Bug(fmt::format("stage {} handed nothing over", info_.name));
+  return *handed_over_;
 }
 
 int Pipeline::find(std::string_view name) const {
@@ -55,7 +73,10 @@ void Pipeline::check(std::span<const FieldSpec* const> initial, int first, int l
       if (there.contains(wanted->name)) continue;
       std::string writers;
       for (const auto& stage : stages_) {
-        if (!lists(stage->info().writes, *wanted) || stage->info().name == info.name) continue;
+        if (!lists(stage->info().writes, *wanted) || stage->info().name == info.name ||
+            stage->info().own_grid) {
+          continue;
+        }
         writers += fmt::format("{}{}", writers.empty() ? "" : " or ", stage->info().name);
       }
       throw ConfigurationError(fmt::format("stage {} needs the field {}, which {}", info.name,
@@ -63,6 +84,7 @@ void Pipeline::check(std::span<const FieldSpec* const> initial, int first, int l
                                            writers.empty() ? "no stage writes: give it with --dem"
                                                            : "stage " + writers + " writes"));
     }
+    if (info.own_grid) continue;
     for (const FieldSpec* written : info.writes) there.insert(written->name);
   }
 }
@@ -70,6 +92,7 @@ void Pipeline::check(std::span<const FieldSpec* const> initial, int first, int l
 void Pipeline::run(State& state, Context& context, int first, int last,
                    const Observer& observer) const {
   check(state.present(), first, last);
+  context.configuration = parameters();
   for (int at = first; at <= last; ++at) {
     const StageInfo& info = stages_[at]->info();
     if (observer.before) observer.before(at);
@@ -78,12 +101,12 @@ void Pipeline::run(State& state, Context& context, int first, int last,
     StageIo io(state, info);
     stages_[at]->run(io, context);
     for (const FieldSpec* spec : info.writes) {
-      if (!state.has(*spec)) {
+      if (!io.result().has(*spec)) {
         throw Bug(fmt::format("stage {} did not write {}", info.name, spec->name));
       }
     }
     context.advance(1.0);
-    if (observer.after) observer.after(at, state, context);
+    if (observer.after) observer.after(at, io.result(), context);
     for (const FieldSpec* spec : state.present()) {
       bool needed = false;
       for (int later = at + 1; later <= last && !needed; ++later) {

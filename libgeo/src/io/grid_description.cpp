@@ -6,6 +6,7 @@
 
 #include "geo/core/error.hpp"
 #include "geo/kernels/resample.hpp"
+#include "map_projection.hpp"
 
 namespace geo::io {
 namespace {
@@ -30,11 +31,15 @@ constexpr CoordinateNames kLongitude{"lon", "lon_bnds", "longitude", "longitude 
 constexpr CoordinateNames kY{"y", "y_bnds", "", "distance northwards from the middle", "m"};
 constexpr CoordinateNames kX{"x", "x_bnds", "", "distance eastwards from the middle", "m"};
 
+// Without `axis`: ParaView would wrap the map onto a sphere.
+constexpr CoordinateNames kNorthing{"y", "y_bnds", "projection_y_coordinate", "northing", "m"};
+constexpr CoordinateNames kEasting{"x", "x_bnds", "projection_x_coordinate", "easting", "m"};
+
 CoordinateNames row_names(const Grid& grid) {
-  return grid.is_latitude_longitude() ? kLatitude : kY;
+  return grid.is_latitude_longitude() ? kLatitude : grid.is_projected() ? kNorthing : kY;
 }
 CoordinateNames column_names(const Grid& grid) {
-  return grid.is_latitude_longitude() ? kLongitude : kX;
+  return grid.is_latitude_longitude() ? kLongitude : grid.is_projected() ? kEasting : kX;
 }
 
 void define_coordinate(const nc::File& file, const CoordinateNames& names, int dimension,
@@ -47,9 +52,19 @@ void define_coordinate(const nc::File& file, const CoordinateNames& names, int d
   file.define_variable(names.bounds, NC_DOUBLE, std::array{dimension, bounds_dimension});
 }
 
-void define_mapping(const nc::File& file, const Ellipsoid& figure) {
+void define_mapping(const nc::File& file, const Grid& grid) {
+  const Ellipsoid& figure = grid.figure();
   const int crs = file.define_variable(kMapping, NC_INT, {});
-  file.put(crs, "grid_mapping_name", "latitude_longitude");
+  if (grid.is_projected()) {
+    file.put(crs, "grid_mapping_name", "lambert_azimuthal_equal_area");
+    file.put(crs, "latitude_of_projection_origin", grid.centre()->latitude_deg);
+    file.put(crs, "longitude_of_projection_origin", grid.centre()->longitude_deg);
+    file.put(crs, "false_easting", 0.0);
+    file.put(crs, "false_northing", 0.0);
+    file.put(crs, "crs_wkt", equal_area_wkt(*grid.centre(), figure));
+  } else {
+    file.put(crs, "grid_mapping_name", "latitude_longitude");
+  }
   file.put(crs, "longitude_of_prime_meridian", 0.0);
   if (figure.flattening == 0.0) {
     file.put(crs, "earth_radius", figure.radius_m);
@@ -78,6 +93,7 @@ void put_rebuilding_attributes(const nc::File& file, const Grid& grid) {
   const bool window = grid.topology() == Topology::plane && grid.is_latitude_longitude();
   file.put(NC_GLOBAL, kTopology,
            window                                ? "window"
+           : grid.is_projected()                 ? "equal_area"
            : grid.topology() == Topology::plane  ? "plane"
            : grid.topology() == Topology::sphere ? "sphere"
                                                  : "torus");
@@ -109,8 +125,9 @@ void write_axis(const nc::File& file, const CoordinateNames& names, const Axis& 
 void write_plane_positions(const nc::File& file, const Grid& grid) {
   std::vector<double> latitudes(grid.size()), longitudes(grid.size());
   for (Index cell = 0; cell < grid.size(); ++cell) {
-    latitudes[cell] = grid.latitude_deg(grid.row(cell));
-    longitudes[cell] = grid.longitude_deg(grid.column(cell));
+    const Centre position = grid.position(grid.column(cell), grid.row(cell));
+    latitudes[cell] = position.latitude_deg;
+    longitudes[cell] = position.longitude_deg;
   }
   nc::check(nc_put_var_double(file.id(), *file.find_variable("lat"), latitudes.data()));
   nc::check(nc_put_var_double(file.id(), *file.find_variable("lon"), longitudes.data()));
@@ -146,9 +163,9 @@ GridVariables define_grid(const nc::File& file, const Grid& grid) {
   const int bounds = file.define_dimension("bnds", 2);
   define_coordinate(file, row_names(grid), ids.row_dimension, bounds);
   define_coordinate(file, column_names(grid), ids.column_dimension, bounds);
-  ids.has_mapping = grid.is_latitude_longitude();
+  ids.has_mapping = grid.is_latitude_longitude() || grid.is_projected();
   ids.has_coordinates = grid.is_geographic() && !grid.is_latitude_longitude();
-  if (ids.has_mapping) define_mapping(file, grid.figure());
+  if (ids.has_mapping) define_mapping(file, grid);
   if (ids.has_coordinates) define_plane_positions(file, ids);
   put_rebuilding_attributes(file, grid);
   return ids;
@@ -190,6 +207,10 @@ Grid read_grid(const nc::File& file) {
     }
     const auto step = required_numbers(file, kSpacing, 2);
     if (*topology == "torus") return Grid::torus(nx, ny, step[0], step[1]);
+    if (*topology == "equal_area") {
+      const auto c = required_numbers(file, kCentre, 2);
+      return Grid::equal_area(nx, ny, step[0], {c[0], c[1]}, figure, edges);
+    }
     if (*topology == "plane") {
       const auto c = file.numbers(NC_GLOBAL, kCentre);
       const auto centre = c.size() == 2 ? std::optional(Centre{c[0], c[1]}) : std::nullopt;
@@ -199,8 +220,8 @@ Grid read_grid(const nc::File& file) {
     throw InputError(error.what());
   }
   throw InputError(
-      fmt::format("global attribute {} is \"{}\", must be sphere, window, plane or "
-                  "torus",
+      fmt::format("global attribute {} is \"{}\", must be sphere, window, plane, "
+                  "equal_area or torus",
                   kTopology, *topology));
 }
 

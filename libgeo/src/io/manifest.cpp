@@ -120,4 +120,19 @@ std::string disagreement(const StageRecord& record, const Snapshot& file) {
   return {};
 }
 
+std::string netcdf_of(const StageRecord& record) {
+  for (const std::string& file : record.files) {
+    if (std::filesystem::path(file).extension() == ".nc") return file;
+  }
+  throw InputError(fmt::format("manifest.json: stage {} lists no NetCDF file", record.name));
+}
+
+bool is_island(const StageRecord& record) {
+  return record.name == "island" || record.name.starts_with("island-");
+}
+
+std::string island_name(int number) {
+  return number <= 1 ? "island" : fmt::format("island-{}", number);
+}
+
 }  // namespace geo::io

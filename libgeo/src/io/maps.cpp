@@ -206,6 +206,38 @@ void draw_wind(const Scene& scene, MapCanvas& canvas) {
   canvas.colour_bar(maps, false);
 }
 
+/// Relief with rivers and lakes over it, in the full colours of the height.
+void draw_island(const Scene& scene, MapCanvas& canvas) {
+  const ColourMap land("land_elevation"), sea("sea_depth");
+  const MapBase& base = scene.base;
+  canvas.paint([&](int x, int y) {
+    const float cover = base.land_cover.at(x, y);
+    const Rgb tint = mix(sea.smooth(base.sea_m.at(x, y)), land.smooth(base.land_m.at(x, y)), cover);
+    const Rgb shaded = lit(tint, base.shade.at(x, y), 0.42F + 0.36F * cover);
+    return with_lakes(base, x, y, mix(shaded, kInk, 0.25F * base.coast.at(x, y)));
+  });
+  if (has_rivers(scene.state)) draw_rivers(canvas, trace_rivers(scene.frame, scene.state), kRiver);
+  canvas.frame();
+  const std::array<const ColourMap*, 2> maps{&sea, &land};
+  canvas.colour_bar(maps, false);
+}
+
+std::vector<Plan> plan_island(const State& state, const std::string& name) {
+  std::vector<Plan> plans;
+  if (state.has(field::elevation)) {
+    plans.push_back({name, "Island", "metres above and below sea level",
+                     "A part of the planet in detail: shaded relief, rivers and lakes.",
+                     draw_island});
+  }
+  for (const auto& map : kCategoryMaps) {
+    if (!state.has(*map.field)) continue;
+    plans.push_back(
+        {name + "-" + map.file, std::string(map.title) + " of the island", map.units, map.caption,
+         [&map](const Scene& scene, MapCanvas& canvas) { draw_categories(map, scene, canvas); }});
+  }
+  return plans;
+}
+
 std::vector<Plan> plan_maps(const State& state) {
   std::vector<Plan> plans;
   if (state.has(field::elevation)) {
@@ -304,26 +336,35 @@ std::vector<const FieldSpec*> map_fields() {
   return fields;
 }
 
-std::vector<MapFile> draw_map_files(const State& state, const std::filesystem::path& folder,
-                                    int width_px, std::string_view note) {
+namespace {
+
+/// The pictures that would be drawn.
+std::vector<MapFile> files_of(const std::vector<Plan>& plans, const MapLayout& layout,
+                              const std::filesystem::path& folder) {
+  std::vector<MapFile> files;
+  for (const Plan& plan : plans) {
+    files.push_back({folder / (plan.file + ".png"), plan.title, plan.caption, layout.width_px,
+                     layout.height_px});
+  }
+  return files;
+}
+
+std::vector<MapFile> draw_plans(const std::vector<Plan>& plans, const State& state,
+                                const std::filesystem::path& folder, int width_px,
+                                std::string_view note) {
   const MapLayout layout = map_layout(state.grid(), width_px);
   make_folder(folder);
   const MapFrame frame(state.grid(), layout.map_width, layout.map_height);
   const MapBase base = make_base(frame, state);
   const Scene scene{state, frame, base};
-  const auto plans = plan_maps(state);
-
-  std::vector<MapFile> files(plans.size());
+  auto files = files_of(plans, layout, folder);
   std::vector<std::exception_ptr> failures(plans.size());
 #pragma omp parallel for schedule(dynamic, 1)
   for (std::size_t i = 0; i < plans.size(); ++i) {
     try {
-      const Plan& plan = plans[i];
       MapCanvas canvas(state.grid(), layout);
-      canvas.title(plan.title, plan.units, note);
-      plan.draw(scene, canvas);
-      files[i] = {folder / (plan.file + ".png"), plan.title, plan.caption, layout.width_px,
-                  layout.height_px};
+      canvas.title(plans[i].title, plans[i].units, note);
+      plans[i].draw(scene, canvas);
       canvas.save(files[i].path);
     } catch (...) {
       failures[i] = std::current_exception();
@@ -333,6 +374,29 @@ std::vector<MapFile> draw_map_files(const State& state, const std::filesystem::p
     if (failure) std::rethrow_exception(failure);
   }
   return files;
+}
+
+}  // namespace
+
+std::vector<MapFile> draw_map_files(const State& state, const std::filesystem::path& folder,
+                                    int width_px, std::string_view note) {
+  return draw_plans(plan_maps(state), state, folder, width_px, note);
+}
+
+std::vector<MapFile> list_map_files(const State& state, const std::filesystem::path& folder,
+                                    int width_px) {
+  return files_of(plan_maps(state), map_layout(state.grid(), width_px), folder);
+}
+
+std::vector<MapFile> draw_island_files(const State& state, const std::filesystem::path& folder,
+                                       const std::string& name, int width_px,
+                                       std::string_view note) {
+  return draw_plans(plan_island(state, name), state, folder, width_px, note);
+}
+
+std::vector<MapFile> list_island_files(const State& state, const std::filesystem::path& folder,
+                                       const std::string& name, int width_px) {
+  return files_of(plan_island(state, name), map_layout(state.grid(), width_px), folder);
 }
 
 std::vector<std::filesystem::path> draw_maps(const State& state,

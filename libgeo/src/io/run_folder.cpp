@@ -111,8 +111,19 @@ void RunFolder::remove_stage(int number, std::string_view stage) const {
   }
 }
 
+void RunFolder::remove_further_islands() const {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(path_, error)) {
+    const std::string name = entry.path().filename().string();
+    if (is_stage_file(entry.path()) && name.find("-island-") != std::string::npos) {
+      remove_file(entry.path());
+    }
+  }
+}
+
 void RunFolder::remove_summaries() const {
   remove_file(collection());
+  remove_file(islands());
   remove_file(report());
   std::error_code error;
   if (!fs::is_directory(maps(), error)) return;

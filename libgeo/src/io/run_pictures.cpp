@@ -17,14 +17,12 @@
 namespace geo::io {
 namespace {
 
-/// The fields of all complete stages together that pictures and scorecard are made from: where two
-/// stages wrote the same, the later one's.
+/// The fields of all complete stages of the planet that pictures and scorecard are made from: where
+/// two stages wrote the same, the later one's.
 State final_state(const RunFolder& folder, const Manifest& manifest) {
   std::vector<std::filesystem::path> files;
-  for (const StageRecord& stage : manifest.stages) {
-    for (const std::string& file : stage.files) {
-      if (std::filesystem::path(file).extension() == ".nc") files.push_back(folder.path() / file);
-    }
+  for (const StageRecord& record : manifest.stages) {
+    if (!is_island(record)) files.push_back(folder.path() / netcdf_of(record));
   }
   if (files.empty()) {
     throw InputError(fmt::format("{}: holds no complete stage to draw", folder.path().string()));
@@ -39,15 +37,29 @@ std::optional<Scorecard> scorecard_of(const State& state) {
   return score_planet(state);
 }
 
+State island_state(const RunFolder& folder, const StageRecord& record) {
+  const Snapshot snapshot = read_netcdf(folder.path() / netcdf_of(record));
+  State state(snapshot.grid);
+  for (const auto& [spec, values] : snapshot.fields) state.set(*spec, *values);
+  return state;
+}
+
+void append(std::vector<MapFile>& maps, std::vector<MapFile> more) {
+  maps.insert(maps.end(), more.begin(), more.end());
+}
+
 }  // namespace
 
-std::vector<std::filesystem::path> draw_run(const RunFolder& folder, int map_width_px) {
+std::vector<std::filesystem::path> draw_run(const RunFolder& folder, int map_width_px,
+                                            std::string_view only_island) {
   const Manifest manifest = read_manifest(folder.manifest());
   const State state = final_state(folder, manifest);
+  const bool all = only_island.empty();
   const std::string note = fmt::format("seed {}, terrane {}", manifest.seed, manifest.version);
   Report report{.title = fmt::format("terrane: planet of seed {}", manifest.seed),
                 .introduction = fmt::format("{} x {} cells.", state.grid().nx(), state.grid().ny()),
-                .maps = draw_map_files(state, folder.maps(), map_width_px, note),
+                .maps = all ? draw_map_files(state, folder.maps(), map_width_px, note)
+                            : list_map_files(state, folder.maps(), map_width_px),
                 .scorecard = scorecard_of(state),
                 .events = read_events(folder.manifest()),
                 .fields = field_figures(manifest),
@@ -56,11 +68,23 @@ std::vector<std::filesystem::path> draw_run(const RunFolder& folder, int map_wid
                                {"commit", manifest.commit},
                                {"compiler", manifest.compiler},
                                {"seed", fmt::format("{}", manifest.seed)}}};
+  for (const StageRecord& record : manifest.stages) {
+    if (!is_island(record)) continue;
+    const State island = island_state(folder, record);
+    append(report.maps,
+           all || record.name == only_island
+               ? draw_island_files(island, folder.maps(), record.name, map_width_px, note)
+               : list_island_files(island, folder.maps(), record.name, map_width_px));
+  }
   if (state.has(field::elevation)) {
     report.maps.push_back(draw_hypsometry_file(state, folder.maps(), note));
   }
   std::vector<std::filesystem::path> written;
-  for (const MapFile& map : report.maps) written.push_back(map.path);
+  for (const MapFile& map : report.maps) {
+    if (std::filesystem::exists(map.path)) written.push_back(map.path);
+  }
+  std::erase_if(report.maps,
+                [](const MapFile& map) { return !std::filesystem::exists(map.path); });
   written.push_back(write_report(folder.path(), report));
   return written;
 }

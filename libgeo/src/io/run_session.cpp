@@ -13,6 +13,7 @@
 #include "geo/io/background_writer.hpp"
 #include "geo/io/build_info.hpp"
 #include "geo/io/hypsography.hpp"
+#include "geo/io/island_session.hpp"
 #include "geo/io/run_pictures.hpp"
 #include "geo/io/source_date.hpp"
 
@@ -72,6 +73,7 @@ void RunSession::clear_for_this_run() {
   for (int at = 0; at < static_cast<int>(pipeline_.stages().size()); ++at) {
     if (at < begin_ || at >= first_) folder_.remove_stage(numbers_[at], name_of(at));
   }
+  folder_.remove_further_islands();
   folder_.remove_summaries();
   write_text_file(folder_.config(), config_);
 }
@@ -136,6 +138,7 @@ void RunSession::execute(const RunEvents& events) {
     tell(events.info, "all stages are complete: only the pictures are drawn again");
   }
   state_.reset();
+  if (!note_.empty()) tell(events.info, note_);
   write_summaries(events);
 }
 
@@ -170,21 +173,21 @@ void RunSession::compute(const RunEvents& events) {
   writer.wait();
 }
 
-/// planet.pvd and what it lists; stages that were run without VTK files get theirs now.
-void RunSession::write_collection() {
-  std::vector<std::filesystem::path> paths;
+/// planet.pvd, island.pvd and what they list; stages that were run without VTK files get theirs
+/// now.
+void RunSession::write_collections() {
   for (StageRecord& record : manifest_.stages) {
-    const int at = pipeline_.find(record.name);
-    paths.push_back(file_of(at, ".vti"));
-    const std::string name = paths.back().filename().string();
-    if (!std::filesystem::exists(paths.back())) {
-      write_vti(paths.back(), read_netcdf(file_of(at, ".nc")), provenance_of(at));
+    const auto netcdf = folder_.path() / netcdf_of(record);
+    const auto vti = std::filesystem::path(netcdf).replace_extension(".vti");
+    if (!std::filesystem::exists(vti)) {
+      write_vti(vti, read_netcdf(netcdf), read_provenance(netcdf));
     }
+    const std::string name = vti.filename().string();
     if (std::find(record.files.begin(), record.files.end(), name) == record.files.end()) {
       record.files.push_back(name);
     }
   }
-  write_pvd(folder_.collection(), paths);
+  write_collection_files(folder_, manifest_);
 }
 
 void RunSession::write_summaries(const RunEvents& events) {
@@ -192,7 +195,7 @@ void RunSession::write_summaries(const RunEvents& events) {
     if (events.stop != nullptr && events.stop->load()) throw Interrupted();
   };
   check_stop();
-  if (settings_.vtk) write_collection();
+  if (settings_.vtk) write_collections();
   if (settings_.maps) {
     tell(events.stage_begins, "maps", static_cast<double>(settings_.map_width_px));
     const auto start = Clock::now();

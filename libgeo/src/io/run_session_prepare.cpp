@@ -100,6 +100,7 @@ void RunSession::prepare() {
   } else if (!state_) {
     begin_with_bare_planet();
   }
+  leave_out_island();
   read_given_fields();
   (void)read_hypsography(settings_.hypsography);  // refuses a bad one before anything is computed
   pipeline_.check(state_->present(), first_, last_);
@@ -247,6 +248,7 @@ bool RunSession::is_still_read(const FieldSpec& spec) const {
 
 void RunSession::load_complete_stages() {
   for (int at = begin_; at < first_; ++at) {
+    if (pipeline_.stages()[at]->info().own_grid) continue;
     const Snapshot snapshot = read_netcdf(file_of(at, ".nc"));
     if (!state_) state_.emplace(snapshot.grid);
     for (const auto& [spec, values] : snapshot.fields) {
@@ -300,6 +302,19 @@ void RunSession::read_initial_relief() {
     for (float& height_m : elevation_m) height_m -= sea_level_m;
   }
   state_->set(field::elevation, std::move(elevation_m));
+}
+
+/// A part of a planet has no island of its own: the run ends before it unless it is asked for.
+void RunSession::leave_out_island() {
+  if (last_ < begin_ || !pipeline_.stages()[last_]->info().own_grid) return;
+  if (grid().topology() == Topology::sphere) return;
+  const std::string name(name_of(last_));
+  if (settings_.to == name || last_ == begin_) {
+    throw ConfigurationError(
+        fmt::format("stage {} needs a whole planet: the relief covers a part of one", name));
+  }
+  --last_;
+  note_ = fmt::format("no {}: the relief covers a part of a planet, not the whole", name);
 }
 
 void RunSession::read_given_fields() {

@@ -73,6 +73,24 @@ void write_discharge(const Drainage& d, const Bytes& sea, std::span<const double
   }
 }
 
+/// Water does not leave where it comes in.
+Bytes without_inflow(Bytes outlets, std::span<const double> inflow_area) {
+  for (std::size_t c = 0; c < inflow_area.size(); ++c) {
+    if (inflow_area[c] > 0) outlets[c] = 0;
+  }
+  return outlets;
+}
+
+/// Adds what comes from beyond the edge to the runoff; returns its sum, m3/s.
+double add_inflow(std::span<const float> inflow_m3_s, std::span<double> water) {
+  double sum = 0.0;
+  for (std::size_t c = 0; c < inflow_m3_s.size(); ++c) {
+    water[c] += inflow_m3_s[c];
+    sum += inflow_m3_s[c];
+  }
+  return sum;
+}
+
 class HydrologyStage final : public Stage {
  public:
   explicit HydrologyStage(HydrologyParameters parameters) : p_(std::move(parameters)) {}
@@ -83,12 +101,15 @@ class HydrologyStage final : public Stage {
     const Grid& grid = io.grid();
     const auto temperature = io.read(field::temperature);
     const auto z = io.write(field::elevation);
-    const Bytes outlets = find_outlets(grid, z), sea = sea_cells(z);
+    const auto inflow_area = io.read_optional(field::inflow_area);
+    const Bytes sea = sea_cells(z);
+    const Bytes outlets = without_inflow(find_outlets(grid, z), inflow_area);
 
     std::vector<double> water(grid.size());
     std::vector<float> loss(grid.size());
     const LandWater land = land_water(grid, sea, io.read(field::precipitation),
                                       io.read(field::potential_evaporation), water, loss);
+    const double inflow = add_inflow(io.read_optional(field::inflow_discharge), water);
     context.advance(0.1);
     shape_valleys(grid, outlets, sea, water, z);
     context.advance(0.5);
@@ -96,7 +117,7 @@ class HydrologyStage final : public Stage {
     const Drainage d = drain(grid, z, outlets, water, loss);
     context.advance(0.7);
     accumulate_discharge(d, water);
-    report(context, land, d.lakes, runoff_to_sea(d.graph, outlets, water));
+    report(context, land, inflow, d.lakes, runoff_to_sea(d.graph, outlets, water));
 
     const auto lake_depth = io.write(field::lake_depth);
     map_lakes(grid, z, d.hierarchy, d.lakes, frozen(d.lakes, temperature), lake_depth,
@@ -115,7 +136,7 @@ class HydrologyStage final : public Stage {
     const auto receiver = io.write(field::flow_receiver);
     std::copy(d.graph.receiver.begin(), d.graph.receiver.end(), receiver.begin());
     flow_directions(grid, receiver, io.write(field::flow_direction));
-    write_network(grid, d.graph, sea, io);
+    write_network(grid, d.graph, sea, inflow_area, io);
     context.advance(1.0);
   }
 
@@ -149,12 +170,13 @@ class HydrologyStage final : public Stage {
   }
 
   void write_network(const Grid& grid, const FlowGraph& graph, const Bytes& sea,
-                     StageIo& io) const {
+                     std::span<const double> inflow_area, StageIo& io) const {
     const auto area = io.write(field::drainage_area);
     for (int j = 0; j < grid.ny(); ++j) {
       const Index row = grid.cell(0, j);
       std::fill(area.begin() + row, area.begin() + row + grid.nx(), grid.area_m2(j));
     }
+    for (std::size_t c = 0; c < inflow_area.size(); ++c) area[c] += inflow_area[c];
     graph.accumulate(area);
     Bytes channel(grid.size());
 #pragma omp parallel for schedule(static)
@@ -166,16 +188,18 @@ class HydrologyStage final : public Stage {
     std::copy(basins.begin(), basins.end(), io.write(field::basin_id).begin());
   }
 
-  static void report(Context& context, const LandWater& land, const Lakes& lakes,
-                     double runoff_m3_s) {
+  static void report(Context& context, const LandWater& land, double inflow_m3_s,
+                     const Lakes& lakes, double runoff_m3_s) {
     double lake_loss = 0.0;
     for (const Lake& lake : lakes.lakes) lake_loss += lake.loss_m3_s;
-    const double error = land.precipitation_m3_s - land.evaporation_m3_s - lake_loss - runoff_m3_s;
+    const double supply = land.precipitation_m3_s + inflow_m3_s;
+    const double error = supply - land.evaporation_m3_s - lake_loss - runoff_m3_s;
+    if (inflow_m3_s > 0) context.budget["river_inflow_m3_s"] = inflow_m3_s;
     context.budget["land_precipitation_m3_s"] = land.precipitation_m3_s;
     context.budget["land_evaporation_m3_s"] = land.evaporation_m3_s;
     context.budget["lake_evaporation_m3_s"] = lake_loss;
     context.budget["runoff_to_sea_m3_s"] = runoff_m3_s;
-    context.budget["water_closing_error"] = error / std::max(land.precipitation_m3_s, 1e-30);
+    context.budget["water_closing_error"] = error / std::max(supply, 1e-30);
   }
 
   HydrologyParameters p_;
@@ -183,7 +207,7 @@ class HydrologyStage final : public Stage {
                   "runoff, lakes, rivers and basins; valleys carved by rivers",
                   {&field::elevation, &field::temperature, &field::precipitation,
                    &field::potential_evaporation},
-                  {},
+                  {&field::inflow_area, &field::inflow_discharge},
                   {&field::elevation, &field::slope, &field::flow_direction, &field::flow_receiver,
                    &field::drainage_area, &field::discharge, &field::river_intensity,
                    &field::lake_depth, &field::lake_id, &field::basin_id, &field::stream_order}};

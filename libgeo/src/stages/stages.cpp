@@ -7,19 +7,21 @@
 #include "geo/stages/climate.hpp"
 #include "geo/stages/erosion.hpp"
 #include "geo/stages/hydrology.hpp"
+#include "geo/stages/island.hpp"
 #include "geo/stages/isostasy.hpp"
 #include "geo/stages/plates.hpp"
 
 namespace geo {
 
 std::span<const StageEntry> stage_table() {
-  static constexpr std::array<StageEntry, 6> kStages{{
+  static constexpr std::array<StageEntry, 7> kStages{{
       {1, "plates", [] { return make_plates_stage(); }},
       {2, "isostasy", [] { return make_isostasy_stage(); }},
       {3, "erosion", [] { return make_erosion_stage(); }},
       {4, "climate", [] { return make_climate_stage(); }},
       {5, "hydrology", [] { return make_hydrology_stage(); }},
       {6, "biomes", [] { return make_biomes_stage(); }},
+      {7, "island", [] { return make_island_stage(); }},
   }};
   return kStages;
 }

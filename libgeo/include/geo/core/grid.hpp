@@ -72,6 +72,12 @@ class Grid {
   /// longitude (local azimuthal approximation, for rectangles small against the planet).
   static Grid plane(int nx, int ny, double dx_m, double dy_m, Edges edges = Edges::open,
                     std::optional<Centre> centre = {}, Ellipsoid figure = {});
+  /// A rectangle of square cells in Lambert's azimuthal equal-area projection about `centre`
+  /// (EqualAreaProjection): plane topology and metric, true areas, and a true latitude and longitude
+  /// for every cell. Throws ConfigurationError when it does not fit the hemisphere round its centre
+  /// or the centre is no place.
+  static Grid equal_area(int nx, int ny, double cell_m, Centre centre, Ellipsoid figure = {},
+                         Edges edges = Edges::open);
   /// A flat rectangle whose opposite edges meet.
   static Grid torus(int nx, int ny, double dx_m, double dy_m);
 
@@ -130,6 +136,14 @@ class Grid {
   [[nodiscard]] bool is_latitude_longitude() const noexcept { return latitude_longitude_; }
   [[nodiscard]] double latitude_deg(int row) const noexcept { return latitude_deg_[row]; }
   [[nodiscard]] double longitude_deg(int column) const noexcept { return longitude_deg_[column]; }
+  /// Whether cells lie in an equal-area projection, each with its own latitude and longitude; the
+  /// functions of a row or a column alone then give those of the middle column or row.
+  [[nodiscard]] bool is_projected() const noexcept { return !cell_latitude_deg_.empty(); }
+  /// Latitude and longitude of one cell of any geographic grid.
+  [[nodiscard]] Centre position(int column, int row) const noexcept {
+    if (!is_projected()) return {latitude_deg_[row], longitude_deg_[column]};
+    return {cell_latitude_deg_[cell(column, row)], cell_longitude_deg_[cell(column, row)]};
+  }
   /// Projected coordinates of a metric plane or torus, m, centred on 0.
   [[nodiscard]] double x_m(int column) const noexcept {
     return (column + 0.5 - 0.5 * nx_) * spacing_east_m_[0];
@@ -167,6 +181,7 @@ class Grid {
   std::vector<double> area_m2_, spacing_east_m_, face_east_m_, face_north_m_;
   std::vector<std::array<double, kDirections>> distance_m_;
   std::vector<double> latitude_deg_, longitude_deg_;
+  std::vector<double> cell_latitude_deg_, cell_longitude_deg_;  // projected grids
   std::vector<double> sin_lat_, cos_lat_, sin_lon_, cos_lon_;
 };
 

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -22,6 +23,9 @@ struct StageInfo {
   std::vector<const FieldSpec*> reads;     ///< must be there before it runs
   std::vector<const FieldSpec*> optional;  ///< used when there
   std::vector<const FieldSpec*> writes;    ///< there afterwards, and in the stage's file
+  /// A part of a planet seen closer: reads a whole planet, a sphere, and hands over a new state on a
+  /// grid of its own. The planet's state stays as it is.
+  bool own_grid = false;
 };
 
 /// Named sums that must close: rock, water. Written to the manifest.
@@ -47,6 +51,9 @@ struct Context {
   Budget budget;
   /// Facts worth a warning to the user, one line each.
   std::vector<std::string> warnings;
+  /// All declarations of the pipeline that runs, bound to the values of this run: a stage that runs
+  /// others inside gives them the settings that their namesakes have outside.
+  std::vector<Parameter> configuration;
 
   /// Reports progress and throws Interrupted if a signal came.
   void advance(double fraction) const;
@@ -76,12 +83,19 @@ class StageIo {
     check_writable(spec);
     return state_.update(spec);
   }
+  /// The result of a stage with a grid of its own. Throws Bug unless it holds exactly the fields
+  /// that the stage declared.
+  void hand_over(State result);
+  /// Where the stage's outputs are: what was handed over, or the state itself. Throws Bug when a
+  /// stage with a grid of its own handed nothing over.
+  [[nodiscard]] const State& result() const;
 
  private:
   void check_readable(const FieldSpec& spec) const;
   void check_writable(const FieldSpec& spec) const;
   State& state_;
   const StageInfo& info_;
+  std::optional<State> handed_over_;
 };
 
 /// One step of the pipeline: turns a state into a richer one.

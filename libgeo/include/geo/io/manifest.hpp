@@ -41,6 +41,14 @@ Manifest read_manifest(const std::filesystem::path& path);
 /// stage is complete.
 std::string disagreement(const StageRecord& record, const Snapshot& file);
 
+/// Name of the NetCDF file of a stage, relative to the folder. Throws InputError if it has none.
+std::string netcdf_of(const StageRecord& record);
+/// Whether the record is that of an island: the run's own ("island") or a further one
+/// ("island-2"), whose file lies on a grid of its own.
+bool is_island(const StageRecord& record);
+/// "island" of the run's own, "island-2" of the second.
+std::string island_name(int number);
+
 /// Versions of the libraries that this program runs with.
 std::map<std::string, std::string> library_versions();
 

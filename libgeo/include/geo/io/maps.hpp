@@ -41,7 +41,18 @@ std::vector<const FieldSpec*> map_fields();
 std::vector<MapFile> draw_map_files(const State& state, const std::filesystem::path& folder,
                                     int width_px = 1800, std::string_view note = {});
 
-/// The same; returns the paths alone.
+/// What `draw_map_files` would draw, without drawing it.
+std::vector<MapFile> list_map_files(const State& state, const std::filesystem::path& folder,
+                                    int width_px = 1800);
+/// Draws an island: `name`.png (shaded relief with rivers), `name`-biomes.png, `name`-koppen.png.
+std::vector<MapFile> draw_island_files(const State& state, const std::filesystem::path& folder,
+                                       const std::string& name, int width_px = 1800,
+                                       std::string_view note = {});
+/// What `draw_island_files` would draw, without drawing it.
+std::vector<MapFile> list_island_files(const State& state, const std::filesystem::path& folder,
+                                       const std::string& name, int width_px = 1800);
+
+/// The same as `draw_map_files`; returns the paths alone.
 std::vector<std::filesystem::path> draw_maps(const State& state,
                                              const std::filesystem::path& folder,
                                              int width_px = 1800, std::string_view note = {});

@@ -20,6 +20,7 @@ class RunFolder {
   [[nodiscard]] std::filesystem::path maps() const { return path_ / "maps"; }
   [[nodiscard]] std::filesystem::path report() const { return path_ / "report.html"; }
   [[nodiscard]] std::filesystem::path collection() const { return path_ / "planet.pvd"; }
+  [[nodiscard]] std::filesystem::path islands() const { return path_ / "island.pvd"; }
   /// "03-erosion.nc"; `extension` with its dot.
   [[nodiscard]] std::filesystem::path stage_file(int number, std::string_view stage,
                                                  std::string_view extension) const;
@@ -34,7 +35,9 @@ class RunFolder {
   void open();
   /// Removes the files of one stage. Throws IoError.
   void remove_stage(int number, std::string_view stage) const;
-  /// Removes what is made from all stages together: collection, maps, report.
+  /// Removes the files of further islands, "07-island-2.nc" and so on. Throws IoError.
+  void remove_further_islands() const;
+  /// Removes what is made from all stages together: collections, maps, report.
   void remove_summaries() const;
 
  private:

@@ -79,6 +79,7 @@ class RunSession {
   void go_on_from(const std::string& before);
   void keep_earlier_stages(const std::string& before, int old_begin);
   void load_complete_stages();
+  void leave_out_island();
   [[nodiscard]] int first_stage_of_input() const;
   [[nodiscard]] bool needs_relief() const;
   void begin_with_bare_planet();
@@ -97,7 +98,7 @@ class RunSession {
   void write_stage(BackgroundWriter& writer, int position, const State& state,
                    const Context& context, double seconds);
   void write_summaries(const RunEvents& events);
-  void write_collection();
+  void write_collections();
   [[nodiscard]] Provenance provenance_of(int position) const;
   [[nodiscard]] std::string references_of(int position) const;
 
@@ -114,6 +115,7 @@ class RunSession {
   int first_ = 0;  // where this session starts to compute
   int last_ = 0;   // where it ends
   std::string config_;
+  std::string note_;  // why a stage of the pipeline is left out
   std::optional<State> state_;
 };
 

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "geo/core/grid.hpp"
+#include "geo/kernels/fine_relief.hpp"
+
+namespace geo {
+
+/// The water of a planet: where each of its cells drains, and how much.
+struct PlanetWater {
+  std::span<const float> elevation_m;
+  std::span<const Index> receiver;
+  std::span<const double> drainage_area_m2;
+  std::span<const float> discharge_m3_s;
+  std::span<const std::int32_t> lake_id;  ///< may be empty
+};
+
+/// Water that enters a part of a planet from outside, for a fine plane in an equal-area projection.
+///
+/// Wherever the water of at least `kRiverCells` planet cells passes the edge, the river crosses it at
+/// the lowest land cell within half a planet cell of where the line between the two cell centres
+/// does, and that cell sinks to the river's level, interpolated between the two, so that the coarse
+/// relief dams no river at the edge. What gathered upstream of the last cell outside (drainage area
+/// and discharge) enters there; what falls on that cell itself enters evenly along the stretch. So
+/// rivers keep their area and discharge. No edge cell that water comes in over is to be an outlet.
+/// Where a larger planet river leaves at a cell, nothing enters there. On a lake, whose cells all
+/// carry the discharge of the whole, discharge goes by the share of the drainage area.
+/// Outputs: one value per fine cell, 0 elsewhere; `elevation_m` of the fine cells: in and out.
+void find_inflow(const PlanetCells& cells, const PlanetWater& water, std::span<float> elevation_m,
+                 std::span<double> inflow_area_m2, std::span<float> inflow_m3_s);
+
+/// Planet cells that make a river worth keeping at the edge of a part of the planet.
+inline constexpr double kRiverCells = 2.5;
+
+}  // namespace geo

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "geo/core/grid.hpp"
+
+namespace geo {
+
+/// What makes a window of a planet worth a closer look (Tectonica blueprint, eq. 9.1), cells
+/// weighted by their true area:
+///   mix = 1 - 2.5 |land fraction - 0.4|
+///   score = mix * coast fraction * min(elevation range / 5000 m, 1)
+///           * (1 + 2 min(boundary fraction, 0.5)) + 0.3 noise
+/// Coast cells are land (elevation >= 0) with sea in one of four neighbours.
+struct RegionFigures {
+  double land_fraction = 0.0, coast_fraction = 0.0, boundary_fraction = 0.0;
+  double elevation_range_m = 0.0;
+  [[nodiscard]] double score(double noise) const;
+};
+
+/// The window of `width_m` x `height_m` round a cell: whole rows and columns of the planet, as many
+/// as fit that size at the latitude of the cell (at least one), wrapping round.
+/// `boundary_type` may be empty.
+RegionFigures region_figures(const Grid& planet, std::span<const float> elevation_m,
+                             std::span<const std::int8_t> boundary_type, Index centre,
+                             double width_m, double height_m);
+
+/// The best window's centre cell. Candidates lie an eighth of a window apart; windows that reach
+/// into the polar tenth of the rows at either end are left out; if none is left, the middle row
+/// alone is searched. Noise in 0..1 is a function of seed and position. Cost: linear in cells.
+/// Throws InputError unless `planet` is a sphere.
+Index best_region(const Grid& planet, std::span<const float> elevation_m,
+                  std::span<const std::int8_t> boundary_type, double width_m, double height_m,
+                  std::uint64_t seed);
+
+/// The noise of eq. 9.1 at a cell.
+double region_noise(const Grid& planet, Index centre, double width_m, std::uint64_t seed);
+
+}  // namespace geo

@@ -1,0 +1,184 @@
+#include "island_climate.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "geo/kernels/catmull_rom.hpp"
+#include "geo/kernels/distance_to_coast.hpp"
+#include "geo/kernels/orography.hpp"
+#include "geo/kernels/overlay.hpp"
+#include "geo/kernels/smoothing.hpp"
+
+namespace geo {
+namespace {
+
+constexpr double kRadians = std::numbers::pi / 180.0;
+
+/// Sum over the year of the warmth that potential evaporation grows with, T + 5 degC where
+/// positive, for a harmonic year.
+double evaporating_warmth(double mean_c, double range_k) {
+  constexpr int kSteps = 12;
+  static const std::array<double, kSteps> kPhase = [] {
+    std::array<double, kSteps> phase{};
+    for (int m = 0; m < kSteps; ++m) {
+      phase[m] = 0.5 * std::cos(2.0 * std::numbers::pi * (m + 0.5) / kSteps);
+    }
+    return phase;
+  }();
+  double sum = 0.0;
+  for (const double phase : kPhase) sum += std::max(0.0, mean_c + 5.0 + range_k * phase);
+  return sum / kSteps;
+}
+
+/// Direction of true north against the grid's, as its components along the grid's axes.
+std::array<double, 2> north_on_grid(const Grid& grid, int i, int j) {
+  const int below = std::max(0, j - 1), above = std::min(grid.ny() - 1, j + 1);
+  const auto from = grid.unit_vector(i, below), to = grid.unit_vector(i, above);
+  const auto here = grid.unit_vector(i, j);
+  // Local east and north of the planet, against the step along a column of the grid.
+  const double ring = std::hypot(here[0], here[1]);
+  if (ring < 1e-9) return {0.0, 1.0};
+  const std::array<double, 3> east{-here[1] / ring, here[0] / ring, 0.0};
+  const std::array<double, 3> north{-here[2] * here[0] / ring, -here[2] * here[1] / ring, ring};
+  double along_east = 0.0, along_north = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    along_east += east[k] * (to[k] - from[k]);
+    along_north += north[k] * (to[k] - from[k]);
+  }
+  const double length = std::hypot(along_east, along_north);
+  if (length == 0.0) return {0.0, 1.0};
+  return {-along_east / length, along_north / length};
+}
+
+/// A coarser plane over the same area, for what the air does not feel in more detail.
+Grid air_grid(const Grid& fine, double spacing_m) {
+  const double width_m = fine.nx() * fine.spacing_east_m(0);
+  const double height_m = fine.ny() * fine.step_north_m();
+  const int nx = std::clamp(static_cast<int>(std::lround(width_m / spacing_m)), 8, fine.nx());
+  const int ny = std::clamp(static_cast<int>(std::lround(height_m / spacing_m)), 8, fine.ny());
+  return Grid::plane(nx, ny, width_m / nx, height_m / ny, Edges::open);
+}
+
+/// How much higher the fine relief lifts the air than the interpolated one, m, on the air grid.
+std::vector<float> extra_lift(const Grid& fine, const Overlay& overlay, const IslandHeights& heights,
+                              std::span<const float> wind_east, std::span<const float> wind_north,
+                              double reach_m) {
+  const Grid& air = overlay.coarse();
+  const auto size = static_cast<std::size_t>(air.size());
+  std::vector<float> land(size), coverage(size), own(size), planets(size);
+  overlay.average_relief(heights.elevation_m, land, own, coverage);
+  overlay.average_relief(heights.interpolated_m, land, planets, coverage);
+  std::vector<float> east(size), north(size);
+  for (Index c = 0; c < air.size(); ++c) {
+    const int i = std::min(fine.nx() - 1, static_cast<int>((air.column(c) + 0.5) * fine.nx() /
+                                                           air.nx()));
+    const int j =
+        std::min(fine.ny() - 1, static_cast<int>((air.row(c) + 0.5) * fine.ny() / air.ny()));
+    const Index at = fine.cell(i, j);
+    const auto up = north_on_grid(fine, i, j);
+    east[c] = static_cast<float>(wind_east[at] * up[1] + wind_north[at] * up[0]);
+    north[c] = static_cast<float>(wind_north[at] * up[1] - wind_east[at] * up[0]);
+  }
+  std::vector<float> lift(size), smooth_lift(size);
+  upwind_lift(air, own, east, north, reach_m, lift);
+  upwind_lift(air, planets, east, north, reach_m, smooth_lift);
+  for (std::size_t c = 0; c < size; ++c) lift[c] -= smooth_lift[c];
+  return lift;
+}
+
+/// Everything that is interpolated as it is.
+void interpolate_climate(const PlanetCells& cells, const IslandHeights& heights, double lapse_k_m,
+                         const ClimateFields<const float>& from, const ClimateFields<float>& to) {
+  const Grid& planet = cells.planet();
+  const Grid& fine = cells.fine();
+#pragma omp parallel for schedule(static)
+  for (int j = 0; j < fine.ny(); ++j) {
+    for (int i = 0; i < fine.nx(); ++i) {
+      const Index c = fine.cell(i, j);
+      const CatmullRom stencil(planet, fine.position(i, j));
+      const auto height = [&](double z) { return std::max(0.0, z); };
+      const double at_sea_level = stencil.of([&](int column, int row) {
+        const Index at = planet.cell(column, row);
+        return from.temperature[at] + lapse_k_m * height(heights.planet_elevation_m[at]);
+      });
+      to.temperature[c] =
+          static_cast<float>(at_sea_level - lapse_k_m * height(heights.elevation_m[c]));
+      const auto take = [&](std::span<const float> values) {
+        return static_cast<float>(stencil.of(values));
+      };
+      to.temperature_range[c] = std::max(0.0F, take(from.temperature_range));
+      to.precipitation[c] = std::max(0.0F, take(from.precipitation));
+      to.precipitation_seasonality[c] =
+          std::clamp(take(from.precipitation_seasonality), -1.0F, 1.0F);
+      to.wind_east[c] = static_cast<float>(stencil.of(from.wind_east, -1.0));
+      to.wind_north[c] = static_cast<float>(stencil.of(from.wind_north, -1.0));
+      const double planets_c = at_sea_level - lapse_k_m * height(heights.interpolated_m[c]);
+      const double usual = evaporating_warmth(planets_c, to.temperature_range[c]);
+      const double here = evaporating_warmth(to.temperature[c], to.temperature_range[c]);
+      constexpr double kMost = 3.0;
+      const double ratio = usual > 0.1 ? std::min(here / usual, kMost) : 1.0;
+      to.potential_evaporation[c] =
+          static_cast<float>(std::max(0.0F, take(from.potential_evaporation)) * ratio);
+    }
+  }
+}
+
+/// Fine distances are right as far as the edge; a coast beyond it only the planet knows.
+void measure_coast(const PlanetCells& cells, std::span<const float> elevation_m,
+                   std::span<const float> planets_m, std::span<float> distance_m) {
+  const Grid& fine = cells.fine();
+  distance_to_coast(fine, elevation_m, distance_m);
+#pragma omp parallel for schedule(static)
+  for (int j = 0; j < fine.ny(); ++j) {
+    for (int i = 0; i < fine.nx(); ++i) {
+      const Index c = fine.cell(i, j);
+      const double to_edge_m =
+          std::min((std::min(i, fine.nx() - 1 - i) + 0.5) * fine.spacing_east_m(j),
+                   (std::min(j, fine.ny() - 1 - j) + 0.5) * fine.step_north_m());
+      if (distance_m[c] <= to_edge_m) continue;
+      const double beyond_m = std::max(
+          to_edge_m, CatmullRom(cells.planet(), fine.position(i, j)).of(planets_m));
+      distance_m[c] = static_cast<float>(std::min<double>(distance_m[c], beyond_m));
+    }
+  }
+}
+
+}  // namespace
+
+void island_climate(const PlanetCells& cells, const ClimateParameters& climate,
+                    const Planet& planet, const IslandParameters& p, const IslandHeights& heights,
+                    const ClimateFields<const float>& from, const ClimateFields<float>& to) {
+  const Grid& fine = cells.fine();
+  (void)planet;
+  const bool closed = climate.model == "blueprint";
+  const double lapse_k_m =
+      closed ? 1e-3 * climate.blueprint.lapse_k_km : climate.seasonal.energy.lapse_k_m;
+  interpolate_climate(cells, heights, lapse_k_m, from, to);
+  measure_coast(cells, heights.elevation_m, from.distance_to_coast, to.distance_to_coast);
+
+  const double reach_m = 1000.0 * p.lift_reach_km;
+  const Grid air = air_grid(fine, std::max(0.2 * reach_m, p.cell_m));
+  const Overlay overlay(fine, air);
+  const auto lift = extra_lift(fine, overlay, heights, to.wind_east, to.wind_north, reach_m);
+  const Interpolator lift_of(overlay, lift);
+  const double per_lift = 1.0 / climate.lift_height_m;
+#pragma omp parallel
+  {
+    std::vector<float> scratch(lift_of.scratch_size()), lifted(fine.nx());
+#pragma omp for schedule(static)
+    for (int j = 0; j < fine.ny(); ++j) {
+      lift_of.row(j, lifted, scratch);
+      for (int i = 0; i < fine.nx(); ++i) {
+        const double ramp = edge_ramp(fine, i, j, cells.planet().face_east_m(0));
+        const double ascent = std::clamp(ramp * lifted[i] * per_lift, -1.0, 1.0);
+        to.precipitation[fine.cell(i, j)] *= static_cast<float>(std::exp(ascent));
+      }
+    }
+  }
+  smooth(fine, to.temperature, 1000.0 * p.climate_smoothing_km);
+  smooth(fine, to.precipitation, 1000.0 * p.climate_smoothing_km);
+}
+
+}  // namespace geo

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "geo/core/planet.hpp"
+#include "geo/kernels/fine_relief.hpp"
+#include "geo/stages/climate.hpp"
+#include "geo/stages/island.hpp"
+
+namespace geo {
+
+/// Fields of climate, on the planet as they are read, on the island as they are made.
+template <class T>
+struct ClimateFields {
+  std::span<T> temperature, temperature_range, precipitation, precipitation_seasonality, wind_east,
+      wind_north, distance_to_coast, potential_evaporation;
+};
+
+/// The island's relief: the planet's interpolated, and its own.
+struct IslandHeights {
+  std::span<const float> planet_elevation_m;  ///< on the planet
+  std::span<const float> interpolated_m;      ///< on the island
+  std::span<const float> elevation_m;         ///< on the island
+};
+
+/// The planet's climate at the island's true places, adapted to its relief.
+///
+/// Temperature: reduced to the sea level with the lapse rate of the run, interpolated, and back up.
+/// Precipitation: interpolated, times exp(lift difference / lift height), where lift is that of the
+/// fine relief less that of the interpolated one (`upwind_lift`), so that both join at the edge.
+/// Potential evaporation: interpolated, in proportion to what the formula of Oudin et al. (2005)
+/// makes of the change in temperature. Distance to the coast: on the fine grid as far as it
+/// reaches, the planet's beyond. Seasons and winds: interpolated. With `climate.model` "blueprint"
+/// temperature and precipitation are its closed formulas at the true places (blueprint 9.7).
+void island_climate(const PlanetCells& cells, const ClimateParameters& climate,
+                    const Planet& planet, const IslandParameters& p, const IslandHeights& heights,
+                    const ClimateFields<const float>& from, const ClimateFields<float>& to);
+
+}  // namespace geo

@@ -1,0 +1,223 @@
+#include "island_relief.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geo/kernels/catmull_rom.hpp"
+#include "geo/kernels/depressions.hpp"
+#include "geo/kernels/diffusion.hpp"
+#include "geo/kernels/noise.hpp"
+#include "geo/kernels/stream_power.hpp"
+
+namespace geo {
+namespace {
+
+template <class Change>
+void on_cells(const Grid& grid, Change&& change) {
+#pragma omp parallel for schedule(static)
+  for (int j = 0; j < grid.ny(); ++j) {
+    for (int i = 0; i < grid.nx(); ++i) change(i, j, grid.cell(i, j));
+  }
+}
+
+/// Width over which detail and corrections fade in from the edge, where heights are the planet's: a
+/// quarter of a planet cell, as long as that is little of the island.
+double seam_m(const PlanetCells& cells) {
+  const Grid& fine = cells.fine();
+  const double extent_m = std::min(fine.nx() * fine.spacing_east_m(0), fine.ny() * fine.step_north_m());
+  return std::min(0.25 * cells.planet().face_east_m(cells.first_row()), 0.05 * extent_m);
+}
+
+/// Detail that continues the planet's roughness, its mean over each planet cell taken out.
+void add_rough_detail(const PlanetCells& cells, std::span<const float> planet_elevation_m,
+                      const IslandParameters& p, std::uint64_t seed, std::span<float> z) {
+  const Grid& fine = cells.fine();
+  const double spacing_m = cells.planet().face_east_m(cells.first_row());
+  DetailLaw law;
+  law.wavelength_m = 2.0 * spacing_m;
+  law.octaves = std::clamp(
+      static_cast<int>(std::lround(std::log2(law.wavelength_m / (2.0 * p.cell_m)))) + 1, 1, 16);
+  law.gain = std::exp2(-p.detail_hurst);
+  std::vector<float> detail(fine.size()), roughness(cells.size());
+  unit_detail(fine, law, seed, detail);
+  local_roughness(cells, planet_elevation_m, roughness);
+  for (float& rough_m : roughness) {
+    rough_m = std::max(rough_m, static_cast<float>(p.least_roughness_m));
+  }
+  on_cells(fine, [&](int i, int j, Index c) {
+    const double rough_m = std::max(0.0, cells.interpolate(roughness, i, j));
+    detail[c] *= static_cast<float>(p.detail_amplitude * rough_m);
+  });
+  const std::vector<float> mean = cells.means(detail, {}, 0.0F);
+  on_cells(fine, [&](int i, int j, Index c) {
+    const double centred = detail[c] - cells.interpolate(mean, i, j);
+    z[c] += static_cast<float>(edge_ramp(fine, i, j, seam_m(cells)) * centred);
+  });
+}
+
+/// Blueprint 9.3: amplitude in proportion to height.
+void add_height_detail(const PlanetCells& cells, const IslandParameters& p, std::uint64_t seed,
+                       std::span<float> z) {
+  const Grid& fine = cells.fine();
+  const Noise noise(seed, "island.detail");
+  const double width_m = fine.nx() * fine.spacing_east_m(0);
+  const double frequency = p.height_frequency * fine.figure().radius_m / width_m;
+  on_cells(fine, [&](int i, int j, Index c) {
+    const double wave =
+        noise.fbm(fine.unit_vector(i, j), frequency, static_cast<int>(p.height_octaves));
+    const double ramp = p.edge_fade ? 1.0 : edge_ramp(fine, i, j, seam_m(cells));
+    z[c] += static_cast<float>(ramp * wave * p.height_amplitude * std::abs(z[c]));
+  });
+}
+
+/// Blueprint 9.4: the edges sink below the sea, over a margin that noise frays.
+void sink_edges(const Grid& fine, const IslandParameters& p, std::uint64_t seed,
+                std::span<float> z) {
+  constexpr double kSunk_m = -500.0, kFray = 0.5;
+  const Noise noise(seed, "island.edge");
+  const double width_m = fine.nx() * fine.spacing_east_m(0);
+  const double height_m = fine.ny() * fine.step_north_m();
+  const double frequency = fine.figure().radius_m / (0.1 * width_m);
+  on_cells(fine, [&](int i, int j, Index c) {
+    const double shore = noise.fbm(fine.unit_vector(i, j), frequency, 4);
+    const double margin_m =
+        std::min(width_m, height_m) * p.edge_margin * (1.0 + kFray * shore);
+    const double fade = edge_ramp(fine, i, j, margin_m);
+    z[c] = static_cast<float>(z[c] * fade + kSunk_m * (1.0 - fade));
+  });
+}
+
+/// Land that detail or the interpolation dipped below the sea level stays land unless the sea, as
+/// the planet has it, reaches it.
+void dry_inland_dips(const PlanetCells& cells, std::span<const float> planet_elevation_m,
+                     std::span<float> z) {
+  const Grid& fine = cells.fine();
+  std::vector<std::uint8_t> wet(fine.size());
+  std::vector<Index> front;
+  for (Index c = 0; c < fine.size(); ++c) {
+    if (z[c] >= 0.0F || planet_elevation_m[cells.cell_of()[c]] >= 0.0F) continue;
+    wet[c] = 1;
+    front.push_back(c);
+  }
+  while (!front.empty()) {
+    const Index c = front.back();
+    front.pop_back();
+    for (int k = 0; k < kDirections; ++k) {
+      const Index next = fine.neighbour(c, k);
+      if (next == kNoCell || wet[next] != 0 || z[next] >= 0.0F) continue;
+      wet[next] = 1;
+      front.push_back(next);
+    }
+  }
+  for (Index c = 0; c < fine.size(); ++c) {
+    if (z[c] < 0.0F && wet[c] == 0) z[c] = 0.0F;
+  }
+}
+
+/// Raises land so that its mean over each planet cell is `target` again.
+void restore_means(const PlanetCells& cells, std::span<const float> target,
+                   std::span<const std::uint8_t> land, std::span<const std::uint8_t> held,
+                   std::span<float> z, std::span<float> raised_m) {
+  constexpr float kLow_m = 1.0F, kMost = 1.1F;
+  std::vector<float> factor = cells.means(z, land, 0.0F);
+  for (std::size_t k = 0; k < factor.size(); ++k) {
+    factor[k] = factor[k] > kLow_m ? std::clamp(target[k] / factor[k], 1.0F, kMost) : 1.0F;
+  }
+  on_cells(cells.fine(), [&](int i, int j, Index c) {
+    if (land[c] == 0 || held[c] != 0) return;
+    const double ramp = edge_ramp(cells.fine(), i, j, seam_m(cells));
+    const double rise = std::max(0.0, cells.interpolate(factor, i, j) - 1.0);
+    const auto higher = static_cast<float>(z[c] * ramp * rise);
+    z[c] += higher;
+    raised_m[c] += higher;
+  });
+}
+
+}  // namespace
+
+void raise_island(const PlanetCells& cells, const PlanetRelief& planet, const IslandParameters& p,
+                  std::uint64_t seed, std::span<float> planet_m, std::span<float> elevation_m) {
+  on_cells(cells.fine(), [&](int i, int j, Index c) {
+    const CatmullRom stencil(cells.planet(), cells.fine().position(i, j));
+    planet_m[c] = static_cast<float>(stencil.of(planet.elevation_m));
+  });
+  std::copy(planet_m.begin(), planet_m.end(), elevation_m.begin());
+  if (p.detail == "roughness") {
+    add_rough_detail(cells, planet.elevation_m, p, seed, elevation_m);
+  } else {
+    add_height_detail(cells, p, seed, elevation_m);
+  }
+  dry_inland_dips(cells, planet.elevation_m, elevation_m);
+  if (p.edge_fade) sink_edges(cells.fine(), p, seed, elevation_m);
+}
+
+std::vector<float> island_erodibility(const PlanetCells& cells, const PlanetRelief& planet,
+                                      const IslandParameters& p, double everywhere_yr) {
+  const bool by_boundary = p.erodibility == "boundary";
+  if (by_boundary ? planet.boundary_type.empty() : planet.erodibility.empty()) {
+    const double one = by_boundary ? p.interior_erodibility_yr : everywhere_yr;
+    return {static_cast<float>(one)};
+  }
+  const auto of_type = [&](std::int8_t type) {
+    switch (static_cast<BoundaryType>(type)) {
+      case BoundaryType::interior:
+        return p.interior_erodibility_yr;
+      case BoundaryType::divergent:
+        return p.divergent_erodibility_yr;
+      default:
+        return p.convergent_erodibility_yr;
+    }
+  };
+  std::vector<float> erodibility(cells.fine().size());
+  on_cells(cells.fine(), [&](int i, int j, Index c) {
+    const CatmullRom stencil(cells.planet(), cells.fine().position(i, j));
+    const auto at = [&](int column, int row) {
+      const Index cell = cells.planet().cell(column, row);
+      return by_boundary ? of_type(planet.boundary_type[cell])
+                         : static_cast<double>(planet.erodibility[cell]);
+    };
+    erodibility[c] = static_cast<float>(std::max(0.0, stencil.of(at)));
+  });
+  return erodibility;
+}
+
+IslandErosion wear_island(const PlanetCells& cells, const IslandParameters& p,
+                          const ErosionParameters& law, const IslandGround& ground,
+                          const std::function<void(double)>& advance,
+                          std::span<float> elevation_m) {
+  const Grid& fine = cells.fine();
+  const auto size = static_cast<std::size_t>(fine.size());
+  IslandErosion done{std::vector<float>(size), std::vector<float>(size)};
+  std::vector<std::uint8_t> land(size);
+  std::transform(elevation_m.begin(), elevation_m.end(), land.begin(),
+                 [](float z) { return static_cast<std::uint8_t>(z >= 0.0F); });
+  const std::vector<float> target = cells.means(elevation_m, land, 0.0F);
+  const StreamPower power{law.area_exponent, law.slope_exponent, p.time_step_yr};
+
+  std::vector<double> area(size);
+  std::vector<float> before(size), surface(size);
+  for (std::int64_t step = 0; step < p.erosion_steps; ++step) {
+    before.assign(elevation_m.begin(), elevation_m.end());
+    const FlowGraph graph = route_water(fine, elevation_m, ground.outlets).graph;
+    std::fill(area.begin(), area.end(), fine.area_m2(0));
+    for (std::size_t c = 0; c < size; ++c) area[c] += ground.inflow_area_m2[c];
+    graph.accumulate(area);
+    incise<float>(fine, graph, area, ground.erodibility, power, elevation_m);
+    // Hillslopes end at the shore, whatever the depth beyond.
+    std::transform(elevation_m.begin(), elevation_m.end(), surface.begin(),
+                   [](float z) { return std::max(z, 0.0F); });
+    diffuse(fine, surface, law.diffusivity_m2_yr, p.time_step_yr,
+            {.fixed = ground.held, .scheme = DiffusionScheme::positive});
+    on_cells(fine, [&](int, int, Index c) {
+      // Land stays land: a river ends at the sea's level.
+      const float worn = std::max(0.0F, surface[c]);
+      elevation_m[c] = land[c] == 0 || ground.held[c] != 0 ? before[c] : worn;
+      done.lowered_m[c] += before[c] - elevation_m[c];
+    });
+    if (p.keep_means) restore_means(cells, target, land, ground.held, elevation_m, done.raised_m);
+    advance(static_cast<double>(step + 1) / static_cast<double>(p.erosion_steps));
+  }
+  return done;
+}
+
+}  // namespace geo
