@@ -44,9 +44,8 @@ void make_island(const IslandOptions& options) {
   set_log_style({.json = false, .quiet = options.quiet});
   const geo::io::RunFolder folder(options.folder);
   if (options.folder.empty() || !std::filesystem::exists(folder.manifest())) {
-    throw geo::ConfigurationError(
-        fmt::format("island: {} holds no run: give the folder of one",
-                    options.folder.empty() ? "nothing" : options.folder));
+    throw geo::ConfigurationError(fmt::format("island: {} holds no run: give the folder of one",
+                                              options.folder.empty() ? "nothing" : options.folder));
   }
   Configuration configuration;
   geo::io::apply_config_file(folder.config(), configuration.parameters());
@@ -75,8 +74,8 @@ void make_island(const IslandOptions& options) {
 }  // namespace
 
 void add_island_command(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand(
-      "island", "Crops and refines one more island from a finished planet");
+  CLI::App* command =
+      program.add_subcommand("island", "Crops and refines one more island from a finished planet");
   const auto options = std::make_shared<IslandOptions>();
   command->add_option("DIR", options->folder, "Folder of a run");
   command

@@ -84,8 +84,7 @@ Grid Grid::plane(int nx, int ny, double dx_m, double dy_m, Edges edges,
   return grid;
 }
 
-Grid Grid::equal_area(int nx, int ny, double cell_m, Centre centre, Ellipsoid figure,
-                      Edges edges) {
+Grid Grid::equal_area(int nx, int ny, double cell_m, Centre centre, Ellipsoid figure, Edges edges) {
   if (!(std::abs(centre.latitude_deg) <= 90.0 && std::abs(centre.longitude_deg) <= 360.0)) {
     throw ConfigurationError("centre of an equal-area grid: latitude must be within 90 degrees");
   }

@@ -53,8 +53,7 @@ Centre EqualAreaProjection::unproject(double x_m, double y_m) const {
   if (rho < 1e-9) return centre_;
   const double angle = 2.0 * std::asin(std::min(1.0, rho / (2.0 * radius_m_)));
   const double sine = std::sin(angle), cosine = std::cos(angle);
-  const double authalic_sine =
-      std::clamp(cosine * sine_ + y * sine * cosine_ / rho, -1.0, 1.0);
+  const double authalic_sine = std::clamp(cosine * sine_ + y * sine * cosine_ / rho, -1.0, 1.0);
   const double dlon = std::atan2(x * sine, rho * cosine_ * cosine - y * sine_ * sine);
   double latitude = std::asin(authalic_sine) / kRadians;
   if (figure_.flattening != 0.0) {

@@ -103,9 +103,8 @@ std::string IslandSession::execute(const RunEvents& events) {
   const auto start = Clock::now();
   State state = read_planet();
   if (state.grid().topology() != Topology::sphere) {
-    throw ConfigurationError(
-        fmt::format("{} holds a part of a planet: an island needs the whole of one",
-                    folder_.path().string()));
+    throw ConfigurationError(fmt::format(
+        "{} holds a part of a planet: an island needs the whole of one", folder_.path().string()));
   }
   const std::string name = next_name();
   const auto seed = static_cast<std::uint64_t>(settings_.seed);

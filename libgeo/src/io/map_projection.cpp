@@ -39,10 +39,9 @@ std::optional<Centre> unproject(const std::string& crs, double x_m, double y_m) 
 }
 
 std::string equal_area_wkt(Centre centre, const Ellipsoid& figure) {
-  const std::string body =
-      figure.flattening == 0.0
-          ? fmt::format("+R={}", figure.radius_m)
-          : fmt::format("+a={} +rf={}", figure.radius_m, 1.0 / figure.flattening);
+  const std::string body = figure.flattening == 0.0 ? fmt::format("+R={}", figure.radius_m)
+                                                    : fmt::format("+a={} +rf={}", figure.radius_m,
+                                                                  1.0 / figure.flattening);
   const std::string text =
       fmt::format("+proj=laea +lat_0={} +lon_0={} {} +units=m +no_defs +type=crs",
                   centre.latitude_deg, centre.longitude_deg, body);

@@ -66,14 +66,12 @@ void require_whole_planet(const Grid& grid, const std::string& place) {
 
 }  // namespace
 
-State read_planet(std::span<const fs::path> stage_files,
-                  std::span<const FieldSpec* const> wanted) {
+State read_planet(std::span<const fs::path> stage_files, std::span<const FieldSpec* const> wanted) {
   if (stage_files.empty()) throw InputError("the run holds no complete stage");
   State state(read_netcdf(stage_files.front(), [](const FieldSpec&) { return false; }).grid);
   for (auto file = stage_files.rbegin(); file != stage_files.rend(); ++file) {
-    const Snapshot snapshot = read_netcdf(*file, [&](const FieldSpec& spec) {
-      return is_wanted(spec, wanted) && !state.has(spec);
-    });
+    const Snapshot snapshot = read_netcdf(
+        *file, [&](const FieldSpec& spec) { return is_wanted(spec, wanted) && !state.has(spec); });
     if (!same_cells(*snapshot.grid, state.grid())) continue;
     for (const auto& [spec, values] : snapshot.fields) state.share(*spec, values);
   }

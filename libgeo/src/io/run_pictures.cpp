@@ -83,8 +83,7 @@ std::vector<std::filesystem::path> draw_run(const RunFolder& folder, int map_wid
   for (const MapFile& map : report.maps) {
     if (std::filesystem::exists(map.path)) written.push_back(map.path);
   }
-  std::erase_if(report.maps,
-                [](const MapFile& map) { return !std::filesystem::exists(map.path); });
+  std::erase_if(report.maps, [](const MapFile& map) { return !std::filesystem::exists(map.path); });
   written.push_back(write_report(folder.path(), report));
   return written;
 }

@@ -24,14 +24,13 @@ PlanetCells::PlanetCells(const Grid& planet, const Grid& fine) : planet_(planet)
   }
   constexpr int kMargin = 2;
   first_row_ = std::max(0, *std::min_element(lowest.begin(), lowest.end()) - kMargin);
-  const int last = std::min(planet.ny() - 1,
-                            *std::max_element(highest.begin(), highest.end()) + kMargin);
+  const int last =
+      std::min(planet.ny() - 1, *std::max_element(highest.begin(), highest.end()) + kMargin);
   rows_ = last - first_row_ + 1;
 }
 
 std::vector<float> PlanetCells::means(std::span<const float> values,
-                                      std::span<const std::uint8_t> wanted,
-                                      float otherwise) const {
+                                      std::span<const std::uint8_t> wanted, float otherwise) const {
   // In the order of the cells, on one thread: a pass over memory, and the same bits always.
   std::vector<double> sum(size());
   std::vector<std::int32_t> count(size());

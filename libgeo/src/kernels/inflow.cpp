@@ -102,9 +102,8 @@ class Discharge {
 
 }  // namespace
 
-void find_inflow(const PlanetCells& cells, const PlanetWater& water,
-                 std::span<float> elevation_m, std::span<double> inflow_area_m2,
-                 std::span<float> inflow_m3_s) {
+void find_inflow(const PlanetCells& cells, const PlanetWater& water, std::span<float> elevation_m,
+                 std::span<double> inflow_area_m2, std::span<float> inflow_m3_s) {
   const Grid& planet = cells.planet();
   const Frame frame(cells.fine());
   const Discharge discharge(cells, water);
@@ -124,8 +123,8 @@ void find_inflow(const PlanetCells& cells, const PlanetWater& water,
       const auto start = place(from), end = place(to);
       const bool starts_inside = frame.holds(start);
       if (starts_inside == frame.holds(end)) continue;
-      const Stretch stretch = starts_inside ? frame.crossing(end, start, reach_m)
-                                            : frame.crossing(start, end, reach_m);
+      const Stretch stretch =
+          starts_inside ? frame.crossing(end, start, reach_m) : frame.crossing(start, end, reach_m);
       const Index lowest = lowest_land(stretch, elevation_m);
       if (lowest == kNoCell) continue;  // straight into the sea
       const double own = planet.area_m2(j);

@@ -23,8 +23,8 @@ Reach reach_at(const Grid& planet, int row, double width_m, double height_m) {
   const double columns = 0.5 * (width_m / planet.spacing_east_m(row) - 1.0);
   const double rows = 0.5 * (height_m / planet.face_east_m(row) - 1.0);
   return {static_cast<int>(std::lround(std::clamp(columns, 0.0, static_cast<double>(most)))),
-          static_cast<int>(std::lround(
-              std::clamp(rows, 0.0, static_cast<double>((planet.ny() - 1) / 2))))};
+          static_cast<int>(
+              std::lround(std::clamp(rows, 0.0, static_cast<double>((planet.ny() - 1) / 2))))};
 }
 
 /// Sums and extremes over the rows of a window, one entry per column.
@@ -105,8 +105,8 @@ RegionFigures region_figures(const Grid& planet, std::span<const float> elevatio
   const int count = 2 * reach.columns + 1;
   ColumnSums sums(count);
   add_rows(planet, elevation_m, boundary_type, std::max(0, j - reach.rows),
-           std::min(planet.ny() - 1, j + reach.rows), i - reach.columns,
-           i + reach.columns + 1, sums);
+           std::min(planet.ny() - 1, j + reach.rows), i - reach.columns, i + reach.columns + 1,
+           sums);
   return figures_of(sums, 0, count);
 }
 

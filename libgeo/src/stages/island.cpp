@@ -42,8 +42,7 @@ Centre parse_centre(const std::string& text) {
     sound = second == std::errc() && stop == end;
   }
   // NaN-safe: a comparison with NaN is false.
-  sound = sound && std::abs(centre.latitude_deg) <= 90.0 &&
-          std::abs(centre.longitude_deg) <= 360.0;
+  sound = sound && std::abs(centre.latitude_deg) <= 90.0 && std::abs(centre.longitude_deg) <= 360.0;
   if (!sound) {
     throw ConfigurationError(fmt::format(
         "island.center = \"{}\": must be LAT,LON in degrees, latitude within 90 and longitude "
@@ -83,8 +82,8 @@ class IslandStage final : public Stage {
           "stage island needs a whole planet: this grid is a part of one; run --to biomes");
     }
     State state(std::make_shared<const Grid>(
-        Grid::equal_area(static_cast<int>(p_.nx), static_cast<int>(p_.ny), p_.cell_m, centre(io, context),
-                         io.grid().figure())));
+        Grid::equal_area(static_cast<int>(p_.nx), static_cast<int>(p_.ny), p_.cell_m,
+                         centre(io, context), io.grid().figure())));
     context.budget["center_latitude_degree"] = state.grid().centre()->latitude_deg;
     context.budget["center_longitude_degree"] = state.grid().centre()->longitude_deg;
     const PlanetCells cells(io.grid(), state.grid());
@@ -103,9 +102,9 @@ class IslandStage final : public Stage {
   [[nodiscard]] Centre centre(const StageIo& io, const Context& context) const {
     if (p_.center != "auto") return parse_centre(p_.center);
     const Grid& planet = io.grid();
-    const Index best = best_region(planet, io.read(field::elevation),
-                                   io.read_optional(field::boundary_type), p_.nx * p_.cell_m,
-                                   p_.ny * p_.cell_m, context.seed);
+    const Index best =
+        best_region(planet, io.read(field::elevation), io.read_optional(field::boundary_type),
+                    p_.nx * p_.cell_m, p_.ny * p_.cell_m, context.seed);
     return planet.position(planet.column(best), planet.row(best));
   }
 
@@ -133,9 +132,9 @@ class IslandStage final : public Stage {
     for (std::size_t c = 0; c < held.size(); ++c) held[c] |= outlets[c];
 
     const auto erodibility = island_erodibility(cells, planet, p_, law.erodibility_yr);
-    const IslandErosion done =
-        wear_island(cells, p_, law, {outlets, held, inflow_area, erodibility},
-                    [&](double share) { context.advance(0.2 + 0.4 * share); }, z);
+    const IslandErosion done = wear_island(
+        cells, p_, law, {outlets, held, inflow_area, erodibility},
+        [&](double share) { context.advance(0.2 + 0.4 * share); }, z);
     report_erosion(fine, done, context.budget, state);
   }
 

@@ -62,9 +62,9 @@ Grid air_grid(const Grid& fine, double spacing_m) {
 }
 
 /// How much higher the fine relief lifts the air than the interpolated one, m, on the air grid.
-std::vector<float> extra_lift(const Grid& fine, const Overlay& overlay, const IslandHeights& heights,
-                              std::span<const float> wind_east, std::span<const float> wind_north,
-                              double reach_m) {
+std::vector<float> extra_lift(const Grid& fine, const Overlay& overlay,
+                              const IslandHeights& heights, std::span<const float> wind_east,
+                              std::span<const float> wind_north, double reach_m) {
   const Grid& air = overlay.coarse();
   const auto size = static_cast<std::size_t>(air.size());
   std::vector<float> land(size), coverage(size), own(size), planets(size);
@@ -72,8 +72,8 @@ std::vector<float> extra_lift(const Grid& fine, const Overlay& overlay, const Is
   overlay.average_relief(heights.interpolated_m, land, planets, coverage);
   std::vector<float> east(size), north(size);
   for (Index c = 0; c < air.size(); ++c) {
-    const int i = std::min(fine.nx() - 1, static_cast<int>((air.column(c) + 0.5) * fine.nx() /
-                                                           air.nx()));
+    const int i =
+        std::min(fine.nx() - 1, static_cast<int>((air.column(c) + 0.5) * fine.nx() / air.nx()));
     const int j =
         std::min(fine.ny() - 1, static_cast<int>((air.row(c) + 0.5) * fine.ny() / air.ny()));
     const Index at = fine.cell(i, j);
@@ -138,8 +138,8 @@ void measure_coast(const PlanetCells& cells, std::span<const float> elevation_m,
           std::min((std::min(i, fine.nx() - 1 - i) + 0.5) * fine.spacing_east_m(j),
                    (std::min(j, fine.ny() - 1 - j) + 0.5) * fine.step_north_m());
       if (distance_m[c] <= to_edge_m) continue;
-      const double beyond_m = std::max(
-          to_edge_m, CatmullRom(cells.planet(), fine.position(i, j)).of(planets_m));
+      const double beyond_m =
+          std::max(to_edge_m, CatmullRom(cells.planet(), fine.position(i, j)).of(planets_m));
       distance_m[c] = static_cast<float>(std::min<double>(distance_m[c], beyond_m));
     }
   }

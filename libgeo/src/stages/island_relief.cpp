@@ -24,7 +24,8 @@ void on_cells(const Grid& grid, Change&& change) {
 /// quarter of a planet cell, as long as that is little of the island.
 double seam_m(const PlanetCells& cells) {
   const Grid& fine = cells.fine();
-  const double extent_m = std::min(fine.nx() * fine.spacing_east_m(0), fine.ny() * fine.step_north_m());
+  const double extent_m =
+      std::min(fine.nx() * fine.spacing_east_m(0), fine.ny() * fine.step_north_m());
   return std::min(0.25 * cells.planet().face_east_m(cells.first_row()), 0.05 * extent_m);
 }
 
@@ -80,8 +81,7 @@ void sink_edges(const Grid& fine, const IslandParameters& p, std::uint64_t seed,
   const double frequency = fine.figure().radius_m / (0.1 * width_m);
   on_cells(fine, [&](int i, int j, Index c) {
     const double shore = noise.fbm(fine.unit_vector(i, j), frequency, 4);
-    const double margin_m =
-        std::min(width_m, height_m) * p.edge_margin * (1.0 + kFray * shore);
+    const double margin_m = std::min(width_m, height_m) * p.edge_margin * (1.0 + kFray * shore);
     const double fade = edge_ramp(fine, i, j, margin_m);
     z[c] = static_cast<float>(z[c] * fade + kSunk_m * (1.0 - fade));
   });

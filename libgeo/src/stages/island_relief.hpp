@@ -44,7 +44,6 @@ struct IslandErosion {
 /// proportion to its height so that its mean over every planet cell stays what it was.
 IslandErosion wear_island(const PlanetCells& cells, const IslandParameters& p,
                           const ErosionParameters& law, const IslandGround& ground,
-                          const std::function<void(double)>& advance,
-                          std::span<float> elevation_m);
+                          const std::function<void(double)>& advance, std::span<float> elevation_m);
 
 }  // namespace geo

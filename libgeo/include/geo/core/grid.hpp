@@ -73,9 +73,9 @@ class Grid {
   static Grid plane(int nx, int ny, double dx_m, double dy_m, Edges edges = Edges::open,
                     std::optional<Centre> centre = {}, Ellipsoid figure = {});
   /// A rectangle of square cells in Lambert's azimuthal equal-area projection about `centre`
-  /// (EqualAreaProjection): plane topology and metric, true areas, and a true latitude and longitude
-  /// for every cell. Throws ConfigurationError when it does not fit the hemisphere round its centre
-  /// or the centre is no place.
+  /// (EqualAreaProjection): plane topology and metric, true areas, and a true latitude and
+  /// longitude for every cell. Throws ConfigurationError when it does not fit the hemisphere round
+  /// its centre or the centre is no place.
   static Grid equal_area(int nx, int ny, double cell_m, Centre centre, Ellipsoid figure = {},
                          Edges edges = Edges::open);
   /// A flat rectangle whose opposite edges meet.

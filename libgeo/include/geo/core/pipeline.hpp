@@ -31,8 +31,9 @@ class Pipeline {
     std::function<void(int position)> before;
     std::function<void(int position, const State&, const Context&)> after;
   };
-  /// Runs first..last. `after` gets what the stage made: the state, or that of its own grid. After each stage, fields that no later stage in the span reads leave the
-  /// state. Checks that a stage wrote what it declared (Bug otherwise).
+  /// Runs first..last. `after` gets what the stage made: the state, or that of its own grid. After
+  /// each stage, fields that no later stage in the span reads leave the state. Checks that a stage
+  /// wrote what it declared (Bug otherwise).
   void run(State& state, Context& context, int first, int last, const Observer& observer) const;
 
  private:

@@ -19,8 +19,8 @@ struct PlanetWater {
 
 /// Water that enters a part of a planet from outside, for a fine plane in an equal-area projection.
 ///
-/// Wherever the water of at least `kRiverCells` planet cells passes the edge, the river crosses it at
-/// the lowest land cell within half a planet cell of where the line between the two cell centres
+/// Wherever the water of at least `kRiverCells` planet cells passes the edge, the river crosses it
+/// at the lowest land cell within half a planet cell of where the line between the two cell centres
 /// does, and that cell sinks to the river's level, interpolated between the two, so that the coarse
 /// relief dams no river at the edge. What gathered upstream of the last cell outside (drainage area
 /// and discharge) enters there; what falls on that cell itself enters evenly along the stretch. So
