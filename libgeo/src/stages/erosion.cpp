@@ -68,6 +68,12 @@ std::vector<Parameter> ErosionParameters::declarations() {
            "length over which the plate's stiffness spreads the rebound", "watts2001"),
       real("erosion.rebound_time_yr", rebound_time_yr, "yr", 1.0, 1e9,
            "relaxation time of the mantle", "turcotte2002"),
+      real("erosion.warping_m", warping_m, "m", 0.0, 5000.0,
+           "standard deviation of the latest warping of the land, which rivers have not yet cut "
+           "through",
+           "turcotte2002"),
+      real("erosion.warping_km", warping_km, "km", 1.0, 20000.0,
+           "longest wavelength of the warping", "turcotte2002"),
       real("erosion.noise_injection_m", noise_injection_m, "m", 0.0, 1000.0,
            "noise added to the land after erosion", "tectonica2026"),
       real("erosion.relaxation_fraction", relaxation_fraction, "1", 0.0, 1.0,
@@ -302,6 +308,7 @@ class ErosionStage final : public Stage {
     }
     const ReliefFinish finish(parameters_, grid, context);
     landscape.book_reshaping([&] { return finish.inject_noise(elevation); });
+    landscape.book_reshaping([&] { return finish.warp(elevation); });
     landscape.relax();
     landscape.book_reshaping([&] { return finish.reshape(elevation); });
     landscape.route();

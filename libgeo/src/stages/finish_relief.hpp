@@ -16,6 +16,8 @@ class ReliefFinish {
   ReliefFinish(const ErosionParameters& parameters, const Grid& grid, const Context& context)
       : p_(parameters), grid_(grid), context_(context) {}
   [[nodiscard]] bool inject_noise(std::span<float> elevation_m) const;
+  /// The latest warping of the ground, which rivers have not yet cut through.
+  [[nodiscard]] bool warp(std::span<float> elevation_m) const;
   [[nodiscard]] bool reshape(std::span<float> elevation_m) const;
 
  private:

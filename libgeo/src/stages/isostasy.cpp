@@ -113,7 +113,7 @@ struct Tectonics {
   std::vector<float> thickening, arc, trench_m;                   // cross sections of margins
   std::vector<float> rift_km;                 // distance to divergent boundaries
   std::vector<float> offshore_km, inland_km;  // distance to continental crust, to the ocean's
-  std::vector<float> thickness_noise_km, swell_m, relict;
+  std::vector<float> thickness_noise_km, swell_m, ocean_swell, relict;
   std::vector<float> flexure_m;
 };
 
@@ -227,10 +227,11 @@ class Isostasy {
     const Swell shift(context_.seed, "isostasy.belt_shift", radius_km_, 700.0, 3, 0.6);
     const Swell noise(context_.seed, "isostasy.thickness", radius_km_, 3200.0, 4, 0.55);
     const Swell swell(context_.seed, "isostasy.swells", radius_km_, 2600.0, 5, 0.6);
+    const Swell floor(context_.seed, "isostasy.ocean_swells", radius_km_, 2800.0, 4, 0.55);
     const Swell suture(context_.seed, "isostasy.sutures", radius_km_, 4200.0, 4, 0.5);
     const Swell worn(context_.seed, "isostasy.worn", radius_km_, 2000.0, 3, 0.6);
-    for (auto* field :
-         {&t_.thickening, &t_.arc, &t_.trench_m, &t_.thickness_noise_km, &t_.swell_m, &t_.relict}) {
+    for (auto* field : {&t_.thickening, &t_.arc, &t_.trench_m, &t_.thickness_noise_km, &t_.swell_m,
+                        &t_.ocean_swell, &t_.relict}) {
       field->assign(grid.size(), 0.0F);
     }
 #pragma omp parallel for schedule(dynamic, 8)
@@ -238,6 +239,7 @@ class Isostasy {
       for (int i = 0; i < grid.nx(); ++i) {
         const Index cell = grid.cell(i, j);
         const auto at = grid.unit_vector(i, j);
+        t_.ocean_swell[cell] = static_cast<float>(floor(at));
         t_.thickness_noise_km[cell] = static_cast<float>(p_.thickness_noise_km * noise(at));
         // Plateaus stand further above the middle of continents than basins lie below it.
         const double up = std::exp(0.6 * swell(at)) - std::exp(0.18);
@@ -319,7 +321,7 @@ class Isostasy {
 #pragma omp parallel
     {
       std::vector<float> scratch;
-      std::vector<std::vector<float>> line(13, std::vector<float>(grid_.nx()));
+      std::vector<std::vector<float>> line(14, std::vector<float>(grid_.nx()));
 #pragma omp for schedule(dynamic, 4)
       for (int j = 0; j < grid_.ny(); ++j) {
         int k = 0;
@@ -339,6 +341,7 @@ class Isostasy {
         const auto& noise = take(t_.thickness_noise_km);
         const auto& swell = take(t_.swell_m);
         const auto& relict = take(t_.relict);
+        const auto& ocean = take(t_.ocean_swell);
         const auto& flexure = take(t_.flexure_m);
         for (int i = 0; i < grid_.nx(); ++i) {
           const Index cell = grid_.cell(i, j);
@@ -380,7 +383,7 @@ class Isostasy {
             const double buried = 1.0 / (1.0 + sediment_m / 700.0);
             const double mount = std::max(0.0, mounts(at) - 1.9);
             ocean_m = -ocean_depth_m(std::min(age, 200.0)) +
-                      datum_.rise_per_sediment() * sediment_m +
+                      datum_.rise_per_sediment() * sediment_m + p_.ocean_swell_m * ocean[i] +
                       p_.seafloor_roughness_m * buried * hills(at) +
                       p_.seamount_m * std::min(1.5, mount) + hot * (1.0 - 0.3 * share) -
                       0.25 * p_.heat_m + island * (2600.0 + 1500.0 * rough) + trench[i];

@@ -62,6 +62,8 @@ std::vector<Parameter> IsostasyParameters::declarations() {
            "artemieva2001"),
       real("isostasy.swell_m", swell_m, "m", 0.0, 5000.0,
            "standard deviation of broad swells and basins of continents", "turcotte2002"),
+      real("isostasy.ocean_swell_m", ocean_swell_m, "m", 0.0, 5000.0,
+           "standard deviation of broad swells and basins of the sea floor", "turcotte2002"),
       real("isostasy.margin_tilt_m", margin_tilt_m, "m", 0.0, 5000.0,
            "how much lower continents stand at their edge than inland", "watts2001"),
       real("isostasy.margin_tilt_km", margin_tilt_km, "km", 1.0, 5000.0,

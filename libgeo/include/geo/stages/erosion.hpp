@@ -32,6 +32,8 @@ struct ErosionParameters {
   double rebound_length_km = 100.0;
   double rebound_time_yr = 1e6;
   double noise_injection_m = 0.0;
+  double warping_m = 25.0;
+  double warping_km = 450.0;
   double relaxation_fraction = 0.0;
   double land_smoothing_km = 0.0;
   std::string hypsometry = "none";

@@ -38,6 +38,7 @@ struct IsostasyParameters {
   double lithosphere = 1.22;
   double craton_compensation = 0.95;
   double swell_m = 420.0;
+  double ocean_swell_m = 330.0;
   double margin_tilt_m = 700.0;
   double margin_tilt_km = 260.0;
   double relict_km = 7.5;
