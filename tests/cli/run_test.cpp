@@ -38,7 +38,7 @@ TEST_F(Run, WritesTheFilesThatItsManifestNames) {
   EXPECT_EQ(outcome.out, "");
   const auto manifest = manifest_of(folder_ / "out");
   EXPECT_TRUE(manifest.at("complete").get<bool>());
-  std::vector<std::string> named{"config.toml", "manifest.json", "planet.pvd"};
+  std::vector<std::string> named{"config.toml", "manifest.json", "planet.pvd", "island.pvd"};
   for (const auto& stage : manifest.at("stages")) {
     EXPECT_FALSE(stage.at("fields").empty());
     for (const std::string file : stage.at("files")) named.push_back(file);

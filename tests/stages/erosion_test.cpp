@@ -87,9 +87,17 @@ TEST(Erosion, ReachesTheBalanceOfUpliftAndIncision) {
   const std::vector<std::pair<std::string, std::string>> settings{
       {"erosion.steps", "300"},
       {"erosion.time_step_yr", "1e5"},
-      {"erosion.erodibility_yr", "1e-5"}};
+      {"erosion.erodibility_yr", "1e-5"},
+      {"erosion.rebound_fraction", "0"},
+      {"erosion.warping_m", "0"}};
   Outcome out = erode(grid, z, settings, uplift);
-  out = erode(grid, out.z, {{"erosion.steps", "10"}, {"erosion.erodibility_yr", "1e-5"}}, uplift);
+  out = erode(grid, out.z,
+              {{"erosion.steps", "10"},
+               {"erosion.time_step_yr", "1e5"},
+               {"erosion.erodibility_yr", "1e-5"},
+               {"erosion.rebound_fraction", "0"},
+               {"erosion.warping_m", "0"}},
+              uplift);
   double rate = 0.0;
   int cells = 0;
   for (int j = 1; j < grid.ny() - 1; ++j) {

@@ -152,7 +152,7 @@ void RunSession::look_at_folder() {
     }
     if (request_.resume) return go_on_from(before);
     const std::string old_from = configured_text(before, "run.from");
-    const int old_begin = old_from.empty() ? 0 : pipeline_.find(old_from);
+    const int old_begin = old_from.empty() ? first_stage_of_input() : pipeline_.find(old_from);
     if (old_begin >= 0 && old_begin < first_) return keep_earlier_stages(before, old_begin);
     manifest_ = {};
   }

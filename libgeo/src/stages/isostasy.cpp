@@ -471,7 +471,7 @@ class Isostasy {
                              18.0 * octave(overlay, at, 12) + 7.0 * octave(overlay, at, 24);
         elevation_m_[cell] = static_cast<float>(
             airy_freeboard_m(thickness_m_[cell], density_[cell], p_.density.mantle) +
-            p_.noise_m * noise);
+            p_.noise_factor * noise);
       }
     }
   }

@@ -83,7 +83,7 @@ std::vector<Parameter> IsostasyParameters::declarations() {
            "standard deviation of the hills of young sea floor", "huang1989"),
       real("isostasy.land_roughness_m", land_roughness_m, "m", 0.0, 5000.0,
            "standard deviation of the noise from which rivers find their ways", "huang1989"),
-      real("isostasy.noise_m", noise_m, "1", 0.0, 100.0,
+      real("isostasy.noise_factor", noise_factor, "1", 0.0, 100.0,
            "factor of the blueprint's noise overlay, blueprint crust alone", "tectonica2026"),
       real("isostasy.pelagic_m", sediment.early_m, "m", 0.0, 10000.0,
            "sediment that soon covers new sea floor", "muller2008"),

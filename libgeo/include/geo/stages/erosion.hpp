@@ -22,7 +22,7 @@ struct ErosionParameters {
   std::string depressions = "fill";
   double erodibility_factor = 0.15;
   double reference_cell_km = 10.0;
-  double subgrid_exponent = 0.3;
+  double subgrid_exponent = 0.38;
   double uplift_mm_yr = 0.0;
   std::string uplift_from = "deformation";
   double convergent_uplift_mm_yr = 0.06;

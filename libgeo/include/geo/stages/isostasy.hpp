@@ -48,7 +48,7 @@ struct IsostasyParameters {
   double seamount_m = 1800.0;
   double seafloor_roughness_m = 130.0;
   double land_roughness_m = 60.0;
-  double noise_m = 1.0;
+  double noise_factor = 1.0;
   DeepSediment sediment;
 
   [[nodiscard]] std::vector<Parameter> declarations();
