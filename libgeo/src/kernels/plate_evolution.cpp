@@ -2,27 +2,55 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
 
 namespace geo {
 namespace {
 
-/// Plates that may arrive at each cell: those within the reach of one step.
-std::vector<std::uint8_t> near_boundary(const CubedSphere& mesh,
-                                        const std::vector<std::int16_t>& plate, int rings) {
-  std::vector<std::uint8_t> near(mesh.size(), 0), grown;
-  for (std::int32_t cell = 0; cell < mesh.size(); ++cell) {
-    for (const std::int32_t next : mesh.neighbours(cell)) near[cell] |= plate[next] != plate[cell];
+/// A set of up to 128 plates.
+struct PlateSet {
+  std::array<std::uint64_t, 2> bits{};
+  void add(int plate) { bits[plate >> 6] |= std::uint64_t{1} << (plate & 63); }
+  [[nodiscard]] bool has(int plate) const { return (bits[plate >> 6] >> (plate & 63) & 1) != 0; }
+  void add(const PlateSet& other) {
+    bits[0] |= other.bits[0];
+    bits[1] |= other.bits[1];
   }
-  for (int ring = 1; ring < rings; ++ring) {
-    grown = near;
+  [[nodiscard]] bool has_several() const {
+    return std::popcount(bits[0]) + std::popcount(bits[1]) > 1;
+  }
+};
+
+/// Plates within some rings of cells around each: those that may arrive there in one step.
+std::vector<PlateSet> plates_around(const CubedSphere& mesh, const std::vector<std::int16_t>& plate,
+                                    int rings) {
+  std::vector<PlateSet> around(mesh.size()), grown(mesh.size());
+  for (std::int32_t cell = 0; cell < mesh.size(); ++cell) around[cell].add(plate[cell]);
+  for (int ring = 0; ring < rings; ++ring) {
+#pragma omp parallel for schedule(static)
     for (std::int32_t cell = 0; cell < mesh.size(); ++cell) {
-      if (near[cell] == 0) continue;
-      for (const std::int32_t next : mesh.neighbours(cell)) grown[next] = 1;
+      grown[cell] = around[cell];
+      for (const std::int32_t next : mesh.neighbours(cell)) grown[cell].add(around[next]);
     }
-    near.swap(grown);
+    around.swap(grown);
   }
-  return near;
+  return around;
 }
+
+/// A rotation, ready to be applied to many places.
+struct Turn {
+  Vector3 axis;
+  double cosine, sine;
+  explicit Turn(const Vector3& rotation)
+      : axis(normalised(rotation)),
+        cosine(std::cos(length(rotation))),
+        sine(std::sin(length(rotation))) {}
+  [[nodiscard]] Vector3 of(const Vector3& r) const {
+    return add(add(scaled(r, cosine), cross(axis, r), sine), axis, dot(axis, r) * (1.0 - cosine));
+  }
+};
 
 }  // namespace
 
@@ -33,16 +61,18 @@ void move_plates(const CubedSphere& mesh, const std::vector<Plate>& plates, doub
     farthest = std::max(farthest, length(p.rotation_rad_myr) * time_myr);
   }
   const int rings = 2 + static_cast<int>(farthest / (0.7 * mesh.spacing()));
-  const auto near = near_boundary(mesh, plate, rings);
+  const auto around = plates_around(mesh, plate, rings);
+  std::vector<Turn> back;
+  for (const Plate& p : plates) back.emplace_back(scaled(p.rotation_rad_myr, -time_myr));
   std::vector<std::int16_t> moved(plate);
 #pragma omp parallel for schedule(dynamic, 4096)
   for (std::int32_t cell = 0; cell < mesh.size(); ++cell) {
-    if (near[cell] == 0) continue;
+    if (!around[cell].has_several()) continue;
     const Vector3& here = mesh.position(cell);
     int winner = -1;
     for (std::size_t k = 0; k < plates.size(); ++k) {
-      const Vector3 back = scaled(plates[k].rotation_rad_myr, -time_myr);
-      if (plate[mesh.locate(rotated(here, back))] != static_cast<std::int16_t>(k)) continue;
+      if (!around[cell].has(static_cast<int>(k))) continue;
+      if (plate[mesh.locate(back[k].of(here))] != static_cast<std::int16_t>(k)) continue;
       if (winner < 0 || plates[k].buoyancy > plates[winner].buoyancy) winner = static_cast<int>(k);
     }
     if (winner >= 0) moved[cell] = static_cast<std::int16_t>(winner);
@@ -50,7 +80,7 @@ void move_plates(const CubedSphere& mesh, const std::vector<Plate>& plates, doub
   plate = moved;
 #pragma omp parallel for schedule(dynamic, 4096)
   for (std::int32_t cell = 0; cell < mesh.size(); ++cell) {
-    if (near[cell] == 0) continue;
+    if (!around[cell].has_several()) continue;
     std::int16_t most = moved[cell];
     const auto votes = [&](std::int16_t candidate) {
       int count = moved[cell] == candidate ? 1 : 0;

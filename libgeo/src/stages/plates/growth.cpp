@@ -11,6 +11,7 @@
 #include "geo/kernels/continents.hpp"
 #include "geo/kernels/crust_age.hpp"
 #include "geo/kernels/cubed_sphere.hpp"
+#include "geo/kernels/cubic_rows.hpp"
 #include "geo/kernels/distance_to_coast.hpp"
 #include "geo/kernels/mesh_sampling.hpp"
 #include "geo/kernels/noise.hpp"
@@ -218,6 +219,45 @@ class GrownPlates {
   std::vector<float> age_myr_, heat_, potential_;
 };
 
+/// Fields of the mesh that are smooth, on a grid of rows and columns: reading them row by row is
+/// cheaper than asking the mesh for every cell. The same coarse grid serves all finer ones.
+class SmoothFields {
+ public:
+  SmoothFields(const GrownPlates& grown, const Grid& grid)
+      : coarse_(grid.nx() <= kColumns ? grid : Grid::sphere(kColumns, kColumns / 2, grid.figure())),
+        rows_(coarse_, grid) {
+    for (auto* field : {&potential_, &heat_, &convergent_km_}) field->resize(coarse_.size());
+    const bool cratons = !grown.potential().empty();
+#pragma omp parallel for schedule(dynamic, 4)
+    for (int j = 0; j < coarse_.ny(); ++j) {
+      for (int i = 0; i < coarse_.nx(); ++i) {
+        const Index cell = coarse_.cell(i, j);
+        const auto stencil = stencil_at(grown.mesh(), coarse_.unit_vector(i, j));
+        if (cratons) potential_[cell] = static_cast<float>(read(stencil, grown.potential()));
+        heat_[cell] = static_cast<float>(read(stencil, grown.heat_anomaly()));
+        convergent_km_[cell] = static_cast<float>(grown.convergent_km(stencil));
+      }
+    }
+  }
+  /// One row of the grid; `line` has one value per column.
+  void potential(int row, std::span<float> line, std::vector<float>& scratch) const {
+    rows_.read(potential_, row, line, scratch);
+  }
+  void heat(int row, std::span<float> line, std::vector<float>& scratch) const {
+    rows_.read(heat_, row, line, scratch);
+    for (float& value : line) value = std::clamp(value, 0.0F, 1.0F);
+  }
+  void convergent_km(int row, std::span<float> line, std::vector<float>& scratch) const {
+    rows_.read(convergent_km_, row, line, scratch);
+  }
+
+ private:
+  static constexpr int kColumns = 1024;
+  Grid coarse_;
+  CubicRows rows_;
+  std::vector<float> potential_, heat_, convergent_km_;
+};
+
 /// The plates as the cells of the grid see them.
 class PlatesOnGrid {
  public:
@@ -226,6 +266,7 @@ class PlatesOnGrid {
       : p_(parameters),
         grown_(grown),
         grid_(io.grid()),
+        smooth_fields_(grown, io.grid()),
         radius_km_(1e-3 * io.grid().figure().radius_m),
         bend_{Noise(context.seed, "plates.bend_x"), Noise(context.seed, "plates.bend_y"),
               Noise(context.seed, "plates.bend_z")},
@@ -259,6 +300,8 @@ class PlatesOnGrid {
         std::max(0.5 * p_.boundary_width_km, 0.6e-3 * grid_.spacing_north_m(0));
 #pragma omp parallel for schedule(dynamic, 4)
     for (int j = 0; j < grid_.ny(); ++j) {
+      std::vector<float> scratch;
+      smooth_fields_.heat(j, heat.subspan(grid_.cell(0, j), grid_.nx()), scratch);
       for (int i = 0; i < grid_.nx(); ++i) {
         const Index cell = grid_.cell(i, j);
         const Vector3 at = grid_.unit_vector(i, j);
@@ -272,7 +315,6 @@ class PlatesOnGrid {
         east[cell] = static_cast<float>(velocity.east);
         north[cell] = static_cast<float>(velocity.north);
         age_[cell] = static_cast<float>(grown_.age_myr(stencil, own));
-        heat[cell] = static_cast<float>(read(stencil, grown_.heat_anomaly()));
         if (!near) continue;
         const auto boundary = grown_.boundary_near(stencil, place, own);
         if (boundary.point == nullptr || boundary.distance_km > half_width_km) continue;
@@ -286,14 +328,16 @@ class PlatesOnGrid {
   /// wanted share; their margin falls off with the distance from it.
   void draw_cratons() const {
     std::vector<float> potential(grid_.size());
-    const auto& mesh = grown_.mesh();
     const double frequency = radius_km_ / p_.coast_wavelength_km;
     constexpr double kNormal = 6.2, kSea = -4.5;  // fbm to unit deviation; no noise lifts that
 #pragma omp parallel for schedule(dynamic, 4)
     for (int j = 0; j < grid_.ny(); ++j) {
+      std::vector<float> scratch;
+      smooth_fields_.potential(j, std::span(potential).subspan(grid_.cell(0, j), grid_.nx()),
+                               scratch);
       for (int i = 0; i < grid_.nx(); ++i) {
         const Vector3 at = grid_.unit_vector(i, j);
-        double value = read(stencil_at(mesh, at), grown_.potential());
+        double value = potential[grid_.cell(i, j)];
         if (value > kSea) {
           value += kNormal * p_.coast_roughness * 0.5 * coast_.fbm(at, frequency, 9, 0.55);
         }
@@ -307,10 +351,11 @@ class PlatesOnGrid {
     distance_to_coast(grid_, potential, distance_m);
 #pragma omp parallel for schedule(dynamic, 4)
     for (int j = 0; j < grid_.ny(); ++j) {
+      std::vector<float> scratch, convergent_km(grid_.nx());
+      smooth_fields_.convergent_km(j, convergent_km, scratch);
       for (int i = 0; i < grid_.nx(); ++i) {
         const Index cell = grid_.cell(i, j);
-        const auto stencil = stencil_at(mesh, grid_.unit_vector(i, j));
-        const double passive = smooth_step(250.0, 900.0, grown_.convergent_km(stencil));
+        const double passive = smooth_step(250.0, 900.0, convergent_km[i]);
         const double width_km =
             p_.active_margin_km + passive * (p_.passive_margin_km - p_.active_margin_km);
         const double inland_km = (potential[cell] >= 0.0F ? 1e-3 : -1e-3) * distance_m[cell];
@@ -350,14 +395,16 @@ class PlatesOnGrid {
     const double frequency = radius_km_ / 3500.0;
 #pragma omp parallel for schedule(dynamic, 4)
     for (int j = 0; j < grid_.ny(); ++j) {
+      std::vector<float> scratch, convergent_km(grid_.nx());
+      smooth_fields_.convergent_km(j, convergent_km, scratch);
       for (int i = 0; i < grid_.nx(); ++i) {
         const Index cell = grid_.cell(i, j);
         if (fraction_[cell] <= 0.0F) continue;
         const Vector3 at = grid_.unit_vector(i, j);
-        const auto stencil = stencil_at(mesh, at);
-        const double reached_km = grown_.convergent_km(stencil);
-        const std::int32_t point = grown_.convergent_point(stencil.cell[0]);
-        if (point >= 0 && reached_km < p_.orogeny_reach_km && fraction_[cell] > 0.3F) {
+        const double reached_km = convergent_km[i];
+        const bool reached = reached_km < p_.orogeny_reach_km && fraction_[cell] > 0.3F;
+        const std::int32_t point = reached ? grown_.convergent_point(mesh.locate(at)) : -1;
+        if (point >= 0) {
           orogeny_[cell] = static_cast<std::int8_t>(orogeny[point]);
         }
         const double old = std::clamp(0.5 + 2.0 * thermal_.fbm(at, frequency, 3), 0.0, 1.0);
@@ -396,6 +443,7 @@ class PlatesOnGrid {
   const PlatesParameters& p_;
   const GrownPlates& grown_;
   const Grid& grid_;
+  SmoothFields smooth_fields_;
   double radius_km_;
   std::array<Noise, 3> bend_;
   Noise coast_, thermal_;
