@@ -71,7 +71,7 @@ void expect_in_range(const State& state) {
   }
 }
 
-TEST(Isostasy, OfManySeedsStaysInRangeAndTheSeaCoversItsShare) {
+TEST(PlanetRelief, OfManySeedsStaysInRangeAndTheSeaCoversItsShare) {
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     const bool by_blueprint = seed % 4 == 0;
@@ -83,7 +83,7 @@ TEST(Isostasy, OfManySeedsStaysInRangeAndTheSeaCoversItsShare) {
   }
 }
 
-TEST(Isostasy, BlueprintElevationIsThatOfAFloatingColumn) {
+TEST(PlanetRelief, BlueprintElevationIsThatOfAFloatingColumn) {
   IsostasyParameters p = blueprint();
   p.noise_factor = 0.0;
   const Made made = planet(256, 5, p, whole_plates());
@@ -96,7 +96,7 @@ TEST(Isostasy, BlueprintElevationIsThatOfAFloatingColumn) {
   }
 }
 
-TEST(Isostasy, SeaLevelCanFollowAVolumeOfWater) {
+TEST(PlanetRelief, SeaLevelCanFollowAVolumeOfWater) {
   Planet body;
   body.sea_level = "volume";
   IsostasyParameters p;
@@ -111,7 +111,7 @@ TEST(Isostasy, SeaLevelCanFollowAVolumeOfWater) {
   EXPECT_NEAR(volume, 1.334e18, 1e-5 * 1.334e18);
 }
 
-TEST(Isostasy, ReliefHasTwoModesAndShelves) {
+TEST(PlanetRelief, ReliefHasTwoModesAndShelves) {
   const Made made = planet(512, 2);
   const auto share = [&](float low, float high) {
     const auto z = made.state.read(field::elevation);
@@ -123,7 +123,7 @@ TEST(Isostasy, ReliefHasTwoModesAndShelves) {
   EXPECT_GT(share(-200, 0), 0.03);
 }
 
-TEST(Isostasy, IsTheSameReliefAtEveryResolution) {
+TEST(PlanetRelief, IsTheSameReliefAtEveryResolution) {
   const Made coarse = planet(256, 4), fine = planet(1024, 4);
   const auto few = coarse.state.read(field::elevation);
   const auto many = fine.state.read(field::elevation);
@@ -142,7 +142,7 @@ TEST(Isostasy, IsTheSameReliefAtEveryResolution) {
 }
 
 // What a row holds must not depend on how near to a pole it lies.
-TEST(Isostasy, PolarRowsAreNoRougherThanOthers) {
+TEST(PlanetRelief, PolarRowsAreNoRougherThanOthers) {
   double polar = 0.0, middle = 0.0;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     const Made made = planet(512, seed);
