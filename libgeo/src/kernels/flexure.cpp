@@ -36,8 +36,9 @@ std::vector<double> compensation_degrees(const ElasticPlate& plate, int degrees)
 }
 
 void flex(const Grid& grid, std::span<float> deflection_m, const ElasticPlate& plate) {
-  filter_degrees(grid, deflection_m,
-                 compensation_degrees(plate, std::min(2 * grid.ny() / 3, grid.nx() / 2)));
+  // All that a small grid can hold; on larger ones what bends, within the reach of the quadrature.
+  const int degrees = std::min({grid.ny(), grid.nx() / 2, std::max(384, 2 * grid.ny() / 3)});
+  filter_degrees(grid, deflection_m, compensation_degrees(plate, degrees));
 }
 
 }  // namespace geo

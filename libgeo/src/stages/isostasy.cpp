@@ -443,7 +443,7 @@ class Isostasy {
       for (int i = 0; i < grid_.nx(); ++i) {
         const Index cell = grid_.cell(i, j);
         const auto at = grid_.unit_vector(i, j);
-        for (const auto& field : {convergent_, divergent_, transform_, weakness_}) {
+        for (const auto& field : {fraction_, convergent_, divergent_, transform_, weakness_}) {
           field[cell] = std::clamp(field[cell], 0.0F, 1.0F);
         }
         const double share = fraction_[cell];

@@ -1,0 +1,270 @@
+// Crust and relief of whole planets, from the plates on.
+#include "geo/stages/isostasy.hpp"
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "geo/core/error.hpp"
+#include "geo/kernels/airy.hpp"
+#include "geo/kernels/quantiles.hpp"
+#include "geo/stages/plates.hpp"
+
+namespace geo {
+namespace {
+
+struct Planetary {
+  State state;
+  Budget budget;
+};
+
+/// Plates take longer than what is tested here: each planet's are made once.
+const State& plates_of(int nx, std::uint64_t seed) {
+  static std::map<std::pair<int, std::uint64_t>, State> made;
+  const auto known = made.find({nx, seed});
+  if (known != made.end()) return known->second;
+  State state(std::make_shared<Grid>(Grid::sphere(nx, nx / 2)));
+  Context context;
+  context.seed = seed;
+  const auto stage = make_plates_stage();
+  StageIo io(state, stage->info());
+  stage->run(io, context);
+  return made.emplace(std::pair{nx, seed}, std::move(state)).first->second;
+}
+
+Planetary planet(int nx, std::uint64_t seed, const IsostasyParameters& parameters = {},
+                 const Planet& body = {}) {
+  Planetary out{plates_of(nx, seed), {}};
+  Context context;
+  context.seed = seed;
+  context.planet = body;
+  const auto stage = make_isostasy_stage(parameters);
+  StageIo io(out.state, stage->info());
+  stage->run(io, context);
+  out.budget = context.budget;
+  return out;
+}
+
+IsostasyParameters blueprint() {
+  IsostasyParameters p;
+  p.crust = "blueprint";
+  p.compensation = "airy-dry";
+  p.continental_km = 43.0;
+  p.thickness_noise_km = 10.0;
+  p.collision_km = 22.0;
+  p.deformation_smoothing_km = 90.0;
+  return p;
+}
+
+TEST(Isostasy, SeaCoversItsShareOfTheArea) {
+  for (const auto& parameters : {IsostasyParameters{}, blueprint()}) {
+    for (const double ocean : {0.3, 0.71, 0.9}) {
+      const Planetary p = planet(512, 3, parameters, {.ocean_fraction = ocean});
+      const Grid& grid = p.state.grid();
+      const auto z = p.state.read(field::elevation);
+      // A row of cells at the equator is 1e-5 of the planet each.
+      EXPECT_NEAR(fraction_below(grid, z, 0.0F), ocean, 1e-4) << parameters.crust;
+    }
+  }
+}
+
+TEST(Isostasy, FieldsStayInTheirRangesOnManyPlanets) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    for (const auto& parameters : {IsostasyParameters{}, blueprint()}) {
+      SCOPED_TRACE(parameters.crust + ", seed " + std::to_string(seed));
+      const Planetary p = planet(256, seed, parameters);
+      const auto within = [&](const Field<float>& spec, float low, float high) {
+        const auto values = p.state.read(spec);
+        const auto [least, greatest] = std::minmax_element(values.begin(), values.end());
+        EXPECT_GE(*least, low) << spec.name;
+        EXPECT_LE(*greatest, high) << spec.name;
+        EXPECT_TRUE(
+            std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); }));
+      };
+      within(field::convergent_deformation, 0.0F, 1.0F);
+      within(field::divergent_deformation, 0.0F, 1.0F);
+      within(field::transform_deformation, 0.0F, 1.0F);
+      within(field::lithospheric_weakness, 0.0F, 1.0F);
+      within(field::continental_fraction, 0.0F, 1.0F);
+      within(field::crust_thickness, 3e3F, 80e3F);
+      within(field::crust_density, 2700.0F, 2900.01F);
+      within(field::erodibility, 0.49e-6F, 4.51e-6F);
+      within(field::elevation, -12e3F, 10e3F);
+    }
+  }
+}
+
+TEST(Isostasy, BlueprintCrustFollowsItsFormulas) {
+  // Without the noise and the smoothing of thickness, which no output tells, equations 3.1, 3.5 and
+  // 3.3 give back thickness, density and elevation, up to the sea level and the overlay 3.6: at
+  // most 120 m, and the same whatever the crust below.
+  IsostasyParameters settings = blueprint();
+  settings.thickness_noise_km = 0.0;
+  settings.crust_smoothing_km = 0.0;
+  std::vector<float> first_overlay;
+  for (const double oceanic_km : {7.0, 9.0}) {
+    settings.oceanic_km = oceanic_km;
+    const Planetary p = planet(256, 1, settings);
+    const auto share = p.state.read(field::continental_fraction);
+    const auto convergent = p.state.read(field::convergent_deformation);
+    const auto divergent = p.state.read(field::divergent_deformation);
+    const auto transform = p.state.read(field::transform_deformation);
+    const auto thickness = p.state.read(field::crust_thickness);
+    const auto density = p.state.read(field::crust_density);
+    const auto heat = p.state.read(field::heat_anomaly);
+    const auto elevation = p.state.read(field::elevation);
+    const double level = p.budget.at("sea_level_shift_m");
+    std::vector<float> overlay(elevation.size());
+    double greatest = 0.0;
+    for (Index c = 0; c < p.state.grid().size(); ++c) {
+      const double s = share[c];
+      const double km = (1.0 - s) * oceanic_km + s * 43.0 + convergent[c] * (13.0 + 9.0 * s) -
+                        20.0 * divergent[c] + 2.0 * transform[c];
+      ASSERT_NEAR(thickness[c], 1e3 * std::clamp(km, 5.0, 75.0), 0.05);
+      ASSERT_NEAR(density[c], (2900.0 - 100.0 * s) * (1.0 - 0.02 * heat[c]), 0.01);
+      const double airy = thickness[c] * (3300.0 - density[c]) / 3300.0;
+      overlay[c] = static_cast<float>(elevation[c] + level - airy);
+      greatest = std::max(greatest, std::abs(static_cast<double>(overlay[c])));
+    }
+    EXPECT_LT(greatest, 120.0);
+    EXPECT_GT(greatest, 40.0);
+    if (first_overlay.empty()) first_overlay = overlay;
+    for (std::size_t c = 0; c < overlay.size(); ++c) {
+      ASSERT_NEAR(overlay[c], first_overlay[c], 0.01);
+    }
+  }
+}
+
+TEST(Isostasy, DeformationFadesAndCratonsAreStrong) {
+  const Planetary p = planet(256, 2, blueprint());
+  const auto weakness = p.state.read(field::lithospheric_weakness);
+  const auto type = p.state.read(field::boundary_type);
+  for (Index c = 0; c < p.state.grid().size(); ++c) {
+    if (type[c] != 0) {
+      ASSERT_GT(weakness[c], 0.75F);
+    }
+  }
+  EXPECT_LT(*std::min_element(weakness.begin(), weakness.end()), 0.02F);
+}
+
+TEST(Isostasy, ContinentsAreThickAndOceansDeepen) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const Planetary p = planet(256, seed);
+    const Grid& grid = p.state.grid();
+    const auto share = p.state.read(field::continental_fraction);
+    const auto thickness = p.state.read(field::crust_thickness);
+    const auto age = p.state.read(field::crust_age);
+    const auto z = p.state.read(field::elevation);
+    std::vector<std::uint8_t> land(grid.size()), young(grid.size()), old(grid.size());
+    for (Index c = 0; c < grid.size(); ++c) {
+      land[c] = share[c] > 0.99F;
+      young[c] = share[c] < 0.01F && age[c] < 10.0F;
+      old[c] = share[c] < 0.01F && age[c] > 80.0F && age[c] < 120.0F;
+    }
+    EXPECT_NEAR(area_mean(grid, thickness, land), 37e3, 4e3) << "seed " << seed;
+    EXPECT_GT(quantile(grid, z, 0.5, young), quantile(grid, z, 0.5, old) + 1000.0F);
+  }
+}
+
+TEST(Isostasy, RatherTheSamePlanetAtAnyResolution) {
+  // Means over the cells of the coarser grid.
+  const Planetary low = planet(512, 3), high = planet(2048, 3);
+  const Grid& grid = low.state.grid();
+  const auto z = low.state.read(field::elevation), fine = high.state.read(field::elevation);
+  double agree = 0.0, total = 0.0, difference = 0.0;
+  for (int j = 0; j < grid.ny(); ++j) {
+    for (int i = 0; i < grid.nx(); ++i) {
+      double mean = 0.0;
+      for (int dj = 0; dj < 4; ++dj) {
+        for (int di = 0; di < 4; ++di) {
+          mean += fine[high.state.grid().cell(4 * i + di, 4 * j + dj)] / 16.0;
+        }
+      }
+      const double here = z[grid.cell(i, j)];
+      agree += ((mean >= 0.0) == (here >= 0.0)) * grid.area_m2(j);
+      difference += std::abs(mean - here) * grid.area_m2(j);
+      total += grid.area_m2(j);
+    }
+  }
+  EXPECT_GT(agree / total, 0.95);
+  EXPECT_LT(difference / total, 200.0);
+}
+
+TEST(Isostasy, PolarRowsAreAsRoughAsTheirNeighbours) {
+  // Steps between cells of a row 78 km apart near the equator and a few near a pole: what
+  // neighbours differ by must shrink with their distance, row by row, without a jump.
+  for (const auto& parameters : {IsostasyParameters{}, blueprint()}) {
+    const Planetary p = planet(512, 3, parameters);
+    const Grid& grid = p.state.grid();
+    for (const auto* spec : {&field::elevation, &field::crust_thickness,
+                             &field::convergent_deformation, &field::lithospheric_weakness}) {
+      const auto values = p.state.read(*spec);
+      const auto step = [&](int j) {
+        double sum = 0.0;
+        for (int i = 0; i < grid.nx(); ++i) {
+          const double d = values[grid.cell(i, j)] - values[grid.cell((i + 1) % grid.nx(), j)];
+          sum += d * d;
+        }
+        return std::sqrt(sum / grid.nx());
+      };
+      double typical = 0.0;
+      for (int j = grid.ny() / 4; j < 3 * grid.ny() / 4; ++j) {
+        typical = std::max(typical, step(j) / grid.spacing_east_m(j));
+      }
+      for (int j : {0, 1, 2, 3, grid.ny() - 4, grid.ny() - 3, grid.ny() - 2, grid.ny() - 1}) {
+        EXPECT_LT(step(j) / grid.spacing_east_m(j), 2.0 * typical)
+            << spec->name << ", row " << j << ", " << parameters.crust;
+      }
+    }
+  }
+}
+
+TEST(Isostasy, BudgetIsTheSumOverCells) {
+  const Planetary p = planet(256, 4);
+  const Grid& grid = p.state.grid();
+  const auto share = p.state.read(field::continental_fraction);
+  const auto thickness = p.state.read(field::crust_thickness);
+  double volume = 0.0, area = 0.0;
+  for (Index c = 0; c < grid.size(); ++c) {
+    volume += thickness[c] * grid.area_m2(grid.row(c));
+    area += share[c] * grid.area_m2(grid.row(c));
+  }
+  EXPECT_NEAR(p.budget.at("crust_m3"), volume, 1e-9 * volume);
+  EXPECT_NEAR(p.budget.at("continental_area_m2"), area, 1e-9 * area);
+}
+
+TEST(Isostasy, SameBitsForAnyNumberOfThreads) {
+  const int threads = omp_get_max_threads();
+  for (const auto& parameters : {IsostasyParameters{}, blueprint()}) {
+    omp_set_num_threads(1);
+    const Planetary one = planet(256, 5, parameters);
+    omp_set_num_threads(4);
+    const Planetary four = planet(256, 5, parameters);
+    omp_set_num_threads(threads);
+    for (const auto* spec : {&field::elevation, &field::crust_thickness, &field::erodibility,
+                             &field::convergent_deformation}) {
+      const auto a = one.state.read(*spec), b = four.state.read(*spec);
+      EXPECT_TRUE(std::equal(a.begin(), a.end(), b.begin())) << spec->name;
+    }
+    EXPECT_EQ(one.budget, four.budget);
+  }
+}
+
+TEST(Isostasy, AsksForAWholeSphere) {
+  State state(std::make_shared<Grid>(Grid::torus(16, 16, 1e4, 1e4)));
+  const auto stage = make_isostasy_stage();
+  for (const FieldSpec* spec : stage->info().reads) {
+    if (spec->type == Type::float32) state.set(*spec, std::vector<float>(256));
+    if (spec->type == Type::int8) state.set(*spec, std::vector<std::int8_t>(256));
+    if (spec->type == Type::int16) state.set(*spec, std::vector<std::int16_t>(256));
+  }
+  StageIo io(state, stage->info());
+  Context context;
+  EXPECT_THROW(stage->run(io, context), InputError);
+}
+
+}  // namespace
+}  // namespace geo
