@@ -130,7 +130,7 @@ std::vector<float> craton_potential(const Cratons& model, const CubedSphere& mes
     // Some ridges have made oceans, others only begin to tear a continent.
     const double begun = std::clamp(0.65 + 3.0 * history.fbm(p, 1.2, 3), 0.0, 1.0);
     const double opened = 6.0 * begun * std::exp(-ridge_km / model.ridge_clearance_km);
-    potential[cell] = static_cast<float>(std::max(-6.0, std::log(sum + 1e-9)) - opened);
+    potential[cell] = static_cast<float>(std::log(sum + 1e-26) - opened);
   }
   return potential;
 }

@@ -11,6 +11,7 @@ namespace geo {
 namespace {
 
 constexpr float kFar_km = 1e9F;
+constexpr std::array<int, 4> kSides{kNorth, kEast, kSouth, kWest};
 
 double smooth_step(double from, double to, double x) {
   const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
@@ -48,6 +49,11 @@ struct Sources {
   }
 };
 
+bool touches_another_plate(const Grid& grid, std::span<const std::int16_t> plate, Index cell) {
+  return std::any_of(kSides.begin(), kSides.end(),
+                     [&](int k) { return plate[grid.neighbour(cell, k)] != plate[cell]; });
+}
+
 /// What one plate is like near a point of its boundary.
 struct Side {
   std::int16_t plate = -1;
@@ -74,7 +80,7 @@ double island_arc(double across_km, double strength) {
 }
 
 double trench_m(double across_km, double strength) {
-  return -(900.0 + 2600.0 * strength) * bell(across_km, -5.0, 36.0) +
+  return -(900.0 + 2100.0 * strength) * bell(across_km, -5.0, 36.0) +
          320.0 * bell(across_km, -170.0, 65.0);
 }
 
@@ -85,12 +91,12 @@ ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int1
                                      std::span<const float> age_myr,
                                      std::span<const float> speed_mm_yr) {
   constexpr auto kConvergent = static_cast<std::int8_t>(BoundaryType::convergent);
-  constexpr double kWindow_m = 220e3, kHandicap_m = 60e3;
+  constexpr double kWindow_m = 220e3, kHandicap_m = 150e3;
   Sources sources(grid);
   std::vector<std::int16_t> down;
   std::vector<Convergence> kind;
   for (Index cell = 0; cell < grid.size(); ++cell) {
-    if (boundary_type[cell] != kConvergent) continue;
+    if (boundary_type[cell] != kConvergent || !touches_another_plate(grid, plate, cell)) continue;
     // Means of both plates over a window of constant size.
     const int column = grid.column(cell), row = grid.row(cell);
     const int rows = std::max(1, static_cast<int>(kWindow_m / grid.spacing_north_m(grid.ny() / 2)));

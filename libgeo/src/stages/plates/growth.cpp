@@ -329,7 +329,7 @@ class PlatesOnGrid {
   void draw_cratons() const {
     std::vector<float> potential(grid_.size());
     const double frequency = radius_km_ / p_.coast_wavelength_km;
-    constexpr double kNormal = 6.2, kSea = -4.5;  // fbm to unit deviation; no noise lifts that
+    constexpr double kNormal = 6.2, kSea = -9.0;  // fbm to unit deviation; no noise lifts that
 #pragma omp parallel for schedule(dynamic, 4)
     for (int j = 0; j < grid_.ny(); ++j) {
       std::vector<float> scratch;
