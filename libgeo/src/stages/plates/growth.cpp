@@ -315,6 +315,8 @@ class PlatesOnGrid {
         east[cell] = static_cast<float>(velocity.east);
         north[cell] = static_cast<float>(velocity.north);
         age_[cell] = static_cast<float>(grown_.age_myr(stencil, own));
+        type[cell] = static_cast<std::int8_t>(BoundaryType::interior);
+        strength[cell] = 0.0F;
         if (!near) continue;
         const auto boundary = grown_.boundary_near(stencil, place, own);
         if (boundary.point == nullptr || boundary.distance_km > half_width_km) continue;
@@ -399,6 +401,7 @@ class PlatesOnGrid {
       smooth_fields_.convergent_km(j, convergent_km, scratch);
       for (int i = 0; i < grid_.nx(); ++i) {
         const Index cell = grid_.cell(i, j);
+        orogeny_[cell] = static_cast<std::int8_t>(OrogenyType::none);
         if (fraction_[cell] <= 0.0F) continue;
         const Vector3 at = grid_.unit_vector(i, j);
         const double reached_km = convergent_km[i];
