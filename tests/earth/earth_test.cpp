@@ -31,7 +31,9 @@ class Earth : public testing::Test {
     const auto parameters = pipeline.parameters();
     find_parameter(parameters, "erosion.steps")->set_text("0");
     find_parameter(parameters, "hydrology.carving")->set_text("0");
-    for (const auto& stage : pipeline.stages()) {
+    // The relief takes the place of the stages before erosion; the island is another matter.
+    for (int at = pipeline.find("erosion"); at <= pipeline.find("biomes"); ++at) {
+      const auto& stage = pipeline.stages()[at];
       Context context;
       StageIo io(*state_, stage->info());
       stage->run(io, context);
