@@ -47,6 +47,7 @@ IslandSession::IslandSession(const Pipeline& pipeline, int stage_number,
 void IslandSession::prepare() {
   now_or_given();
   stage_ = pipeline_.find("island");
+  folder_.open();  // nobody else adds to its manifest now
   manifest_ = read_manifest(folder_.manifest());
   const auto& version = build_info().version;
   if (manifest_.version != version) {

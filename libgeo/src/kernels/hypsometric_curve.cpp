@@ -12,7 +12,7 @@ namespace geo {
 
 double bend_hypsometry(const Grid& grid, std::span<float> elevation_m, double median_m,
                        double smoothing_m) {
-  constexpr double kLeast = 1.0, kMost = 5.0, kTolerance = 0.01;
+  constexpr double kLeast = 0.2, kMost = 5.0, kTolerance = 0.01;
   constexpr int kTurns = 8;
   const std::vector<float> before(elevation_m.begin(), elevation_m.end());
   std::vector<std::uint8_t> land(before.size());

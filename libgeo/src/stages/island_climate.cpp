@@ -148,10 +148,9 @@ void measure_coast(const PlanetCells& cells, std::span<const float> elevation_m,
 }  // namespace
 
 void island_climate(const PlanetCells& cells, const ClimateParameters& climate,
-                    const Planet& planet, const IslandParameters& p, const IslandHeights& heights,
+                    const IslandParameters& p, const IslandHeights& heights,
                     const ClimateFields<const float>& from, const ClimateFields<float>& to) {
   const Grid& fine = cells.fine();
-  (void)planet;
   const bool closed = climate.model == "blueprint";
   const double lapse_k_m =
       closed ? 1e-3 * climate.blueprint.lapse_k_km : climate.seasonal.energy.lapse_k_m;

@@ -3,7 +3,6 @@
 #include <span>
 #include <vector>
 
-#include "geo/core/planet.hpp"
 #include "geo/kernels/fine_relief.hpp"
 #include "geo/stages/climate.hpp"
 #include "geo/stages/island.hpp"
@@ -31,10 +30,9 @@ struct IslandHeights {
 /// fine relief less that of the interpolated one (`upwind_lift`), so that both join at the edge.
 /// Potential evaporation: interpolated, in proportion to what the formula of Oudin et al. (2005)
 /// makes of the change in temperature. Distance to the coast: on the fine grid as far as it
-/// reaches, the planet's beyond. Seasons and winds: interpolated. With `climate.model` "blueprint"
-/// temperature and precipitation are its closed formulas at the true places (blueprint 9.7).
+/// reaches, the planet's beyond. Seasons and winds: interpolated.
 void island_climate(const PlanetCells& cells, const ClimateParameters& climate,
-                    const Planet& planet, const IslandParameters& p, const IslandHeights& heights,
+                    const IslandParameters& p, const IslandHeights& heights,
                     const ClimateFields<const float>& from, const ClimateFields<float>& to);
 
 }  // namespace geo

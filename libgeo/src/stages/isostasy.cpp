@@ -377,9 +377,9 @@ class Isostasy {
           }
           if (share < 1.0) {
             const double age = age_myr_[cell];
+            const double in_trench = std::clamp(-trench[i] / 1500.0, 0.0, 1.0);
             const double sediment_m =
-                deep_sediment_m(p_.sediment, age, offshore[i]) *
-                (1.0 - 0.6 * std::min(1.0, -trench[i] / 1500.0 > 0 ? -trench[i] / 1500.0 : 0.0));
+                deep_sediment_m(p_.sediment, age, offshore[i]) * (1.0 - 0.6 * in_trench);
             const double buried = 1.0 / (1.0 + sediment_m / 700.0);
             const double mount = std::max(0.0, mounts(at) - 1.9);
             ocean_m = -ocean_depth_m(std::min(age, 200.0)) +
