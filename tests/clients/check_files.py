@@ -88,6 +88,11 @@ class Reference:
     def is_latitude_longitude(self):
         return "lat" in self.dataset.dimensions
 
+    @property
+    def is_projected(self):
+        """An island: a map of a part of a planet, with the latitude and longitude of every cell."""
+        return "crs" in self.dataset.variables and not self.is_latitude_longitude
+
 
 def converts(have, want):
     """Whether UDUNITS converts one unit to the other."""
@@ -150,10 +155,12 @@ def check_field(where, reference, variable):
     expect(fill is not None and np.asarray(fill).dtype == variable.dtype, where,
            "_FillValue is missing or of another type")
     mapping = attribute(variable, "grid_mapping")
-    expect((mapping is not None) == reference.is_latitude_longitude, where, "grid_mapping is", mapping)
+    on_planet = reference.is_latitude_longitude or reference.is_projected
+    expect((mapping is not None) == on_planet, where, "grid_mapping is", mapping)
     if mapping is not None:
         crs = dataset[mapping]
-        expect(attribute(crs, "grid_mapping_name") == "latitude_longitude", where, "grid_mapping_name")
+        wanted = "lambert_azimuthal_equal_area" if reference.is_projected else "latitude_longitude"
+        expect(attribute(crs, "grid_mapping_name") == wanted, where, "grid_mapping_name")
         expect(attribute(crs, "earth_radius") or attribute(crs, "inverse_flattening"), where,
                "grid mapping says no size")
     for coordinate in attribute(variable, "coordinates", "").split():
@@ -179,6 +186,33 @@ def check_areas(reference):
     radius = float(dataset["crs"].getncattr("earth_radius"))
     expect(close(reference.area.sum() / (4 * math.pi * radius**2), 1.0, 1e-12), reference.path.name,
            "cell areas do not add up to the sphere")
+
+
+def check_projection(reference):
+    """An island's latitudes and longitudes are those that PROJ makes of its coordinates and CRS."""
+    if not reference.is_projected:
+        return
+    dataset, file = reference.dataset, reference.path.name
+    expect(np.ptp(reference.area) <= 1e-9 * reference.area.max(), file, "cells are not of equal area")
+    crs = dataset["crs"]
+    wkt = attribute(crs, "crs_wkt")
+    expect(wkt is not None, file, "crs_wkt is missing")
+    if wkt is None or shutil.which("gdaltransform") is None:
+        return
+    asked.add("gdaltransform")
+    x, y, lat, lon = (np.asarray(dataset[name][:]) for name in ("x", "y", "lat", "lon"))
+    cells = [(j, i) for j in (0, len(y) // 3, len(y) - 1) for i in (0, len(x) // 2, len(x) - 1)]
+    flattening = attribute(crs, "inverse_flattening")
+    axis = attribute(crs, "semi_major_axis")
+    figure = f"+a={axis} +rf={flattening}" if flattening else f"+R={attribute(crs, 'earth_radius')}"
+    result = subprocess.run(
+        ["gdaltransform", "-s_srs", wkt, "-t_srs", f"+proj=longlat {figure} +no_defs"],
+        input="\n".join(f"{x[i]} {y[j]}" for j, i in cells), capture_output=True, text=True)
+    expect(result.returncode == 0, file, "gdaltransform ->", result.stderr.strip()[:300])
+    for (j, i), line in zip(cells, result.stdout.splitlines()):
+        east, north = (float(word) for word in line.split()[:2])
+        expect(abs(north - lat[j, i]) < 1e-7 and abs((east - lon[j, i] + 180) % 360 - 180) < 1e-7, file,
+               "PROJ puts", (x[i], y[j]), "at", (north, east), "not", (lat[j, i], lon[j, i]))
 
 
 def check_xarray(reference):
@@ -302,7 +336,7 @@ def main():
         sys.exit(f"{sys.argv[1]}: no NetCDF files")
     for path in files:
         reference = Reference(path)
-        for check in (check_conventions, check_areas, check_xarray, check_cdo, check_nco, check_gdal,
+        for check in (check_conventions, check_areas, check_projection, check_xarray, check_cdo, check_nco, check_gdal,
                       check_ncdump):
             check(reference)
     print(f"{len(files)} files, {len(failures)} failures; asked netCDF4, {', '.join(sorted(asked))}")
