@@ -42,7 +42,12 @@ CubedSphere::CubedSphere(int cells_per_edge) : n_(cells_per_edge) {
 #pragma omp parallel for schedule(static)
   for (std::int32_t cell = 0; cell < size(); ++cell) {
     const int face = cell / (n_ * n_), j = cell / n_ % n_, i = cell % n_;
+    const bool inside = i > 0 && i < n_ - 1 && j > 0 && j < n_ - 1;
     for (int k = 0; k < kNeighbours; ++k) {
+      if (inside) {
+        neighbours_[cell][k] = cell + kAcross[k] * n_ + kAlong[k];
+        continue;
+      }
       neighbours_[cell][k] =
           locate(on_face(face, angle(i + kAlong[k] + 0.5), angle(j + kAcross[k] + 0.5)));
     }
