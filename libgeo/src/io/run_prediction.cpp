@@ -15,12 +15,8 @@ struct StageCost {
 
 // Measured on default planets and on Earth's relief at 5', two cores of an AMD EPYC.
 constexpr StageCost kStageCosts[] = {
-    {"plates", 900.0, 60.0},
-    {"isostasy", 900.0, 115.0},
-    {"erosion", 4000.0, 130.0},
-    {"climate", 900.0, 110.0},
-    {"hydrology", 900.0, 150.0},
-    {"biomes", 500.0, 130.0},
+    {"plates", 900.0, 60.0},   {"isostasy", 900.0, 115.0},  {"erosion", 4000.0, 130.0},
+    {"climate", 900.0, 110.0}, {"hydrology", 900.0, 150.0}, {"biomes", 500.0, 130.0},
     {"island", 4000.0, 400.0},  // per cell of its own
 };
 constexpr StageCost kUnknownStage{"", 1000.0, 150.0};
