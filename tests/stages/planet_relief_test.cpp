@@ -60,6 +60,24 @@ TEST(PlanetRelief, ReliefHasTwoModesAndShelves) {
   EXPECT_GT(share(-200, 0), 0.03);
 }
 
+// The choice matters for either crust, and stiffness moves no weight of the whole planet.
+TEST(PlanetRelief, EachCompensationMakesAnotherRelief) {
+  for (const std::string crust : {"margins", "blueprint"}) {
+    std::vector<std::vector<float>> reliefs;
+    for (const std::string compensation : {"airy-dry", "airy", "flexural"}) {
+      IsostasyParameters p;
+      p.crust = crust;
+      p.compensation = compensation;
+      const Made made = planet(128, 3, p);
+      const auto z = made.state.read(field::elevation);
+      EXPECT_NEAR(fraction_below(made.state.grid(), z, 0.0F), 0.71, 1e-4);
+      reliefs.emplace_back(z.begin(), z.end());
+    }
+    EXPECT_NE(reliefs[0], reliefs[1]) << crust;
+    EXPECT_NE(reliefs[1], reliefs[2]) << crust;
+  }
+}
+
 TEST(PlanetErosion, KeepsTheSeaAndClosesItsBudget) {
   Made made = planet(256, 9);
   run(*make_erosion_stage(), made.state, made.context);

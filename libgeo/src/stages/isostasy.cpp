@@ -149,6 +149,7 @@ class Isostasy {
     context_.advance(0.3);
     if (p_.crust == "blueprint") {
       blueprint_crust();
+      stiffen_blueprint();
     } else {
       thicken();
       bend_plate();
@@ -276,6 +277,11 @@ class Isostasy {
     for (Index cell = 0; cell < grid.size(); ++cell) t_.convergent[cell] += t_.arc[cell];
   }
 
+  /// A dry column under the sea, whose water loads it unless the compensation is dry.
+  [[nodiscard]] double balanced(double dry_m) const {
+    return p_.compensation == "airy-dry" ? dry_m : datum_.loaded(dry_m);
+  }
+
   /// Thickness of a column, km, from what the coarse grid says and its continental fraction.
   [[nodiscard]] double continental_km(double noise, double thickening, double relict,
                                       double divergent, double transform) const {
@@ -297,16 +303,21 @@ class Isostasy {
                                        (p_.collision_km * t_.thickening[cell] +
                                         p_.relict_km * t_.relict[cell] + p_.arc_km * t_.arc[cell]));
     }
+    t_.flexure_m = held_up_m(local);
+  }
+
+  /// What the plate's stiffness holds up of deflections of local balance, on the coarse grid, m.
+  [[nodiscard]] std::vector<float> held_up_m(const std::vector<float>& local_m) const {
     ElasticPlate plate = p_.plate;
     plate.thickness_m = 1e3 * p_.elastic_thickness_km;
     plate.mantle_kg_m3 = p_.density.mantle;
     plate.infill_kg_m3 = 0.0;
     plate.gravity_m_s2 = context_.planet.gravity_m_s2;
     plate.radius_m = 1e3 * radius_km_;
-    std::vector<float> flexed(local);
-    flex(grid, flexed, plate);
-    for (Index cell = 0; cell < grid.size(); ++cell)
-      t_.flexure_m[cell] = local[cell] - flexed[cell];
+    std::vector<float> held(local_m), flexed(local_m);
+    flex(coarse_.grid(), flexed, plate);
+    for (std::size_t cell = 0; cell < held.size(); ++cell) held[cell] -= flexed[cell];
+    return held;
   }
 
   // Step 4: columns on the full grid.
@@ -370,7 +381,7 @@ class Isostasy {
             const double valley = divergent[i] * (-1500.0 * bell(rift[i], 0.0, 38.0) +
                                                   900.0 * bell(rift[i], 95.0, 55.0));
             const double relief = p_.land_roughness_m * (1.0 + 3.0 * belt + 1.5 * relict[i]);
-            continent_m = datum_.loaded(datum_.dry_elevation_m(
+            continent_m = balanced(datum_.dry_elevation_m(
                               1e3 * continent_km, p_.density.continental_crust, lithosphere)) +
                           swell[i] + valley + relief * rough + hot * 0.6 -
                           p_.margin_tilt_m * std::exp(-inland[i] / p_.margin_tilt_km);
@@ -469,10 +480,39 @@ class Isostasy {
         density_[cell] = static_cast<float>(density * (1.0 - p_.thermal_coefficient * heat_[cell]));
         const double noise = 60.0 * octave(overlay, at, 3) + 35.0 * octave(overlay, at, 6) +
                              18.0 * octave(overlay, at, 12) + 7.0 * octave(overlay, at, 24);
-        elevation_m_[cell] = static_cast<float>(
-            airy_freeboard_m(thickness_m_[cell], density_[cell], p_.density.mantle) +
-            p_.noise_factor * noise);
+        elevation_m_[cell] =
+            static_cast<float>(blueprint_elevation_m(cell) + p_.noise_factor * noise);
       }
+    }
+  }
+
+  /// Height of a blueprint column: dry as the blueprint has it (3.3), or on the ridge's datum with
+  /// the sea's load and a lithosphere as cold as the floor is old.
+  [[nodiscard]] double blueprint_elevation_m(Index cell) const {
+    if (p_.compensation == "airy-dry") {
+      return airy_freeboard_m(thickness_m_[cell], density_[cell], p_.density.mantle);
+    }
+    const double share = fraction_[cell];
+    const double floor =
+        datum_.lithosphere_of_depth(ocean_depth_m(std::min(age_myr_[cell], 200.0F)));
+    const double lithosphere = share * p_.lithosphere + (1.0 - share) * floor;
+    return datum_.loaded(datum_.dry_elevation_m(thickness_m_[cell], density_[cell], lithosphere));
+  }
+
+  /// Stiffness under a blueprint crust: what it holds up of the crust's own weight.
+  void stiffen_blueprint() {
+    if (p_.compensation != "flexural" || p_.elastic_thickness_km <= 0.0) return;
+    auto local = coarse_.middle(std::span<const float>(thickness_m_));
+    const auto density = coarse_.middle(std::span<const float>(density_));
+    for (std::size_t cell = 0; cell < local.size(); ++cell) {
+      local[cell] *= density[cell] / static_cast<float>(p_.density.mantle);
+    }
+    const std::vector<float> held = held_up_m(local);
+    const CubicRows rows(coarse_.grid(), grid_);
+    std::vector<float> line(grid_.nx()), scratch;
+    for (int j = 0; j < grid_.ny(); ++j) {
+      rows.read(held, j, line, scratch);
+      for (int i = 0; i < grid_.nx(); ++i) elevation_m_[grid_.cell(i, j)] += line[i];
     }
   }
 
