@@ -102,10 +102,10 @@ std::vector<RiverCrossing> find_inflow(const PlanetCells& cells, const PlanetWat
       }
       const double m3_s_per_m2 = discharge(from) / area;
       const double upstream = area - own, beside = own * share_outside(from);
-      const double gathered = is_river ? upstream : 0.0;
+      const double gathered = is_river ? upstream : upstream + beside;
       inflow_area_m2[lowest] += gathered;
       inflow_m3_s[lowest] += static_cast<float>(gathered * m3_s_per_m2);
-      const double spread = upstream - gathered + beside;
+      if (!is_river) continue;
       int land = 0;
       for (int k = 0; k < stretch.count; ++k) {
         land += elevation_m[stretch.first + k * stretch.step] >= 0.0F ? 1 : 0;
@@ -113,8 +113,8 @@ std::vector<RiverCrossing> find_inflow(const PlanetCells& cells, const PlanetWat
       for (int k = 0; k < stretch.count; ++k) {
         const Index cell = stretch.first + k * stretch.step;
         if (elevation_m[cell] < 0.0F) continue;
-        inflow_area_m2[cell] += spread / land;
-        inflow_m3_s[cell] += static_cast<float>(spread * m3_s_per_m2 / land);
+        inflow_area_m2[cell] += beside / land;
+        inflow_m3_s[cell] += static_cast<float>(beside * m3_s_per_m2 / land);
       }
     }
   }

@@ -34,13 +34,12 @@ struct RiverCrossing {
 /// does, and that cell sinks to the river's level, interpolated between the two, so that the coarse
 /// relief dams no river at the edge. What gathered upstream of the last cell outside (drainage area
 /// and discharge) enters there. What falls on as much of that cell itself as lies outside enters
-/// evenly along the stretch, and so does all that comes by lesser brooks. So rivers keep their area
-/// and discharge, and no ground counts twice. No edge cell that water comes in over is to be an
-/// outlet.
-/// Where a larger planet river leaves at a cell, nothing enters there. On a lake, whose cells all
-/// carry the discharge of the whole, discharge goes by the share of the drainage area.
-/// Outputs: one value per fine cell, 0 elsewhere; `elevation_m` of the fine cells: in and out.
-/// Returns every crossing, in and out.
+/// evenly along the stretch. Lesser brooks enter whole at the lowest cell, which stays as it is. So
+/// rivers keep their area and discharge, and no ground counts twice. No edge cell that water comes
+/// in over is to be an outlet. Where a larger planet river leaves at a cell, nothing enters there.
+/// On a lake, whose cells all carry the discharge of the whole, discharge goes by the share of the
+/// drainage area. Outputs: one value per fine cell, 0 elsewhere; `elevation_m` of the fine cells:
+/// in and out. Returns every crossing, in and out.
 std::vector<RiverCrossing> find_inflow(const PlanetCells& cells, const PlanetWater& water,
                                        std::span<float> elevation_m,
                                        std::span<double> inflow_area_m2,
