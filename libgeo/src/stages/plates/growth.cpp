@@ -20,6 +20,7 @@
 #include "geo/kernels/plate_growth.hpp"
 #include "geo/kernels/plate_motion.hpp"
 #include "geo/kernels/quantiles.hpp"
+#include "geo/kernels/shapes.hpp"
 #include "geo/kernels/smoothing.hpp"
 
 namespace geo {
@@ -27,11 +28,6 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr int kMeshEdge = 160;  // about 58 km on Earth
-
-double smooth_step(double from, double to, double x) {
-  const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t);
-}
 
 /// The planet's plates on the mesh.
 class GrownPlates {
