@@ -33,19 +33,56 @@ class Columns {
         hills_(crust.seed, "isostasy.hills", crust.radius_km, 260.0, 6, 0.6),
         mounts_(crust.seed, "isostasy.seamounts", crust.radius_km, 330.0, 3, 0.6) {}
 
-  /// Row `j`, from the coarse grid's fields along it.
-  void draw(int j, const Tectonics& row) const {
-    for (int i = 0; i < crust_.grid.nx(); ++i) draw(i, j, row);
+  /// Scratch of one thread: what the coarse grid and the noise say along a row.
+  class Row {
+   public:
+    explicit Row(const Columns& columns)
+        : nx(columns.crust_.grid.nx()),
+          land(columns.land_, nx),
+          ranges(columns.ranges_, nx),
+          hills(columns.hills_, nx),
+          mounts(columns.mounts_, nx),
+          noise_(columns.crust_.grid) {
+      for (const auto seen : kSeen) (from_afar.*seen).resize(nx);
+    }
+    void read(const Crust& crust, const CubicRows& rows, const Tectonics& tectonics, int j) {
+      for (const auto seen : kSeen) rows.read(tectonics.*seen, j, from_afar.*seen, scratch_);
+      const std::span<const float> share = crust.fraction.subspan(crust.grid.cell(0, j), nx);
+      const auto& t = from_afar;
+      noise_.choose(j, [&](int i) { return is_rough(share[i], t.arc[i]); });
+      land.read(noise_);
+      noise_.choose(
+          j, [&](int i) { return share[i] > 0.0F && is_folded(t.thickening[i], t.relict[i]); });
+      ranges.read(noise_);
+      noise_.choose(j, [&](int i) { return share[i] < 1.0F; });
+      hills.read(noise_);
+      mounts.read(noise_);
+    }
+
+    int nx;
+    Tectonics from_afar;
+    Swell::Line land, ranges, hills, mounts;
+
+   private:
+    NoiseRow noise_;
+    std::vector<float> scratch_;
+  };
+
+  void draw(int j, const Row& row) const {
+    for (int i = 0; i < row.nx; ++i) draw(i, j, row);
   }
 
  private:
+  static bool is_rough(double share, double island) { return share > 0.0 || island > 0.02; }
+  static bool is_folded(double belt, double relict) { return belt > 0.01 || relict > 0.02; }
+
   struct Continent {
     double thickness_km = 0.0, elevation_m = 0.0;
   };
 
-  void draw(int i, int j, const Tectonics& row) const {
+  void draw(int i, int j, const Row& along) const {
+    const Tectonics& row = along.from_afar;
     const Index cell = crust_.grid.cell(i, j);
-    const auto at = crust_.grid.unit_vector(i, j);
     const double share = crust_.fraction[cell];
     const double belt = std::clamp(static_cast<double>(row.thickening[i]), 0.0, 1.3);
     const double island = std::max(0.0F, row.arc[i]);
@@ -56,12 +93,12 @@ class Columns {
     crust_.transform[cell] = std::clamp(row.transform[i], 0.0F, 1.0F);
     crust_.weakness[cell] = std::clamp(row.weakness[i], 0.0F, 1.0F);
 
-    const double rough = share > 0.0 || island > 0.02 ? land_(at) : 0.0;
+    const double rough = is_rough(share, island) ? along.land[i] : 0.0;
     Continent land{p_.continental_km, 0.0};
-    if (share > 0.0) land = continent(i, row, at, belt, hot, rough);
+    if (share > 0.0) land = continent(i, along, belt, hot, rough);
     double floor_m = 0.0;
     if (share < 1.0) {
-      floor_m = sea_floor_m(i, row, at, crust_.age_myr[cell], island, rough) +
+      floor_m = sea_floor_m(i, along, crust_.age_myr[cell], island, rough) +
                 hot * (1.0 - 0.3 * share) - 0.25 * p_.heat_m;
     }
     crust_.thickness_m[cell] = static_cast<float>(
@@ -76,10 +113,11 @@ class Columns {
                                                   trench_m + row.flexure_m[i]);
   }
 
-  [[nodiscard]] Continent continent(int i, const Tectonics& row, const std::array<double, 3>& at,
-                                    double belt, double hot, double rough) const {
+  [[nodiscard]] Continent continent(int i, const Row& along, double belt, double hot,
+                                    double rough) const {
+    const Tectonics& row = along.from_afar;
     const double noise_km = row.thickness_noise_km[i], relict = row.relict[i];
-    const double fabric = belt > 0.01 || relict > 0.02 ? ranges_(at) : 0.0;
+    const double fabric = is_folded(belt, relict) ? along.ranges[i] : 0.0;
     const double thickness_km =
         p_.continental_km + noise_km + p_.collision_km * (belt * (1.0 + 0.16 * fabric)) +
         p_.relict_km * (relict * (1.0 + 0.3 * fabric)) + p_.transpression_km * row.transform[i] -
@@ -98,17 +136,19 @@ class Columns {
   }
 
   /// Floor as deep as it is old, under its sediment, with hills, seamounts, arcs and trenches.
-  [[nodiscard]] double sea_floor_m(int i, const Tectonics& row, const std::array<double, 3>& at,
-                                   double age_myr, double island, double rough) const {
+  [[nodiscard]] double sea_floor_m(int i, const Row& along, double age_myr, double island,
+                                   double rough) const {
+    const Tectonics& row = along.from_afar;
     const double in_trench = std::clamp(-row.trench_m[i] / 1500.0, 0.0, 1.0);
     const double sediment_m =
         deep_sediment_m(p_.sediment, age_myr, row.offshore_km[i]) * (1.0 - 0.6 * in_trench);
     const double buried = 1.0 / (1.0 + sediment_m / 700.0);
-    const double mount = std::max(0.0, mounts_(at) - 1.9);
+    const double mount = std::max(0.0, along.mounts[i] - 1.9);
     return -ocean_depth_m(std::min(age_myr, 200.0)) +
            crust_.datum.rise_per_sediment() * sediment_m + p_.ocean_swell_m * row.ocean_swell[i] +
-           p_.seafloor_roughness_m * buried * hills_(at) + p_.seamount_m * std::min(1.5, mount) +
-           island * (2600.0 + 1500.0 * rough) + row.trench_m[i];
+           p_.seafloor_roughness_m * buried * along.hills[i] +
+           p_.seamount_m * std::min(1.5, mount) + island * (2600.0 + 1500.0 * rough) +
+           row.trench_m[i];
   }
 
   /// A dry column under the sea, whose water loads it unless the compensation is dry.
@@ -130,12 +170,10 @@ void draw_margins_crust(const Crust& crust, const CoarseGrid& coarse, const Tect
   const Columns columns(crust);
 #pragma omp parallel
   {
-    Tectonics row;
-    for (const auto seen : kSeen) (row.*seen).resize(crust.grid.nx());
-    std::vector<float> scratch;
+    Columns::Row row(columns);
 #pragma omp for schedule(dynamic, 4)
     for (int j = 0; j < crust.grid.ny(); ++j) {
-      for (const auto seen : kSeen) rows.read(tectonics.*seen, j, row.*seen, scratch);
+      row.read(crust, rows, tectonics, j);
       columns.draw(j, row);
     }
   }

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <string_view>
+#include <vector>
 
-#include "geo/kernels/noise.hpp"
+#include "geo/kernels/noise_row.hpp"
 
 namespace geo {
 
@@ -26,9 +26,20 @@ class Swell {
     constexpr double kDeviation = 0.29;  // of one octave
     scale_ = sum / (kDeviation * std::sqrt(squares));
   }
-  double operator()(const std::array<double, 3>& at) const {
-    return scale_ * noise_.fbm(at, frequency_, octaves_, gain_);
-  }
+
+  /// A row's values, in the columns that were wanted.
+  class Line {
+   public:
+    Line(const Swell& swell, int columns) : swell_(swell), noise_(columns) {}
+    void read(NoiseRow& row) {
+      row.fbm(swell_.noise_, swell_.frequency_, swell_.octaves_, swell_.gain_, noise_);
+    }
+    double operator[](int column) const { return swell_.scale_ * noise_[column]; }
+
+   private:
+    const Swell& swell_;
+    std::vector<float> noise_;
+  };
 
  private:
   Noise noise_;
