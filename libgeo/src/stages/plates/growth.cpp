@@ -48,17 +48,19 @@ class GrownPlates {
       convergent.push_back(boundaries_[k].cell);
       convergent_.push_back(static_cast<std::int32_t>(k));
     }
-    nearest_ = nearest_cells(mesh_, all, 6.0 * mesh_.spacing());
-    nearest_convergent_ = nearest_cells(mesh_, convergent, 2000.0 / radius_km);
+#pragma omp parallel sections
+    {
+#pragma omp section
+      nearest_convergent_ = nearest_cells(mesh_, convergent, 2000.0 / radius_km);
+#pragma omp section
+      nearest_ = nearest_cells(mesh_, all, 6.0 * mesh_.spacing());
+#pragma omp section
+      grow_continents();
+    }
     for (float& angle : nearest_convergent_.angle) angle = std::min(angle, 1.0F);
     age_myr_ =
         ocean_age_myr(mesh_, plate_, boundaries_, rotations(), p_.oldest_floor_myr, radius_km);
     heat_ = heat();
-    if (p_.continents == "cratons") {
-      Cratons cratons = p_.cratons;
-      cratons.radius_km = radius_km;
-      potential_ = craton_potential(cratons, mesh_, plate_, plates_, boundaries_, seed);
-    }
   }
 
   [[nodiscard]] const CubedSphere& mesh() const { return mesh_; }
@@ -149,6 +151,12 @@ class GrownPlates {
       merge_small_pieces(mesh_, smallest_sr, plate_);
     }
     if (p_.no_net_rotation) subtract_net_rotation();
+  }
+  void grow_continents() {
+    if (p_.continents != "cratons") return;
+    Cratons cratons = p_.cratons;
+    cratons.radius_km = radius_km_;
+    potential_ = craton_potential(cratons, mesh_, plate_, plates_, boundaries_, seed_);
   }
   void subtract_net_rotation() {
     std::vector<Vector3> unit(mesh_.size());
@@ -296,7 +304,8 @@ class PlatesOnGrid {
           const Vector3 at = grid_.unit_vector(i, j);
           const bool near = bends.near(i);
           const Vector3 place = near ? bends.bent(i, at) : at;
-          const MeshStencil stencil = stencil_at(mesh, place);
+          const MeshStencil stencil =
+              stencil_at(mesh, near ? mesh.locate(place) : bends.cell(i), place);
           const std::int16_t own =
               near ? grown_.plate_at(stencil) : grown_.plate()[stencil.cell[0]];
           plate[cell] = own;
@@ -423,21 +432,22 @@ class PlatesOnGrid {
   /// scales below the mesh's.
   class Bends {
    public:
-    explicit Bends(const PlatesOnGrid& on) : on_(on), noise_(on.grid_), near_(on.grid_.nx()) {
+    explicit Bends(const PlatesOnGrid& on) : on_(on), noise_(on.grid_), cell_(on.grid_.nx()) {
       for (auto& along : along_) along.resize(on.grid_.nx());
     }
     void read(int row) {
       for (int i = 0; i < on_.grid_.nx(); ++i) {
-        near_[i] =
-            on_.grown_.near_boundary(on_.grown_.mesh().locate(on_.grid_.unit_vector(i, row)));
+        cell_[i] = on_.grown_.mesh().locate(on_.grid_.unit_vector(i, row));
       }
-      noise_.choose(row, [&](int i) { return near_[i] != 0; });
+      noise_.choose(row, [&](int i) { return near(i); });
       constexpr double kWavelength_km = 420.0;
       for (int c = 0; c < 3; ++c) {
         noise_.fbm(on_.bend_[c], on_.radius_km_ / kWavelength_km, 6, 0.55, along_[c]);
       }
     }
-    [[nodiscard]] bool near(int column) const { return near_[column] != 0; }
+    /// The cell of the mesh that holds the place as it is.
+    [[nodiscard]] std::int32_t cell(int column) const { return cell_[column]; }
+    [[nodiscard]] bool near(int column) const { return on_.grown_.near_boundary(cell_[column]); }
     [[nodiscard]] Vector3 bent(int column, const Vector3& at) const {
       constexpr double kNormal = 2.2;
       const double most = kNormal * on_.p_.outline_bending_km / on_.radius_km_;
@@ -448,7 +458,7 @@ class PlatesOnGrid {
    private:
     const PlatesOnGrid& on_;
     NoiseRow noise_;
-    std::vector<std::uint8_t> near_;
+    std::vector<std::int32_t> cell_;
     std::array<std::vector<float>, 3> along_;
   };
 
