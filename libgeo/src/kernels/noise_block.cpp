@@ -162,4 +162,18 @@ void Noise::fbm(std::span<const std::array<double, 3>> positions, double frequen
   }
 }
 
+std::vector<float> fbm_at(const Noise& noise, std::span<const std::array<double, 3>> positions,
+                          double frequency, int octaves, double gain) {
+  constexpr std::size_t kShare = 16 * kBlock;
+  std::vector<float> values(positions.size());
+  const std::size_t shares = (positions.size() + kShare - 1) / kShare;
+#pragma omp parallel for schedule(static)
+  for (std::size_t share = 0; share < shares; ++share) {
+    const std::size_t first = share * kShare, count = std::min(kShare, positions.size() - first);
+    noise.fbm(positions.subspan(first, count), frequency, octaves, gain,
+              std::span(values).subspan(first, count));
+  }
+  return values;
+}
+
 }  // namespace geo

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <vector>
 
 namespace geo {
 
@@ -42,5 +43,10 @@ class Noise {
   std::array<std::uint32_t, 4> key_;
   std::array<double, 3> shift_;
 };
+
+/// Noise::fbm at many positions, on all threads.
+[[nodiscard]] std::vector<float> fbm_at(const Noise& noise,
+                                        std::span<const std::array<double, 3>> positions,
+                                        double frequency, int octaves, double gain = 0.5);
 
 }  // namespace geo
