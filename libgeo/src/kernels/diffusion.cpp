@@ -46,14 +46,17 @@ class SplitDiffusion {
           continue;
         }
         couple_rows(system, row, strength);
+        std::array<float*, kRows> rows;
         for (int k = 0; k < kRows; ++k) {
-          const float* from = &field_[std::size_t(std::min(row + k, ny - 1)) * nx];
-          for (int i = 0; i < nx; ++i) value[i * kRows + k] = from[i];
+          rows[k] = &field_[std::size_t(std::min(row + k, ny - 1)) * nx];
+        }
+        for (int i = 0; i < nx; ++i) {
+          for (int k = 0; k < kRows; ++k) value[i * kRows + k] = rows[k][i];
         }
         step(system, value, stage);
-        for (int k = 0; k < std::min(kRows, ny - row); ++k) {
-          float* to = &field_[std::size_t(row + k) * nx];
-          for (int i = 0; i < nx; ++i) to[i] = static_cast<float>(value[i * kRows + k]);
+        // Beyond the last row it is written again, alike.
+        for (int i = 0; i < nx; ++i) {
+          for (int k = 0; k < kRows; ++k) rows[k][i] = static_cast<float>(value[i * kRows + k]);
         }
       }
     }
@@ -242,8 +245,7 @@ class SplitDiffusion {
             std::vector<double>& stage) const {
     system.solve(value.data());
     if (options_.scheme == DiffusionScheme::positive) return;
-    std::copy(value.begin(), value.end(), stage.begin());
-    system.solve(stage.data());
+    system.solve(value.data(), stage.data());
     // The weights sum to 1, which keeps constants and mass.
     for (std::size_t i = 0; i < value.size(); ++i) {
       value[i] = stage[i] + std::numbers::sqrt2 * (stage[i] - value[i]);

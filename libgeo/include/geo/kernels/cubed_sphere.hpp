@@ -32,12 +32,13 @@ class CubedSphere {
     return neighbours_[cell];
   }
   /// Mean distance between centres of adjacent cells, radians.
-  [[nodiscard]] double spacing() const noexcept;
+  [[nodiscard]] double spacing() const noexcept { return spacing_; }
 
  private:
   [[nodiscard]] Vector3 on_face(int face, double u, double v) const;
 
   int n_;
+  double spacing_;
   std::vector<Vector3> position_;
   std::vector<double> area_sr_;  // of one face
   std::vector<std::array<std::int32_t, kNeighbours>> neighbours_;

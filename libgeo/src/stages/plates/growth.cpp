@@ -14,12 +14,13 @@
 #include "geo/kernels/cubic_rows.hpp"
 #include "geo/kernels/distance_to_coast.hpp"
 #include "geo/kernels/mesh_sampling.hpp"
-#include "geo/kernels/noise.hpp"
+#include "geo/kernels/noise_row.hpp"
 #include "geo/kernels/plate_boundaries.hpp"
 #include "geo/kernels/plate_evolution.hpp"
 #include "geo/kernels/plate_growth.hpp"
 #include "geo/kernels/plate_motion.hpp"
 #include "geo/kernels/quantiles.hpp"
+#include "geo/kernels/shapes.hpp"
 #include "geo/kernels/smoothing.hpp"
 
 namespace geo {
@@ -27,11 +28,6 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr int kMeshEdge = 160;  // about 58 km on Earth
-
-double smooth_step(double from, double to, double x) {
-  const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t);
-}
 
 /// The planet's plates on the mesh.
 class GrownPlates {
@@ -52,17 +48,19 @@ class GrownPlates {
       convergent.push_back(boundaries_[k].cell);
       convergent_.push_back(static_cast<std::int32_t>(k));
     }
-    nearest_ = nearest_cells(mesh_, all, 6.0 * mesh_.spacing());
-    nearest_convergent_ = nearest_cells(mesh_, convergent, 2000.0 / radius_km);
+#pragma omp parallel sections
+    {
+#pragma omp section
+      nearest_convergent_ = nearest_cells(mesh_, convergent, 2000.0 / radius_km);
+#pragma omp section
+      nearest_ = nearest_cells(mesh_, all, 6.0 * mesh_.spacing());
+#pragma omp section
+      grow_continents();
+    }
     for (float& angle : nearest_convergent_.angle) angle = std::min(angle, 1.0F);
     age_myr_ =
         ocean_age_myr(mesh_, plate_, boundaries_, rotations(), p_.oldest_floor_myr, radius_km);
     heat_ = heat();
-    if (p_.continents == "cratons") {
-      Cratons cratons = p_.cratons;
-      cratons.radius_km = radius_km;
-      potential_ = craton_potential(cratons, mesh_, plate_, plates_, boundaries_, seed);
-    }
   }
 
   [[nodiscard]] const CubedSphere& mesh() const { return mesh_; }
@@ -153,6 +151,12 @@ class GrownPlates {
       merge_small_pieces(mesh_, smallest_sr, plate_);
     }
     if (p_.no_net_rotation) subtract_net_rotation();
+  }
+  void grow_continents() {
+    if (p_.continents != "cratons") return;
+    Cratons cratons = p_.cratons;
+    cratons.radius_km = radius_km_;
+    potential_ = craton_potential(cratons, mesh_, plate_, plates_, boundaries_, seed_);
   }
   void subtract_net_rotation() {
     std::vector<Vector3> unit(mesh_.size());
@@ -276,17 +280,6 @@ class PlatesOnGrid {
         age_(io.write(field::crust_age)),
         orogeny_(io.write(field::orogeny_type)) {}
 
-  /// A place on the mesh for a place on the planet: outlines bend at scales below the mesh's.
-  [[nodiscard]] Vector3 bent(const Vector3& at) const {
-    constexpr double kWavelength_km = 420.0, kNormal = 2.2;
-    const double frequency = radius_km_ / kWavelength_km;
-    Vector3 to = at;
-    for (int c = 0; c < 3; ++c) {
-      to[c] += kNormal * p_.outline_bending_km / radius_km_ * bend_[c].fbm(at, frequency, 6, 0.55);
-    }
-    return normalised(to);
-  }
-
   /// Plates, velocities, boundaries, ages of the floor, heat.
   void draw(StageIo& io) const {
     const auto plate = io.write(field::plate_id);
@@ -298,30 +291,37 @@ class PlatesOnGrid {
     const auto& mesh = grown_.mesh();
     const double half_width_km =
         std::max(0.5 * p_.boundary_width_km, 0.6e-3 * grid_.spacing_north_m(0));
-#pragma omp parallel for schedule(dynamic, 4)
-    for (int j = 0; j < grid_.ny(); ++j) {
+#pragma omp parallel
+    {
       std::vector<float> scratch;
-      smooth_fields_.heat(j, heat.subspan(grid_.cell(0, j), grid_.nx()), scratch);
-      for (int i = 0; i < grid_.nx(); ++i) {
-        const Index cell = grid_.cell(i, j);
-        const Vector3 at = grid_.unit_vector(i, j);
-        const bool near = grown_.near_boundary(mesh.locate(at));
-        const Vector3 place = near ? bent(at) : at;
-        const MeshStencil stencil = stencil_at(mesh, place);
-        const std::int16_t own = near ? grown_.plate_at(stencil) : grown_.plate()[stencil.cell[0]];
-        plate[cell] = own;
-        const auto velocity =
-            east_north(velocity_mm_yr(grown_.plates()[own].rotation_rad_myr, at, radius_km_), at);
-        east[cell] = static_cast<float>(velocity.east);
-        north[cell] = static_cast<float>(velocity.north);
-        age_[cell] = static_cast<float>(grown_.age_myr(stencil, own));
-        type[cell] = static_cast<std::int8_t>(BoundaryType::interior);
-        strength[cell] = 0.0F;
-        if (!near) continue;
-        const auto boundary = grown_.boundary_near(stencil, place, own);
-        if (boundary.point == nullptr || boundary.distance_km > half_width_km) continue;
-        type[cell] = static_cast<std::int8_t>(boundary.point->type);
-        strength[cell] = static_cast<float>(boundary.point->strength);
+      Bends bends(*this);
+#pragma omp for schedule(dynamic, 4)
+      for (int j = 0; j < grid_.ny(); ++j) {
+        smooth_fields_.heat(j, heat.subspan(grid_.cell(0, j), grid_.nx()), scratch);
+        bends.read(j);
+        for (int i = 0; i < grid_.nx(); ++i) {
+          const Index cell = grid_.cell(i, j);
+          const Vector3 at = grid_.unit_vector(i, j);
+          const bool near = bends.near(i);
+          const Vector3 place = near ? bends.bent(i, at) : at;
+          const MeshStencil stencil =
+              stencil_at(mesh, near ? mesh.locate(place) : bends.cell(i), place);
+          const std::int16_t own =
+              near ? grown_.plate_at(stencil) : grown_.plate()[stencil.cell[0]];
+          plate[cell] = own;
+          const auto velocity =
+              east_north(velocity_mm_yr(grown_.plates()[own].rotation_rad_myr, at, radius_km_), at);
+          east[cell] = static_cast<float>(velocity.east);
+          north[cell] = static_cast<float>(velocity.north);
+          age_[cell] = static_cast<float>(grown_.age_myr(stencil, own));
+          type[cell] = static_cast<std::int8_t>(BoundaryType::interior);
+          strength[cell] = 0.0F;
+          if (!near) continue;
+          const auto boundary = grown_.boundary_near(stencil, place, own);
+          if (boundary.point == nullptr || boundary.distance_km > half_width_km) continue;
+          type[cell] = static_cast<std::int8_t>(boundary.point->type);
+          strength[cell] = static_cast<float>(boundary.point->strength);
+        }
       }
     }
   }
@@ -332,18 +332,20 @@ class PlatesOnGrid {
     std::vector<float> potential(grid_.size());
     const double frequency = radius_km_ / p_.coast_wavelength_km;
     constexpr double kNormal = 6.2, kSea = -9.0;  // fbm to unit deviation; no noise lifts that
-#pragma omp parallel for schedule(dynamic, 4)
-    for (int j = 0; j < grid_.ny(); ++j) {
-      std::vector<float> scratch;
-      smooth_fields_.potential(j, std::span(potential).subspan(grid_.cell(0, j), grid_.nx()),
-                               scratch);
-      for (int i = 0; i < grid_.nx(); ++i) {
-        const Vector3 at = grid_.unit_vector(i, j);
-        double value = potential[grid_.cell(i, j)];
-        if (value > kSea) {
-          value += kNormal * p_.coast_roughness * 0.5 * coast_.fbm(at, frequency, 9, 0.55);
+#pragma omp parallel
+    {
+      NoiseRow row(grid_);
+      std::vector<float> noise(grid_.nx()), scratch;
+#pragma omp for schedule(dynamic, 4)
+      for (int j = 0; j < grid_.ny(); ++j) {
+        const auto along = std::span(potential).subspan(grid_.cell(0, j), grid_.nx());
+        smooth_fields_.potential(j, along, scratch);
+        row.choose(j, [&](int i) { return along[i] > kSea; });
+        row.fbm(coast_, frequency, 9, 0.55, noise);
+        for (int i = 0; i < grid_.nx(); ++i) {
+          if (!(along[i] > kSea)) continue;
+          along[i] = static_cast<float>(along[i] + kNormal * p_.coast_roughness * 0.5 * noise[i]);
         }
-        potential[grid_.cell(i, j)] = static_cast<float>(value);
       }
     }
     const float edge = level_for_fraction(grid_, potential, 1.0 - p_.cratons.share);
@@ -395,31 +397,71 @@ class PlatesOnGrid {
     const auto& mesh = grown_.mesh();
     constexpr double kYoungest_myr = 200.0, kOldest_myr = 3200.0;
     const double frequency = radius_km_ / 3500.0;
-#pragma omp parallel for schedule(dynamic, 4)
-    for (int j = 0; j < grid_.ny(); ++j) {
-      std::vector<float> scratch, convergent_km(grid_.nx());
-      smooth_fields_.convergent_km(j, convergent_km, scratch);
-      for (int i = 0; i < grid_.nx(); ++i) {
-        const Index cell = grid_.cell(i, j);
-        orogeny_[cell] = static_cast<std::int8_t>(OrogenyType::none);
-        if (fraction_[cell] <= 0.0F) continue;
-        const Vector3 at = grid_.unit_vector(i, j);
-        const double reached_km = convergent_km[i];
-        const bool reached = reached_km < p_.orogeny_reach_km && fraction_[cell] > 0.3F;
-        const std::int32_t point = reached ? grown_.convergent_point(mesh.locate(at)) : -1;
-        if (point >= 0) {
-          orogeny_[cell] = static_cast<std::int8_t>(orogeny[point]);
+#pragma omp parallel
+    {
+      NoiseRow row(grid_);
+      std::vector<float> noise(grid_.nx()), convergent_km(grid_.nx()), scratch;
+#pragma omp for schedule(dynamic, 4)
+      for (int j = 0; j < grid_.ny(); ++j) {
+        smooth_fields_.convergent_km(j, convergent_km, scratch);
+        row.choose(j, [&](int i) { return fraction_[grid_.cell(i, j)] > 0.0F; });
+        row.fbm(thermal_, frequency, 3, 0.5, noise);
+        for (int i = 0; i < grid_.nx(); ++i) {
+          const Index cell = grid_.cell(i, j);
+          orogeny_[cell] = static_cast<std::int8_t>(OrogenyType::none);
+          if (fraction_[cell] <= 0.0F) continue;
+          const double reached_km = convergent_km[i];
+          const bool reached = reached_km < p_.orogeny_reach_km && fraction_[cell] > 0.3F;
+          const std::int32_t point =
+              reached ? grown_.convergent_point(mesh.locate(grid_.unit_vector(i, j))) : -1;
+          if (point >= 0) {
+            orogeny_[cell] = static_cast<std::int8_t>(orogeny[point]);
+          }
+          const double old = std::clamp(0.5 + 2.0 * noise[i], 0.0, 1.0);
+          const double far = smooth_step(0.0, 1500.0, reached_km);
+          const double thermal_myr = kYoungest_myr + (kOldest_myr - kYoungest_myr) * old * far;
+          const double continental = smooth_step(0.3, 0.7, fraction_[cell]);
+          age_[cell] += static_cast<float>(continental * (thermal_myr - age_[cell]));
         }
-        const double old = std::clamp(0.5 + 2.0 * thermal_.fbm(at, frequency, 3), 0.0, 1.0);
-        const double far = smooth_step(0.0, 1500.0, reached_km);
-        const double thermal_myr = kYoungest_myr + (kOldest_myr - kYoungest_myr) * old * far;
-        const double continental = smooth_step(0.3, 0.7, fraction_[cell]);
-        age_[cell] += static_cast<float>(continental * (thermal_myr - age_[cell]));
       }
     }
   }
 
  private:
+  /// Places on the mesh for places on the planet along a row: near boundaries, outlines bend at
+  /// scales below the mesh's.
+  class Bends {
+   public:
+    explicit Bends(const PlatesOnGrid& on) : on_(on), noise_(on.grid_), cell_(on.grid_.nx()) {
+      for (auto& along : along_) along.resize(on.grid_.nx());
+    }
+    void read(int row) {
+      for (int i = 0; i < on_.grid_.nx(); ++i) {
+        cell_[i] = on_.grown_.mesh().locate(on_.grid_.unit_vector(i, row));
+      }
+      noise_.choose(row, [&](int i) { return near(i); });
+      constexpr double kWavelength_km = 420.0;
+      for (int c = 0; c < 3; ++c) {
+        noise_.fbm(on_.bend_[c], on_.radius_km_ / kWavelength_km, 6, 0.55, along_[c]);
+      }
+    }
+    /// The cell of the mesh that holds the place as it is.
+    [[nodiscard]] std::int32_t cell(int column) const { return cell_[column]; }
+    [[nodiscard]] bool near(int column) const { return on_.grown_.near_boundary(cell_[column]); }
+    [[nodiscard]] Vector3 bent(int column, const Vector3& at) const {
+      constexpr double kNormal = 2.2;
+      const double most = kNormal * on_.p_.outline_bending_km / on_.radius_km_;
+      return normalised({at[0] + most * along_[0][column], at[1] + most * along_[1][column],
+                         at[2] + most * along_[2][column]});
+    }
+
+   private:
+    const PlatesOnGrid& on_;
+    NoiseRow noise_;
+    std::vector<std::int32_t> cell_;
+    std::array<std::vector<float>, 3> along_;
+  };
+
   [[nodiscard]] double fraction_at(const Vector3& at) const {
     const double x = (std::atan2(at[1], at[0]) / (2.0 * kPi) + 0.5) * grid_.nx();
     const double y = (std::asin(std::clamp(at[2], -1.0, 1.0)) / kPi + 0.5) * grid_.ny();
