@@ -48,7 +48,8 @@ void make_island(const IslandOptions& options) {
                                               options.folder.empty() ? "nothing" : options.folder));
   }
   Configuration configuration;
-  geo::io::apply_config_file(folder.config(), configuration.parameters());
+  geo::io::apply_config_file(folder.config(), configuration.parameters(),
+                             &configuration.settings.events);
   if (!options.center.empty()) set(configuration, "island.center", options.center);
   if (!options.size.empty()) set_size(configuration, options.size);
   if (!options.cell.empty()) set(configuration, "island.cell_m", options.cell);

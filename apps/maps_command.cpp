@@ -37,7 +37,7 @@ void add_maps_command(CLI::App& program, Action& action) {
       }
       Configuration configuration;
       const auto& parameters = configuration.parameters();
-      geo::io::apply_config_file(folder.config(), parameters);
+      geo::io::apply_config_file(folder.config(), parameters, &configuration.settings.events);
       if (!options->width.empty()) {
         geo::find_parameter(parameters, "output.map_width_px")->set_text(options->width);
       }

@@ -13,6 +13,7 @@
 #include "commands.hpp"
 #include "configuration.hpp"
 #include "geo/core/error.hpp"
+#include "geo/core/event.hpp"
 #include "geo/io/config.hpp"
 
 namespace terrane {
@@ -66,7 +67,7 @@ void print_table(const Rows& rows) {
   }
 }
 
-void print_json(const Rows& rows) {
+nlohmann::ordered_json to_json(const Rows& rows) {
   auto list = nlohmann::ordered_json::array();
   for (const geo::Parameter& row : rows) {
     nlohmann::ordered_json entry{{"name", row.name},
@@ -80,20 +81,58 @@ void print_json(const Rows& rows) {
     if (!row.choices.empty()) entry["choices"] = row.choices;
     list.push_back(entry);
   }
-  fmt::print("{}\n", list.dump(2));
+  return list;
 }
 
-void print_markdown(const Rows& rows) {
+void print_markdown(const Rows& rows, std::string_view heading = {}) {
   std::string_view section;
   for (const geo::Parameter& row : rows) {
     if (section_of(row) != section) {
       section = section_of(row);
-      fmt::print("\n## [{}]\n\n| key | default | unit | range | meaning | source |\n", section);
+      fmt::print("\n## {}\n\n| key | default | unit | range | meaning | source |\n",
+                 heading.empty() ? fmt::format("[{}]", section) : heading);
       fmt::print("|---|---|---|---|---|---|\n");
     }
     fmt::print("| `{}` | `{}` | {} | {} | {} | {} |\n", row.name.substr(section.size() + 1),
                geo::to_toml(row.default_value), row.units, row.range_text(), row.doc, row.source);
   }
+}
+
+/// One event of each kind, as a table that gives nothing but its kind would make it.
+std::vector<geo::Event> events_of_all_kinds() {
+  return {{.name = "", .what = geo::Impact{}},
+          {.name = "", .what = geo::Rift{.path = {{10.0, 35.0}, {-5.0, 30.0}}}},
+          {.name = "", .what = geo::OceanShift{}}};
+}
+
+void print_events(const std::string& format) {
+  auto events = events_of_all_kinds();
+  if (format == "toml") {
+    fmt::print("# every kind of event with the defaults of its keys\n{}",
+               geo::io::write_events(events));
+    return;
+  }
+  auto json = nlohmann::ordered_json::array();
+  for (geo::Event& event : events) {
+    const auto heading = fmt::format("[[event]] of kind {}", event.kind());
+    if (format == "markdown") {
+      print_markdown(event.declarations(), heading);
+    } else if (format == "table") {
+      fmt::print("{}\n", heading);
+      print_table(event.declarations());
+    } else {
+      json.push_back({{"kind", event.kind()}, {"keys", to_json(event.declarations())}});
+    }
+  }
+  if (format == "json") fmt::print("{}\n", json.dump(2));
+}
+
+void check_format(const std::string& format) {
+  constexpr std::string_view kFormats[] = {"table", "toml", "json", "markdown"};
+  if (std::find(std::begin(kFormats), std::end(kFormats), format) != std::end(kFormats)) return;
+  throw geo::ConfigurationError(fmt::format("--format {}: must be one of {}{}", format,
+                                            fmt::join(kFormats, ", "),
+                                            geo::io::suggestion(format, kFormats)));
 }
 
 }  // namespace
@@ -106,24 +145,27 @@ void add_params_command(CLI::App& program, Action& action) {
   CLI::App* command =
       program.add_subcommand("params", "Every parameter: default, unit, range, source");
   const auto options = std::make_shared<Options>();
-  command->add_option("STAGE", options->section, "A stage or another section; all without it");
+  command->add_option("STAGE", options->section,
+                      "A stage or another section, or event; all sections without it");
   command->add_option("--format", options->format, "table, toml, json or markdown")
       ->type_name("FORMAT");
   command->callback([&action, options] {
     action = [options] {
+      check_format(options->format);
+      if (options->section == "event") return print_events(options->format);
       const Configuration configuration;
       const Rows rows = chosen_rows(configuration.parameters(), options->section);
-      constexpr std::string_view kFormats[] = {"table", "toml", "json", "markdown"};
       if (options->format == "table") return print_table(rows);
-      if (options->format == "json") return print_json(rows);
-      if (options->format == "markdown") return print_markdown(rows);
+      if (options->format == "json") {
+        fmt::print("{}\n", to_json(rows).dump(2));
+        return;
+      }
       if (options->format == "toml") {
         fmt::print("{}", geo::io::write_config(rows, "every parameter with its default"));
         return;
       }
-      throw geo::ConfigurationError(fmt::format("--format {}: must be one of {}{}", options->format,
-                                                fmt::join(kFormats, ", "),
-                                                geo::io::suggestion(options->format, kFormats)));
+      print_markdown(rows);
+      if (options->section.empty()) print_events("markdown");
     };
   });
 }

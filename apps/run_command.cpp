@@ -64,10 +64,11 @@ bool configure(Configuration& configuration, const RunOptions& options) {
   const bool bare_relief = options.preset.empty() && !options.dem.empty() && !takes_kept;
   const std::string preset = bare_relief ? "earth-dem" : options.preset;
   if (!preset.empty()) {
-    geo::io::apply_toml(geo::io::find_preset(preset).toml, "preset " + preset, parameters);
+    geo::io::apply_toml(geo::io::find_preset(preset).toml, "preset " + preset, parameters,
+                        &settings.events);
   }
   if (!file.empty()) {
-    geo::io::apply_config_file(file, parameters);
+    geo::io::apply_config_file(file, parameters, &settings.events);
     anchor_dem(settings, file.parent_path());
   }
   if (!options.dem.empty()) {

@@ -118,6 +118,41 @@ TEST_F(Run, QuietSaysNothing) {
   EXPECT_EQ(outcome.err, "");
 }
 
+TEST_F(Run, EventsStrikeAreToldAndBindTheirFolder) {
+  const fs::path file = folder_ / "planet.toml";
+  const std::string shift = "[[event]]\nkind = \"ocean-shift\"\nrise_m = 250.0\n";
+  std::ofstream(file) << "[[event]]\nkind = \"impact\"\nname = \"Big\"\nlatitude_deg = 10\n"
+                         "longitude_deg = 20\ndiameter_km = 30\n"
+                      << shift;
+  const Outcome struck = run("struck", {file.string(), "--to", "climate"});
+  ASSERT_EQ(struck.code, 0) << struck.err;
+  ASSERT_EQ(run("spared", {"--to", "climate"}).code, 0);
+  EXPECT_NE(digests_of(folder_ / "struck"), digests_of(folder_ / "spared"));
+  const auto stages = manifest_of(folder_ / "struck").at("stages");
+  ASSERT_EQ(stages.at(0).at("events").size(), 2U);
+  EXPECT_EQ(stages.at(0).at("events").at(0).at("name"), "Big");
+  EXPECT_GT(stages.at(0).at("events").at(0).at("crater_diameter_km"), 100.0);
+  EXPECT_EQ(stages.at(0).at("events").at(1).at("rise_m"), 250.0);
+  EXPECT_GT(stages.at(1).at("events").at(0).at("cooling_k"), 10.0);
+
+  // The configuration that it wrote makes the same planet; another list of events goes nowhere.
+  const std::string config = (folder_ / "struck" / "config.toml").string();
+  const Outcome again =
+      terrane(std::vector<std::string>{"run", config, "-o", folder_ / "again", "--quiet"});
+  ASSERT_EQ(again.code, 0) << again.err;
+  EXPECT_EQ(digests_of(folder_ / "again"), digests_of(folder_ / "struck"));
+  std::ofstream(file, std::ios::trunc) << shift;
+  const Outcome changed = run("struck", {file.string(), "--resume"});
+  EXPECT_EQ(changed.code, 2);
+  EXPECT_THAT(changed.err, HasSubstr("the configuration changed: event 1 is another"));
+  const Outcome kept = run("struck", {file.string(), "--overwrite", "--from", "climate"});
+  EXPECT_EQ(kept.code, 2);
+  EXPECT_THAT(kept.err, HasSubstr("the stages before it would not be the same: event 1"));
+  const Outcome unfelt = run("unfelt", {file.string(), "--from", "climate", "--to", "climate"});
+  EXPECT_EQ(unfelt.code, 0);
+  EXPECT_THAT(unfelt.err, HasSubstr("events change the relief in stage erosion"));
+}
+
 TEST_F(Run, ClosedStreamsGoIntoNoFile) {
   ASSERT_EQ(run("open").code, 0);
   std::string command = TERRANE_PROGRAM;

@@ -75,6 +75,8 @@ Manifest sample_manifest(const Snapshot& snapshot) {
   StageRecord stage{"sample",
                     1.25,
                     {{"rock_eroded_m3", 1.0 / 3.0}},
+                    {{1, "impact", "Tunnel", {{"rim_m", 12.5}}},
+                     {2, "rift", "", {{"depth_m", 900.0}}, {{1.5, -3.0}, {2.0, 7.0}}}},
                     {"a \"warning\""},
                     {"01-sample.nc", "01-sample.vti"},
                     {}};
@@ -97,6 +99,12 @@ TEST(Manifest, RoundTripKeepsEverything) {
   ASSERT_EQ(read.stages.size(), 1U);
   EXPECT_EQ(read.stages[0].budget, written.stages[0].budget);
   EXPECT_EQ(read.stages[0].warnings, written.stages[0].warnings);
+  ASSERT_EQ(read.stages[0].events.size(), 2U);
+  EXPECT_EQ(read.stages[0].events[0].figures, written.stages[0].events[0].figures);
+  EXPECT_EQ(read.stages[0].events[0].name, "Tunnel");
+  EXPECT_EQ(read.stages[0].events[1].number, 2);
+  ASSERT_EQ(read.stages[0].events[1].path.size(), 2U);
+  EXPECT_EQ(read.stages[0].events[1].path[1].longitude_deg, 7.0);
   EXPECT_EQ(read.stages[0].files, written.stages[0].files);
   ASSERT_EQ(read.stages[0].fields.size(), written.stages[0].fields.size());
   EXPECT_EQ(read.stages[0].fields[3].mean, written.stages[0].fields[3].mean);

@@ -1,7 +1,6 @@
 #include "geo/io/config.hpp"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -10,29 +9,12 @@
 #include <optional>
 #include <sstream>
 
+#include "config_events.hpp"
+#include "config_nodes.hpp"
 #include "geo/core/error.hpp"
 
 namespace geo::io {
 namespace {
-
-std::string_view section_of(std::string_view name) { return name.substr(0, name.find('.')); }
-
-std::vector<std::string_view> names_of(std::span<const Parameter> parameters) {
-  std::vector<std::string_view> names;
-  for (const Parameter& parameter : parameters) names.push_back(parameter.name);
-  return names;
-}
-
-std::vector<std::string_view> sections_of(std::span<const Parameter> parameters) {
-  std::vector<std::string_view> sections;
-  for (const Parameter& parameter : parameters) {
-    const auto section = section_of(parameter.name);
-    if (std::find(sections.begin(), sections.end(), section) == sections.end()) {
-      sections.push_back(section);
-    }
-  }
-  return sections;
-}
 
 std::string one_line(std::string text) {
   std::replace(text.begin(), text.end(), '\n', ' ');
@@ -49,21 +31,6 @@ toml::table parse(std::string_view text, const std::string& source_name) {
   }
 }
 
-/// The value of a node, or nothing where it is no plain value (array, table, date).
-std::optional<ParameterValue> plain_value(const toml::node& node) {
-  if (const auto* whole = node.as_integer()) return ParameterValue(whole->get());
-  if (const auto* number = node.as_floating_point()) return ParameterValue(number->get());
-  if (const auto* truth = node.as_boolean()) return ParameterValue(truth->get());
-  if (const auto* words = node.as_string()) return ParameterValue(words->get());
-  return std::nullopt;
-}
-
-std::string_view kind_of(const toml::node& node) {
-  if (node.is_array()) return "an array";
-  if (node.is_table()) return "a table";
-  return "a date or time";
-}
-
 /// The parameter that has `key` in some section; empty when none has.
 std::string_view home_of(std::string_view key, std::span<const Parameter> parameters) {
   for (const Parameter& parameter : parameters) {
@@ -72,48 +39,25 @@ std::string_view home_of(std::string_view key, std::span<const Parameter> parame
   return {};
 }
 
-[[noreturn]] void refuse_unknown(const std::string& where, std::string_view name,
-                                 std::span<const Parameter> parameters) {
-  const auto section = section_of(name);
-  const auto sections = sections_of(parameters);
-  if (std::find(sections.begin(), sections.end(), section) == sections.end()) {
-    throw ConfigurationError(
-        fmt::format("{}unknown section [{}]{}", where, section, suggestion(section, sections)));
+/// "event 2 is another, or absent"; empty when all are the same.
+std::string differing_event(const toml::table& before, const toml::table& after) {
+  const auto written = [](const toml::table& root, std::size_t at) {
+    const toml::node* node = root[kEventKey][at].node();
+    std::ostringstream text;
+    if (node != nullptr) text << toml::default_formatter(*node);
+    return text.str();
+  };
+  const auto count = [](const toml::table& root) {
+    const auto* events = root[kEventKey].as_array();
+    return events == nullptr ? 0 : events->size();
+  };
+  for (std::size_t at = 0; at < std::max(count(before), count(after)); ++at) {
+    if (at >= count(after)) return fmt::format("event {} is absent", at + 1);
+    if (at >= count(before)) return fmt::format("event {} was absent", at + 1);
+    if (written(before, at) != written(after, at))
+      return fmt::format("event {} is another", at + 1);
   }
-  std::vector<std::string_view> siblings;
-  for (const auto candidate : names_of(parameters)) {
-    if (section_of(candidate) == section) siblings.push_back(candidate);
-  }
-  auto hint = suggestion(name, siblings);
-  if (hint.empty()) hint = fmt::format("; terrane params {} lists what there is", section);
-  throw ConfigurationError(fmt::format("{}unknown key {}{}", where, name, hint));
-}
-
-void apply_node(const toml::node& node, const std::string& name, const std::string& where,
-                std::span<const Parameter> parameters) {
-  const Parameter* parameter = find_parameter(parameters, name);
-  if (parameter == nullptr) refuse_unknown(where, name, parameters);
-  const auto value = plain_value(node);
-  if (!value) {
-    throw ConfigurationError(fmt::format("{}{}: is {}, must be a plain {} value", where, name,
-                                         kind_of(node), parameter->type_name()));
-  }
-  try {
-    parameter->set(*value);
-  } catch (const ConfigurationError& error) {
-    throw ConfigurationError(where + error.what());
-  }
-}
-
-/// Top-level keys in the order of the text, not of the alphabet.
-template <class Visit>
-void visit_in_text_order(const toml::table& table, Visit visit) {
-  std::vector<std::pair<const toml::key*, const toml::node*>> entries;
-  for (const auto& [key, node] : table) entries.emplace_back(&key, &node);
-  std::stable_sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) {
-    return a.first->source().begin < b.first->source().begin;
-  });
-  for (const auto& [key, node] : entries) visit(*key, *node);
+  return {};
 }
 
 }  // namespace
@@ -125,13 +69,18 @@ std::string suggestion(std::string_view word, std::span<const std::string_view> 
 }
 
 std::vector<std::string> apply_toml(std::string_view text, const std::string& source_name,
-                                    std::span<const Parameter> parameters) {
+                                    std::span<const Parameter> parameters,
+                                    std::vector<Event>* events) {
   const toml::table root = parse(text, source_name);
   std::vector<std::string> applied;
   const auto where_of = [&](const toml::key& key) {
     return fmt::format("{}:{}: ", source_name, key.source().begin.line);
   };
   visit_in_text_order(root, [&](const toml::key& section, const toml::node& node) {
+    if (events != nullptr && section.str() == kEventKey) {
+      *events = events_from_toml(node, source_name);
+      return;
+    }
     const auto* table = node.as_table();
     if (table == nullptr) {
       const auto home = home_of(section.str(), parameters);
@@ -166,8 +115,9 @@ std::string read_text(const std::filesystem::path& path) {
 }
 
 std::vector<std::string> apply_config_file(const std::filesystem::path& path,
-                                           std::span<const Parameter> parameters) {
-  return apply_toml(read_text(path), path.string(), parameters);
+                                           std::span<const Parameter> parameters,
+                                           std::vector<Event>* events) {
+  return apply_toml(read_text(path), path.string(), parameters, events);
 }
 
 std::string apply_assignment(std::string_view assignment, std::span<const Parameter> parameters) {
@@ -182,6 +132,10 @@ std::string apply_assignment(std::string_view assignment, std::span<const Parame
     return text.substr(first, text.find_last_not_of(" \t") - first + 1);
   };
   const auto name = trimmed(assignment.substr(0, equals));
+  if (section_of(name) == kEventKey) {
+    throw ConfigurationError(
+        fmt::format("--set {}: events are tables [[event]] of a configuration file", assignment));
+  }
   const Parameter* parameter = find_parameter(parameters, name);
   if (parameter == nullptr && name.find('.') == std::string_view::npos) {
     const auto home = home_of(name, parameters);
@@ -198,21 +152,17 @@ std::string apply_assignment(std::string_view assignment, std::span<const Parame
   return std::string(name);
 }
 
-std::string write_config(std::span<const Parameter> parameters, std::string_view heading) {
+std::string write_config(std::span<const Parameter> parameters, std::string_view heading,
+                         std::span<const Event> events) {
   std::string text = fmt::format("# {}\n", heading);
   for (const auto section : sections_of(parameters)) {
     text += fmt::format("\n[{}]\n", section);
     for (const Parameter& parameter : parameters) {
       if (section_of(parameter.name) != section) continue;
-      const bool has_unit = !parameter.units.empty() && parameter.units != "1";
-      text += fmt::format(
-          "# {}; {}{}{}\n{} = {}\n", parameter.doc, parameter.type_name(),
-          has_unit ? fmt::format(" in {}", parameter.units) : "",
-          parameter.range_text() == "any" ? "" : fmt::format(", {}", parameter.range_text()),
-          parameter.name.substr(parameter.name.find('.') + 1), to_toml(parameter.value()));
+      text += commented_line(parameter);
     }
   }
-  return text;
+  return text + write_events(events);
 }
 
 std::string configured_text(std::string_view toml, std::string_view name) {
@@ -227,13 +177,13 @@ std::string first_difference(std::string_view before, std::string_view after,
   const toml::table old_root = parse(before, "config.toml");
   const toml::table new_root = parse(after, "the present configuration");
   std::string found;
+  const auto is_compared = [&](std::string_view section) {
+    return sections.empty() ||
+           std::find(sections.begin(), sections.end(), section) != sections.end();
+  };
   const auto compare = [&](const toml::table& from, const toml::table& other, bool forward) {
     visit_in_text_order(from, [&](const toml::key& section, const toml::node& node) {
-      if (!sections.empty() &&
-          std::find(sections.begin(), sections.end(), section.str()) == sections.end()) {
-        return;
-      }
-      if (node.as_table() == nullptr) return;
+      if (!is_compared(section.str()) || node.as_table() == nullptr) return;
       visit_in_text_order(*node.as_table(), [&](const toml::key& key, const toml::node& here) {
         const std::string name = fmt::format("{}.{}", section.str(), key.str());
         if (!found.empty() ||
@@ -255,6 +205,7 @@ std::string first_difference(std::string_view before, std::string_view after,
   };
   compare(new_root, old_root, true);
   if (found.empty()) compare(old_root, new_root, false);
+  if (found.empty() && is_compared(kEventKey)) found = differing_event(old_root, new_root);
   return found;
 }
 

@@ -112,7 +112,8 @@ std::string IslandSession::execute(const RunEvents& events) {
   const auto& build = build_info();
   const Provenance provenance{
       .title = fmt::format("terrane: {}", name),
-      .config_toml = write_config(parameters_, fmt::format("terrane {}: {}", build.version, name)),
+      .config_toml = write_config(parameters_, fmt::format("terrane {}: {}", build.version, name),
+                                  settings_.events),
       .seed = seed,
       .version = build.version,
       .history = fmt::format("{:%Y-%m-%dT%H:%M:%SZ} terrane {} ({}): {}",

@@ -17,6 +17,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr const char* kPathKey = "path_deg";
+
 /// JSON has no NaN: null stands for it.
 double number_or_nan(const Json& json) {
   return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
@@ -27,11 +29,30 @@ Json to_json(const FieldRecord& field) {
           {"max", field.max},     {"missing", field.missing}, {"digest", field.digest}};
 }
 
+Json to_json(const EventRecord& event) {
+  Json json{{"number", event.number}, {"kind", event.kind}, {"name", event.name}};
+  for (const auto& [name, value] : event.figures) json[name] = value;
+  if (!event.path.empty()) {
+    json[kPathKey] = Json::array();
+    for (const Centre& place : event.path) {
+      json[kPathKey].push_back({place.latitude_deg, place.longitude_deg});
+    }
+  }
+  return json;
+}
+
 Json to_json(const StageRecord& stage) {
   Json fields = Json::object();
   for (const FieldRecord& field : stage.fields) fields[field.name] = to_json(field);
-  return {{"name", stage.name},         {"seconds", stage.seconds}, {"budget", stage.budget},
-          {"warnings", stage.warnings}, {"files", stage.files},     {"fields", fields}};
+  Json json{{"name", stage.name}, {"seconds", stage.seconds}, {"budget", stage.budget}};
+  if (!stage.events.empty()) {
+    json["events"] = Json::array();
+    for (const EventRecord& event : stage.events) json["events"].push_back(to_json(event));
+  }
+  json["warnings"] = stage.warnings;
+  json["files"] = stage.files;
+  json["fields"] = fields;
+  return json;
 }
 
 FieldRecord field_from(const std::string& name, const Json& json) {
@@ -44,12 +65,32 @@ FieldRecord field_from(const std::string& name, const Json& json) {
           json.at("digest").get<std::string>()};
 }
 
+EventRecord event_from(const Json& json) {
+  EventRecord event;
+  json.at("number").get_to(event.number);
+  json.at("kind").get_to(event.kind);
+  json.at("name").get_to(event.name);
+  for (const auto& [name, value] : json.items()) {
+    if (value.is_number() && name != "number")
+      event.figures.emplace_back(name, value.get<double>());
+  }
+  if (const auto path = json.find(kPathKey); path != json.end()) {
+    for (const Json& place : *path) {
+      event.path.push_back({place.at(0).get<double>(), place.at(1).get<double>()});
+    }
+  }
+  return event;
+}
+
 StageRecord stage_from(const Json& json) {
   StageRecord stage;
   json.at("name").get_to(stage.name);
   json.at("seconds").get_to(stage.seconds);
   for (const auto& [name, value] : json.at("budget").items()) {
     stage.budget[name] = number_or_nan(value);
+  }
+  if (const auto events = json.find("events"); events != json.end()) {
+    for (const Json& event : *events) stage.events.push_back(event_from(event));
   }
   json.at("warnings").get_to(stage.warnings);
   json.at("files").get_to(stage.files);

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "map_canvas.hpp"
+#include "map_events.hpp"
 #include "map_plates.hpp"
 #include "map_relief.hpp"
 #include "map_rivers.hpp"
@@ -29,6 +30,7 @@ struct Scene {
   const State& state;
   const MapFrame& frame;
   const MapBase& base;
+  std::span<const EventMark> marks;
 };
 
 /// A map that can be drawn: its words and how.
@@ -100,6 +102,7 @@ void draw_elevation(const Scene& scene, MapCanvas& canvas) {
     const Rgb shaded = lit(tint, base.shade.at(x, y), 0.42F + 0.36F * cover);
     return with_lakes(base, x, y, mix(shaded, kInk, 0.25F * base.coast.at(x, y)));
   });
+  draw_events(canvas, scene.state.grid(), scene.marks);
   canvas.frame();
   const std::array<const ColourMap*, 2> maps{&sea, &land};
   canvas.colour_bar(maps, false);
@@ -351,12 +354,12 @@ std::vector<MapFile> files_of(const std::vector<Plan>& plans, const MapLayout& l
 
 std::vector<MapFile> draw_plans(const std::vector<Plan>& plans, const State& state,
                                 const std::filesystem::path& folder, int width_px,
-                                std::string_view note) {
+                                std::string_view note, std::span<const EventMark> marks = {}) {
   const MapLayout layout = map_layout(state.grid(), width_px);
   make_folder(folder);
   const MapFrame frame(state.grid(), layout.map_width, layout.map_height);
   const MapBase base = make_base(frame, state);
-  const Scene scene{state, frame, base};
+  const Scene scene{state, frame, base, marks};
   auto files = files_of(plans, layout, folder);
   std::vector<std::exception_ptr> failures(plans.size());
 #pragma omp parallel for schedule(dynamic, 1)
@@ -379,8 +382,9 @@ std::vector<MapFile> draw_plans(const std::vector<Plan>& plans, const State& sta
 }  // namespace
 
 std::vector<MapFile> draw_map_files(const State& state, const std::filesystem::path& folder,
-                                    int width_px, std::string_view note) {
-  return draw_plans(plan_maps(state), state, folder, width_px, note);
+                                    int width_px, std::string_view note,
+                                    std::span<const EventMark> marks) {
+  return draw_plans(plan_maps(state), state, folder, width_px, note, marks);
 }
 
 std::vector<MapFile> list_map_files(const State& state, const std::filesystem::path& folder,

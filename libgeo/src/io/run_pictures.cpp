@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "event_words.hpp"
 #include "geo/core/error.hpp"
 #include "geo/io/config.hpp"
 #include "geo/io/manifest.hpp"
@@ -12,7 +13,6 @@
 #include "geo/io/planet_file.hpp"
 #include "geo/io/report.hpp"
 #include "geo/io/scorecard.hpp"
-#include "manifest_events.hpp"
 
 namespace geo::io {
 namespace {
@@ -56,18 +56,19 @@ std::vector<std::filesystem::path> draw_run(const RunFolder& folder, int map_wid
   const State state = final_state(folder, manifest);
   const bool all = only_island.empty();
   const std::string note = fmt::format("seed {}, terrane {}", manifest.seed, manifest.version);
-  Report report{.title = fmt::format("terrane: planet of seed {}", manifest.seed),
-                .introduction = fmt::format("{} x {} cells.", state.grid().nx(), state.grid().ny()),
-                .maps = all ? draw_map_files(state, folder.maps(), map_width_px, note)
-                            : list_map_files(state, folder.maps(), map_width_px),
-                .scorecard = scorecard_of(state),
-                .events = read_events(folder.manifest()),
-                .fields = field_figures(manifest),
-                .parameters = read_text(folder.config()),
-                .provenance = {{"version", manifest.version},
-                               {"commit", manifest.commit},
-                               {"compiler", manifest.compiler},
-                               {"seed", fmt::format("{}", manifest.seed)}}};
+  Report report{
+      .title = fmt::format("terrane: planet of seed {}", manifest.seed),
+      .introduction = fmt::format("{} x {} cells.", state.grid().nx(), state.grid().ny()),
+      .maps = all ? draw_map_files(state, folder.maps(), map_width_px, note, event_marks(manifest))
+                  : list_map_files(state, folder.maps(), map_width_px),
+      .scorecard = scorecard_of(state),
+      .events = event_lines(manifest),
+      .fields = field_figures(manifest),
+      .parameters = read_text(folder.config()),
+      .provenance = {{"version", manifest.version},
+                     {"commit", manifest.commit},
+                     {"compiler", manifest.compiler},
+                     {"seed", fmt::format("{}", manifest.seed)}}};
   for (const StageRecord& record : manifest.stages) {
     if (!is_island(record)) continue;
     const State island = island_state(folder, record);

@@ -118,6 +118,7 @@ void RunSession::write_stage(BackgroundWriter& writer, int position, const State
   job->record.name = name_of(position);
   job->record.seconds = time_is_given() ? 0.0 : seconds;
   job->record.budget = context.budget;
+  job->record.events = context.event_records;
   job->record.warnings = context.warnings;
   writer.submit([this, job] {
     job->write(settings_.vtk);
@@ -139,6 +140,9 @@ void RunSession::execute(const RunEvents& events) {
   }
   state_.reset();
   if (!note_.empty()) tell(events.info, note_);
+  if (!events_are_felt()) {
+    tell(events.warning, "events change the relief in stage erosion, which this run leaves out");
+  }
   write_summaries(events);
 }
 
@@ -147,6 +151,7 @@ void RunSession::compute(const RunEvents& events) {
   context.planet = planet_;
   context.seed = static_cast<std::uint64_t>(settings_.seed);
   context.hypsography = read_hypsography(settings_.hypsography);
+  context.events = settings_.events;
   context.on_progress = events.progress;
   context.stop = events.stop;
 

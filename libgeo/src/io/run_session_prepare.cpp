@@ -12,6 +12,7 @@
 #include "geo/io/hypsography.hpp"
 #include "geo/io/run_session.hpp"
 #include "geo/io/source_date.hpp"
+#include "geo/kernels/impact_crater.hpp"
 #include "geo/kernels/quantiles.hpp"
 
 namespace geo::io {
@@ -41,6 +42,41 @@ Grid grid_for(const Relief& relief, const RunSettings& settings, const Planet& p
   const double height_m = source.step_north_m() * source.ny();
   return Grid::plane(nx, ny, width_m / nx, height_m / ny, source.edges(), source.centre(),
                      planet.figure());
+}
+
+/// Refuses events that this planet has no place for.
+void check_events(const std::vector<Event>& events, const Grid& grid, const Planet& planet) {
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    if (!std::holds_alternative<OceanShift>(events[i].what) && !grid.is_geographic()) {
+      throw ConfigurationError(fmt::format(
+          "event {} ({}) needs a relief with latitudes and longitudes", i + 1, events[i].kind()));
+    }
+    if (const auto* shift = std::get_if<OceanShift>(&events[i].what)) {
+      constexpr double kDeepest_km = 20.0;
+      const double most_km3 = 1e-6 * grid.total_area_m2() * kDeepest_km;
+      if (std::abs(shift->water_km3) > most_km3) {
+        throw ConfigurationError(fmt::format(
+            "event {} (ocean-shift): water_km3 = {:g}: must be within {:.3g}, {:g} km of water "
+            "everywhere",
+            i + 1, shift->water_km3, most_km3, kDeepest_km));
+      }
+    }
+    const auto* impact = std::get_if<Impact>(&events[i].what);
+    if (impact == nullptr) continue;
+    const double crater_km = 1e-3 * crater_of({.diameter_m = 1e3 * impact->diameter_km,
+                                               .density_kg_m3 = impact->density_kg_m3,
+                                               .velocity_m_s = 1e3 * impact->velocity_km_s,
+                                               .angle_deg = impact->angle_deg,
+                                               .ground_density_kg_m3 = impact->ground_density_kg_m3,
+                                               .gravity_m_s2 = planet.gravity_m_s2})
+                                        .diameter_m;
+    if (crater_km > planet.radius_km) {
+      throw ConfigurationError(
+          fmt::format("event {} (impact): its crater of {:.0f} km is wider than the planet's "
+                      "radius of {:g} km: must be a smaller or slower body",
+                      i + 1, crater_km, planet.radius_km));
+    }
+  }
 }
 
 /// Heights that no solid planet holds up are a wrong unit or a damaged file.
@@ -84,9 +120,11 @@ int RunSession::position_of(const std::string& stage, std::string_view asked_by)
 }
 
 std::string RunSession::resolved_config() const {
-  return write_config(parameters_, fmt::format("terrane {}: every parameter as it was used. Runs "
-                                               "again with: terrane run config.toml",
-                                               build_info().version));
+  return write_config(parameters_,
+                      fmt::format("terrane {}: every parameter as it was used. Runs again with: "
+                                  "terrane run config.toml",
+                                  build_info().version),
+                      settings_.events);
 }
 
 void RunSession::prepare() {
@@ -101,6 +139,7 @@ void RunSession::prepare() {
     begin_with_bare_planet();
   }
   leave_out_island();
+  check_events(settings_.events, grid(), planet_);
   read_given_fields();
   (void)read_hypsography(settings_.hypsography);  // refuses a bad one before anything is computed
   pipeline_.check(state_->present(), first_, last_);
@@ -201,7 +240,10 @@ void RunSession::keep_earlier_stages(const std::string& before, int old_begin) {
   settings_.from = configured_text(before, "run.from");
   take_open_settings(before);
   std::vector<std::string> sections{"run", "dem", "planet"};
-  for (int at = begin_; at < first_; ++at) sections.emplace_back(name_of(at));
+  for (int at = begin_; at < first_; ++at) {
+    sections.emplace_back(name_of(at));
+    if (pipeline_.stages()[at]->info().feels_events) sections.emplace_back("event");
+  }
   const auto difference =
       first_difference(before, resolved_config(), sections, kFreeOnPartialOverwrite);
   if (!difference.empty()) {
@@ -315,6 +357,17 @@ void RunSession::leave_out_island() {
   }
   --last_;
   note_ = fmt::format("no {}: the relief covers a part of a planet, not the whole", name);
+}
+
+/// Whether the run as a whole has the stage in which events change the relief.
+bool RunSession::events_are_felt() const {
+  if (settings_.events.empty()) return true;
+  const auto& stages = pipeline_.stages();
+  for (int at = begin_; at <= last_; ++at) {
+    const StageInfo& info = stages[at]->info();
+    if (info.feels_events && lists(info.writes, field::elevation)) return true;
+  }
+  return false;
 }
 
 void RunSession::read_given_fields() {

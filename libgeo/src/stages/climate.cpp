@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "climate_events.hpp"
 #include "climate_frame.hpp"
 #include "geo/kernels/circulation.hpp"
 #include "geo/kernels/distance_to_coast.hpp"
@@ -164,6 +165,7 @@ class ClimateStage final : public Stage {
     const SeasonalFields fields =
         solve_seasonal_climate(frame.planet(), model, frame.planet_latitudes_deg(), land, height_m);
     context.advance(0.5);
+    const DimmedSun dimmed = dim_the_sun(model.energy, context);
 
     const auto relief_size = static_cast<std::size_t>(frame.relief().size());
     std::vector<float> relief_land(relief_size), relief_height(relief_size), coverage(relief_size);
@@ -172,10 +174,10 @@ class ClimateStage final : public Stage {
       std::vector<float> rain(relief_size);
       blueprint_relief_precipitation(frame.relief(), p_.blueprint, frame.relief_latitudes_deg(),
                                      relief_land, relief_height, rain);
-      finish_blueprint(frame, model, fields, rain, elevation, context, out);
+      finish_blueprint(frame, model, fields, rain, elevation, dimmed, context, out);
     } else {
       const auto lift = relief_lift(frame, fields, relief_height, p_.lift_reach_km);
-      finish_energy_balance(frame, model, fields, lift, elevation, context, out);
+      finish_energy_balance(frame, model, fields, lift, elevation, dimmed, context, out);
     }
     context.advance(1.0);
   }
@@ -183,8 +185,8 @@ class ClimateStage final : public Stage {
  private:
   void finish_energy_balance(const ClimateFrame& frame, const SeasonalClimate& model,
                              const SeasonalFields& fields, std::span<const float> lift,
-                             std::span<const float> elevation, const Context& context,
-                             const Outputs& out) const {
+                             std::span<const float> elevation, const DimmedSun& dimmed,
+                             const Context& context, const Outputs& out) const {
     const Grid& grid = frame.on_planet().fine();
     const PlanetRows planet(frame.on_planet(), fields);
     const Interpolator lift_of(frame.on_relief(), lift);
@@ -192,6 +194,8 @@ class ClimateStage final : public Stage {
     const TemperatureLimits limits(context.planet.pressure_bar);
     const auto lapse = static_cast<float>(model.energy.lapse_k_m);
     const auto per_lift = static_cast<float>(1.0 / p_.lift_height_m);
+    const auto cooling = static_cast<float>(dimmed.cooling_k);
+    const auto rain_left = static_cast<float>(dimmed.rain_left);
 #pragma omp parallel
     {
       const auto nx = static_cast<std::size_t>(grid.nx());
@@ -216,12 +220,12 @@ class ClimateStage final : public Stage {
         for (std::size_t i = 0; i < nx; ++i) {
           const float above = std::max(0.0F, elevation[begin + i]);
           const auto shake = static_cast<float>(noise.temperature_k(static_cast<int>(i), j));
-          temperature[i] =
-              std::clamp(temperature[i] - lapse * above + shake, limits.lowest_c, limits.highest_c);
+          temperature[i] = std::clamp(temperature[i] - lapse * above + shake - cooling,
+                                      limits.lowest_c, limits.highest_c);
           range[i] = 2.0F * std::sqrt(cosine[i] * cosine[i] + sine[i] * sine[i]);
           const float ascent = std::exp(std::clamp(lifted[i] * per_lift, -1.0F, 1.0F));
-          rain[i] = std::max(0.0F, rain[i] * ascent + static_cast<float>(noise.rain_mm_yr(
-                                                          static_cast<int>(i), j)));
+          const auto stray = static_cast<float>(noise.rain_mm_yr(static_cast<int>(i), j));
+          rain[i] = rain_left * std::max(0.0F, rain[i] * ascent + stray);
           seasonality[i] = std::clamp(summer * seasonality[i], -1.0F, 1.0F);
         }
         add_up_evaporation(frame.latitudes_deg()[j], model, temperature, cosine, sine, humidity,
@@ -232,8 +236,8 @@ class ClimateStage final : public Stage {
 
   void finish_blueprint(const ClimateFrame& frame, const SeasonalClimate& model,
                         const SeasonalFields& fields, std::span<const float> relief_rain,
-                        std::span<const float> elevation, const Context& context,
-                        const Outputs& out) const {
+                        std::span<const float> elevation, const DimmedSun& dimmed,
+                        const Context& context, const Outputs& out) const {
     const Grid& grid = frame.on_planet().fine();
     const PlanetRows planet(frame.on_planet(), fields);
     const Interpolator relief_of(frame.on_relief(), relief_rain);
@@ -264,11 +268,12 @@ class ClimateStage final : public Stage {
           const int column = static_cast<int>(i);
           temperature[i] = static_cast<float>(std::clamp(
               blueprint_temperature_c(p_.blueprint, latitude, h, coast_km, pressure_bar) +
-                  noise.temperature_k(column, j),
+                  noise.temperature_k(column, j) - dimmed.cooling_k,
               -70.0, 55.0));
-          rain[i] = static_cast<float>(blueprint_precipitation_mm_yr(p_.blueprint, hadley, rain[i],
-                                                                     h, coast_km, pressure_bar,
-                                                                     noise.rain_mm_yr(column, j)));
+          const double total_mm_yr =
+              blueprint_precipitation_mm_yr(p_.blueprint, hadley, rain[i], h, coast_km,
+                                            pressure_bar, noise.rain_mm_yr(column, j));
+          rain[i] = static_cast<float>(dimmed.rain_left * total_mm_yr);
           range[i] = 2.0F * std::sqrt(cosine[i] * cosine[i] + sine[i] * sine[i]);
           seasonality[i] = std::clamp(summer * seasonality[i], -1.0F, 1.0F);
           out.wind_east[begin + i] = static_cast<float>(p_.wind_speed_m_s * wind.east);
@@ -287,7 +292,9 @@ class ClimateStage final : public Stage {
                   {},
                   {&field::temperature, &field::temperature_range, &field::precipitation,
                    &field::precipitation_seasonality, &field::wind_east, &field::wind_north,
-                   &field::distance_to_coast, &field::potential_evaporation}};
+                   &field::distance_to_coast, &field::potential_evaporation},
+                  /*own_grid=*/false,
+                  /*feels_events=*/true};
 };
 
 }  // namespace

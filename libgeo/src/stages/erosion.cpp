@@ -12,6 +12,7 @@
 #include "geo/kernels/multiple_flow.hpp"
 #include "geo/kernels/smoothing.hpp"
 #include "geo/kernels/stream_power.hpp"
+#include "relief_events.hpp"
 
 namespace geo {
 
@@ -171,11 +172,12 @@ class Landscape {
 
   /// Lets `reshape` change the relief at will, and finds land and sea again if it did.
   template <class Reshape>
-  void book_reshaping(Reshape&& reshape) {
+  bool book_reshaping(Reshape&& reshape) {
     before_.assign(z_.begin(), z_.end());
-    if (!reshape()) return;
+    if (!reshape()) return false;
     reshaped_m3_ += volume_since_before();
     outlets_ = find_outlets(grid_, z_);
+    return true;
   }
 
   void report(std::span<double> area_m2, std::span<Index> receiver, std::span<float> rate_m_yr,
@@ -254,7 +256,7 @@ class Landscape {
     const double part = -std::expm1(-p_.time_step_yr / p_.rebound_time_yr);
     std::vector<float> response(owed_m_);
     if (p_.rebound_length_km > 0.0) {
-      smooth(grid_, response, 1000.0 * p_.rebound_length_km);
+      smooth_broadly(grid_, response, 1000.0 * p_.rebound_length_km);
     }
     before_.assign(z_.begin(), z_.end());
     on_land([&](Index cell) {
@@ -287,7 +289,9 @@ class ErosionStage final : public Stage {
                                   &field::boundary_strength, &field::convergent_deformation,
                                   &field::divergent_deformation, &field::transform_deformation},
                                  {&field::elevation, &field::uplift_rate, &field::erosion_rate,
-                                  &field::drainage_area, &field::flow_receiver}};
+                                  &field::drainage_area, &field::flow_receiver},
+                                 /*own_grid=*/false,
+                                 /*feels_events=*/true};
     return kInfo;
   }
   [[nodiscard]] std::vector<Parameter> parameters() override { return parameters_.declarations(); }
@@ -301,8 +305,14 @@ class ErosionStage final : public Stage {
 
     Landscape landscape(parameters_, grid, elevation, uplift, erodibility);
     const std::int64_t steps = parameters_.steps;
+    ReliefEvents events(grid, context, steps, parameters_.time_step_yr);
+    const auto strike = [&](std::int64_t step) {
+      if (context.events.empty()) return false;
+      return landscape.book_reshaping([&] { return events.strike(step, elevation); });
+    };
     for (std::int64_t step = 0; step < steps; ++step) {
-      if (step % parameters_.route_every == 0) landscape.route();
+      const bool struck = strike(step);
+      if (struck || step % parameters_.route_every == 0) landscape.route();
       landscape.step();
       context.advance(static_cast<double>(step + 1) / static_cast<double>(steps + 1));
     }
@@ -311,6 +321,7 @@ class ErosionStage final : public Stage {
     landscape.book_reshaping([&] { return finish.warp(elevation); });
     landscape.relax();
     landscape.book_reshaping([&] { return finish.reshape(elevation); });
+    strike(steps);
     landscape.route();
     landscape.report(io.write(field::drainage_area), io.write(field::flow_receiver),
                      io.write(field::erosion_rate), context.budget);

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "geo/core/event.hpp"
 #include "geo/core/field.hpp"
 #include "geo/core/parameter.hpp"
 #include "geo/core/planet.hpp"
@@ -26,6 +27,8 @@ struct StageInfo {
   /// A part of a planet seen closer: reads a whole planet, a sphere, and hands over a new state on
   /// a grid of its own. The planet's state stays as it is.
   bool own_grid = false;
+  /// Whether `Context::events` change what it writes.
+  bool feels_events = false;
 };
 
 /// Named sums that must close: rock, water. Written to the manifest.
@@ -43,12 +46,16 @@ struct Context {
   std::uint64_t seed = 1;
   /// What hypsometry by rank aims at; empty unless asked for.
   Hypsography hypsography;
+  /// What befalls the planet; empty unless asked for.
+  std::vector<Event> events;
   /// Called with the fraction of the stage that is done; may be empty.
   std::function<void(double fraction)> on_progress;
   /// Set by a signal handler; stages look at it between steps.
   const std::atomic<bool>* stop = nullptr;
   /// Budgets of the stage that runs now.
   Budget budget;
+  /// What events did in the stage that runs now.
+  std::vector<EventRecord> event_records;
   /// Facts worth a warning to the user, one line each.
   std::vector<std::string> warnings;
   /// All declarations of the pipeline that runs, bound to the values of this run: a stage that runs

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "geo/core/event.hpp"
 #include "geo/io/digest.hpp"
 #include "geo/io/stage_file.hpp"
 
@@ -16,6 +17,7 @@ struct StageRecord {
   std::string name;
   double seconds = 0.0;
   std::map<std::string, double> budget;
+  std::vector<EventRecord> events;  ///< what they did in this stage
   std::vector<std::string> warnings;
   std::vector<std::string> files;  ///< relative to the folder of the run
   std::vector<FieldRecord> fields;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +16,14 @@ struct MapFile {
   std::string title;    ///< "Annual precipitation"
   std::string caption;  ///< one sentence on what the picture shows and how
   int width_px = 0, height_px = 0;
+};
+
+/// What a map shows of an event: a crater's rim about a place, or the line of a rift.
+struct EventMark {
+  Centre place{};
+  double radius_km = 0.0;
+  std::vector<Centre> path{};  ///< empty for craters
+  std::string name;
 };
 
 /// Size of a picture and where the map itself lies in it, pixels from the upper left corner.
@@ -36,10 +45,12 @@ std::vector<const FieldSpec*> map_fields();
 /// title, units, legend and graticule: elevation, plates, crust_age, crust_thickness, rock_type,
 /// temperature, precipitation, wind, rivers, biomes, koppen, productivity, settlement. `width_px`
 /// is the width of the map itself, `note` a short remark for the upper right corner (seed,
-/// version). Maps are drawn at the same time on as many threads as OpenMP has; the pictures do not
-/// depend on how many. Each appears under its name only when it is whole. Throws IoError.
+/// version). The map of elevation bears the `marks`. Maps are drawn at the same time on as many
+/// threads as OpenMP has; the pictures do not depend on how many. Each appears under its name only
+/// when it is whole. Throws IoError.
 std::vector<MapFile> draw_map_files(const State& state, const std::filesystem::path& folder,
-                                    int width_px = 1800, std::string_view note = {});
+                                    int width_px = 1800, std::string_view note = {},
+                                    std::span<const EventMark> marks = {});
 
 /// What `draw_map_files` would draw, without drawing it.
 std::vector<MapFile> list_map_files(const State& state, const std::filesystem::path& folder,

@@ -80,6 +80,7 @@ class RunSession {
   void keep_earlier_stages(const std::string& before, int old_begin);
   void load_complete_stages();
   void leave_out_island();
+  [[nodiscard]] bool events_are_felt() const;
   [[nodiscard]] int first_stage_of_input() const;
   [[nodiscard]] bool needs_relief() const;
   void begin_with_bare_planet();

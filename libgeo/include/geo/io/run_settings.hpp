@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "geo/core/event.hpp"
 #include "geo/core/parameter.hpp"
 
 namespace geo::io {
@@ -16,7 +17,7 @@ struct GridSize {
 };
 
 /// What a run needs besides the planet and the stages: sections [run], [dem], [fields] and
-/// [output].
+/// [output], and the tables [[event]].
 struct RunSettings {
   std::int64_t seed = 1;
   std::string grid = "auto";
@@ -33,6 +34,8 @@ struct RunSettings {
   bool vtk = true;
   bool maps = true;
   std::int64_t map_width_px = 1800;
+
+  std::vector<Event> events;
 
   [[nodiscard]] std::vector<Parameter> parameters();
   [[nodiscard]] bool grid_is_automatic() const { return grid == "auto"; }

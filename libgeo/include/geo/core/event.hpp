@@ -1,0 +1,77 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "geo/core/grid.hpp"
+#include "geo/core/parameter.hpp"
+
+namespace geo {
+
+// What befalls a planet besides the slow work of its stages: tables [[event]] of a configuration,
+// each with its `kind`. Members are keys of the table; their declarations carry unit and range.
+
+/// A meteorite or comet strikes: crater and ejecta, and dust that dims the sun.
+struct Impact {
+  static constexpr std::string_view kKind = "impact";
+  double latitude_deg = 0.0;
+  double longitude_deg = 0.0;
+  double diameter_km = 1.0;
+  double velocity_km_s = 17.0;
+  double angle_deg = 45.0;
+  double density_kg_m3 = 3000.0;
+  double ground_density_kg_m3 = 2700.0;
+  double aerosol_share = 0.1;
+  double aerosol_lifetime_yr = 2.0;
+  double age_yr = 0.0;
+
+  [[nodiscard]] std::vector<Parameter> declarations();
+};
+
+/// The crust parts along a line: a sunken valley between lifted shoulders.
+struct Rift {
+  static constexpr std::string_view kKind = "rift";
+  std::vector<Centre> path;  ///< at least two places, joined by arcs of great circles
+  double width_km = 60.0;
+  double depth_m = 1000.0;
+  double shoulder_m = 600.0;
+  double shoulder_km = 50.0;
+  double roughness = 0.2;
+  double age_yr = 0.0;
+
+  [[nodiscard]] std::vector<Parameter> declarations();
+};
+
+/// The sea rises or falls, by height or by what is added to its water. One of both is not 0.
+struct OceanShift {
+  static constexpr std::string_view kKind = "ocean-shift";
+  double rise_m = 0.0;
+  double water_km3 = 0.0;
+
+  [[nodiscard]] std::vector<Parameter> declarations();
+};
+
+struct Event {
+  std::string name;  ///< for maps and reports; may be empty
+  std::variant<Impact, Rift, OceanShift> what;
+
+  [[nodiscard]] std::string_view kind() const;
+  /// Declarations of the keys of its kind, bound to this event.
+  [[nodiscard]] std::vector<Parameter> declarations();
+};
+
+/// What an event did, as a stage tells it: "crater_diameter_km" and the like.
+struct EventRecord {
+  int number = 0;  ///< place in the configuration, from 1
+  std::string kind, name;
+  std::vector<std::pair<std::string, double>> figures{};
+  std::vector<Centre> path{};  ///< of a rift
+};
+
+/// The figure of that name, or `otherwise`.
+[[nodiscard]] double figure_of(const EventRecord& record, std::string_view name, double otherwise);
+
+}  // namespace geo
