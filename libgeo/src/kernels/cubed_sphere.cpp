@@ -19,7 +19,8 @@ double corner_solid_angle(double x, double y) {
 
 }  // namespace
 
-CubedSphere::CubedSphere(int cells_per_edge) : n_(cells_per_edge) {
+CubedSphere::CubedSphere(int cells_per_edge)
+    : n_(cells_per_edge), spacing_(std::sqrt(4.0 * kPi / size())) {
   const double step = 0.5 * kPi / n_;
   const auto angle = [&](double index) { return -0.25 * kPi + step * index; };
   position_.resize(size());
@@ -53,8 +54,6 @@ CubedSphere::CubedSphere(int cells_per_edge) : n_(cells_per_edge) {
     }
   }
 }
-
-double CubedSphere::spacing() const noexcept { return std::sqrt(4.0 * kPi / size()); }
 
 Vector3 CubedSphere::on_face(int face, double u, double v) const {
   const double x = std::tan(u), y = std::tan(v);
