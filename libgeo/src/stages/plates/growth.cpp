@@ -460,17 +460,14 @@ void report(const GrownPlates& grown, double radius_km, Budget& budget) {
   const double r2 = radius_km * radius_km;
   double area = 0.0;
   for (std::int32_t cell = 0; cell < mesh.size(); ++cell) area += mesh.area_sr(cell) * r2;
-  // A boundary has cells on both sides: each stands for half of its length.
-  double made = 0.0, consumed = 0.0;
-  const double half_km = 0.5 * mesh.spacing() * radius_km;
-  for (const BoundaryPoint& point : grown.boundaries()) {
-    made += 1e-6 * half_km * point.motion.opening;
-    consumed += 1e-6 * half_km * point.motion.closing;
-  }
+  const CrustBudget crust =
+      crust_budget(mesh, grown.plate(), grown.boundaries(), grown.rotations(), radius_km);
   budget["plates_area_km2"] = area;
   budget["plates_area_error"] = area / (4.0 * kPi * r2) - 1.0;
-  budget["crust_created_km2_yr"] = made;
-  budget["crust_consumed_km2_yr"] = consumed;
+  budget["crust_created_km2_yr"] = crust.created;
+  budget["crust_consumed_km2_yr"] = crust.consumed;
+  budget["crust_closing_error"] =
+      (crust.created - crust.consumed) / std::max(crust.created + crust.consumed, 1e-30);
 }
 
 }  // namespace
