@@ -24,7 +24,7 @@ Grid coarsened(const Grid& fine, double spacing_m) {
       const int rows = std::max(
           3, std::min(fine.ny(), static_cast<int>(std::lround(
                                      180.0 * kRadians * fine.figure().radius_m / spacing_m))));
-      return Grid::sphere(std::min(even(2.0 * rows), fine.nx()), rows, fine.figure());
+      return Grid::sphere(std::min(even(2.0 * rows), fine.nx()), rows, fine.figure(), fine.turn());
     }
     case Topology::torus:
       return Grid::torus(nx, ny, middle_dx_m * fine.nx() / nx, dy_m * fine.ny() / ny);
@@ -78,7 +78,7 @@ ClimateFrame::ClimateFrame(const Grid& grid, const ClimateParameters& parameters
   switch (grid.topology()) {
     case Topology::sphere:
     case Topology::plane:
-      planet_ = std::make_unique<Grid>(Grid::sphere(2 * rows, rows, planet.figure()));
+      planet_ = std::make_unique<Grid>(Grid::sphere(2 * rows, rows, planet.figure(), grid.turn()));
       break;
     case Topology::torus:
       planet_ =

@@ -64,7 +64,9 @@ class Coarse {
 
   explicit Coarse(const Grid& fine)
       : fine_(fine),
-        grid_(fine.nx() <= kColumns ? fine : Grid::sphere(kColumns, kColumns / 2, fine.figure())) {}
+        grid_(fine.nx() <= kColumns
+                  ? fine
+                  : Grid::sphere(kColumns, kColumns / 2, fine.figure(), fine.turn())) {}
 
   [[nodiscard]] const Grid& grid() const { return grid_; }
 

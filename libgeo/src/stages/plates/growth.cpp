@@ -224,7 +224,9 @@ class GrownPlates {
 class SmoothFields {
  public:
   SmoothFields(const GrownPlates& grown, const Grid& grid)
-      : coarse_(grid.nx() <= kColumns ? grid : Grid::sphere(kColumns, kColumns / 2, grid.figure())),
+      : coarse_(grid.nx() <= kColumns
+                    ? grid
+                    : Grid::sphere(kColumns, kColumns / 2, grid.figure(), grid.turn())),
         rows_(coarse_, grid) {
     for (auto* field : {&potential_, &heat_, &convergent_km_}) field->resize(coarse_.size());
     const bool cratons = !grown.potential().empty();
@@ -310,8 +312,9 @@ class PlatesOnGrid {
         const MeshStencil stencil = stencil_at(mesh, place);
         const std::int16_t own = near ? grown_.plate_at(stencil) : grown_.plate()[stencil.cell[0]];
         plate[cell] = own;
-        const auto velocity =
-            east_north(velocity_mm_yr(grown_.plates()[own].rotation_rad_myr, at, radius_km_), at);
+        const Vector3 motion =
+            velocity_mm_yr(grown_.plates()[own].rotation_rad_myr, at, radius_km_);
+        const auto velocity = east_north(grid_.to_axis(motion), grid_.to_axis(at));
         east[cell] = static_cast<float>(velocity.east);
         north[cell] = static_cast<float>(velocity.north);
         age_[cell] = static_cast<float>(grown_.age_myr(stencil, own));
@@ -420,7 +423,8 @@ class PlatesOnGrid {
   }
 
  private:
-  [[nodiscard]] double fraction_at(const Vector3& at) const {
+  [[nodiscard]] double fraction_at(const Vector3& place) const {
+    const Vector3 at = grid_.to_axis(place);
     const double x = (std::atan2(at[1], at[0]) / (2.0 * kPi) + 0.5) * grid_.nx();
     const double y = (std::asin(std::clamp(at[2], -1.0, 1.0)) / kPi + 0.5) * grid_.ny();
     return fraction_[grid_.cell(std::clamp(static_cast<int>(x), 0, grid_.nx() - 1),
