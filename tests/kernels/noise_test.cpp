@@ -9,6 +9,7 @@
 
 #include "geo/core/grid.hpp"
 #include "geo/core/random.hpp"
+#include "geo/kernels/noise_row.hpp"
 
 namespace geo {
 namespace {
@@ -47,6 +48,40 @@ FadeMoments fade_moments() {
     moments.distant += w * w * t * t / kSteps;
   }
   return moments;
+}
+
+TEST(Noise, ManyPositionsGiveTheSameBitsAsOne) {
+  const RandomStream random(5, "noise_test.many");
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const Noise noise(seed, "many");
+    for (const int count : {0, 1, 63, 64, 65, 1000}) {
+      std::vector<std::array<double, 3>> positions(count);
+      for (int k = 0; k < count; ++k) {
+        // Also far out, where nodes of the lattice no longer fit 32 bits.
+        const double scale = k % 5 == 0 ? 1e9 : 1.0;
+        for (int c = 0; c < 3; ++c) positions[k][c] = scale * random.uniform(k, c, -1.0, 1.0);
+      }
+      std::vector<float> values(count, -9.0F);
+      noise.fbm(positions, 37.5, 9, 0.55, values);
+      for (int k = 0; k < count; ++k) {
+        ASSERT_EQ(values[k], noise.fbm(positions[k], 37.5, 9, 0.55))
+            << "seed " << seed << ", position " << k << " of " << count;
+      }
+    }
+  }
+}
+
+TEST(NoiseRow, WritesChosenColumnsAlone) {
+  const Grid grid = Grid::sphere(128, 64);
+  const Noise noise(4, "row");
+  NoiseRow row(grid);
+  std::vector<float> line(grid.nx(), -9.0F);
+  const auto wanted = [](int i) { return i % 3 == 1; };
+  row.choose(20, wanted);
+  row.fbm(noise, 12.0, 4, 0.5, line);
+  for (int i = 0; i < grid.nx(); ++i) {
+    EXPECT_EQ(line[i], wanted(i) ? noise.fbm(grid.unit_vector(i, 20), 12.0, 4) : -9.0F) << i;
+  }
 }
 
 TEST(Noise, GradientHasZeroMeanAndTheStatedSpread) {

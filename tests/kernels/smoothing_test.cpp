@@ -64,6 +64,41 @@ TEST(Smoothing, IsTheSameAtEveryLatitude) {
   }
 }
 
+TEST(Smoothing, BroadlyIsTheSameBlurAtEveryLatitude) {
+  const Grid grid = Grid::sphere(1024, 512);  // cells of 39 km
+  for (const double latitude : {0.0, 52.0, 78.0, 90.0}) {
+    const auto centre = at(latitude, 100.0);
+    std::vector<float> field(grid.size());
+    double before = 0.0, after = 0.0;
+    for (Index c = 0; c < grid.size(); ++c) {
+      const double r = distance_m(centre, grid.unit_vector(grid.column(c), grid.row(c))) / 300e3;
+      field[c] = static_cast<float>(1000.0 * std::exp(-0.5 * r * r));
+      before += field[c] * grid.area_m2(grid.row(c));
+    }
+    smooth_broadly(grid, field, 500e3);
+    constexpr double kSpread_m2 = 300e3 * 300e3 + 500e3 * 500e3;
+    double worst = 0.0;
+    constexpr double kFlatPeak = 1000.0 * 300e3 * 300e3 / kSpread_m2;
+    for (Index c = 0; c < grid.size(); ++c) {
+      const double r = distance_m(centre, grid.unit_vector(grid.column(c), grid.row(c)));
+      const double flat = kFlatPeak * std::exp(-0.5 * r * r / kSpread_m2);
+      worst = std::max(worst, std::abs(field[c] - flat) / kFlatPeak);
+      after += field[c] * grid.area_m2(grid.row(c));
+    }
+    EXPECT_LT(worst, 0.02) << "latitude " << latitude;
+    EXPECT_NEAR(after, before, 3e-3 * before) << "latitude " << latitude;
+  }
+}
+
+TEST(Smoothing, BroadlyFallsBackToCellsWhereTheBellIsNarrow) {
+  const Grid grid = Grid::sphere(90, 45);
+  std::vector<float> field(grid.size(), 0.0F), same = field;
+  field[1234] = same[1234] = 100.0F;
+  smooth(grid, field, 900e3);
+  smooth_broadly(grid, same, 900e3);
+  EXPECT_EQ(field, same);
+}
+
 TEST(Smoothing, IsTheSameAtTwoResolutions) {
   for (const double latitude : {0.0, 50.0, 85.0}) {
     const auto coarse = smoothed_profile(90, latitude), fine = smoothed_profile(270, latitude);

@@ -1,10 +1,16 @@
 #include "png_file.hpp"
 
+#include <libdeflate.h>
 #include <png.h>
 
+#include <array>
 #include <bit>
 #include <csetjmp>
 #include <cstdio>
+#include <memory>
+#include <new>
+#include <span>
+#include <vector>
 
 #include "geo/io/atomic_file.hpp"
 
@@ -13,42 +19,82 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "Cairo's pixels are read as B G R X");
 
-// Level 4 with one filter: a third of the default's time for a few per cent more bytes.
-constexpr int kCompression = 4;
+// A smaller file than zlib's default level makes, in a fraction of its time.
+constexpr int kCompression = 6;
+constexpr int kComponents = 3;
+
+/// Rows of R G B behind their filter type: 1, each byte less that of the pixel to the west.
+std::vector<std::uint8_t> filtered(const PixelView& pixels) {
+  const std::size_t row_bytes = 1 + static_cast<std::size_t>(pixels.width) * kComponents;
+  std::vector<std::uint8_t> rows(row_bytes * pixels.height);
+  for (int y = 0; y < pixels.height; ++y) {
+    const std::uint8_t* from = pixels.data + static_cast<std::ptrdiff_t>(y) * pixels.stride_bytes;
+    std::uint8_t* to = rows.data() + row_bytes * y;
+    *to++ = PNG_FILTER_VALUE_SUB;
+    std::array<std::uint8_t, kComponents> west{};
+    for (int x = 0; x < pixels.width; ++x, from += 4) {
+      for (int c = 0; c < kComponents; ++c) {
+        const std::uint8_t here = from[kComponents - 1 - c];
+        *to++ = static_cast<std::uint8_t>(here - west[c]);
+        west[c] = here;
+      }
+    }
+  }
+  return rows;
+}
+
+std::vector<std::uint8_t> compressed(const std::vector<std::uint8_t>& rows) {
+  const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> compressor(
+      libdeflate_alloc_compressor(kCompression), &libdeflate_free_compressor);
+  if (!compressor) throw std::bad_alloc();
+  std::vector<std::uint8_t> packed(libdeflate_zlib_compress_bound(compressor.get(), rows.size()));
+  packed.resize(libdeflate_zlib_compress(compressor.get(), rows.data(), rows.size(), packed.data(),
+                                         packed.size()));
+  return packed;
+}
+
+/// Width and height, 8 bits, true colour, the one compression and filter method, no interlacing.
+std::array<std::uint8_t, 13> header_of(const PixelView& pixels) {
+  std::array<std::uint8_t, 13> header{};
+  png_save_uint_32(header.data(), static_cast<png_uint_32>(pixels.width));
+  png_save_uint_32(header.data() + 4, static_cast<png_uint_32>(pixels.height));
+  header[8] = 8;
+  header[9] = PNG_COLOR_TYPE_RGB;
+  return header;
+}
+
+void write_chunk(png_structp png, const char* name, std::span<const std::uint8_t> data) {
+  png_write_chunk(png, reinterpret_cast<png_const_bytep>(name), data.data(), data.size());
+}
 
 // Kept free of objects with destructors, for libpng leaves it with longjmp on errors.
-bool encode(std::FILE* stream, const PixelView& pixels) {
+bool write_chunks(std::FILE* stream, std::span<const std::uint8_t> header,
+                  std::span<const std::uint8_t> image) {
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
   if (png == nullptr) return false;
-  png_infop info = png_create_info_struct(png);
-  if (info == nullptr || setjmp(png_jmpbuf(png)) != 0) {
-    png_destroy_write_struct(&png, &info);
+  if (setjmp(png_jmpbuf(png)) != 0) {
+    png_destroy_write_struct(&png, nullptr);
     return false;
   }
   png_init_io(png, stream);
-  png_set_compression_level(png, kCompression);
-  png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
-  png_set_IHDR(png, info, pixels.width, pixels.height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
-               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-  png_write_info(png, info);
-  png_set_bgr(png);
-  png_set_filler(png, 0, PNG_FILLER_AFTER);
-  for (int y = 0; y < pixels.height; ++y) {
-    png_write_row(png, pixels.data + static_cast<std::ptrdiff_t>(y) * pixels.stride_bytes);
-  }
-  png_write_end(png, nullptr);
-  png_destroy_write_struct(&png, &info);
+  png_write_sig(png);
+  write_chunk(png, "IHDR", header);
+  write_chunk(png, "IDAT", image);
+  write_chunk(png, "IEND", {});
+  png_destroy_write_struct(&png, nullptr);
   return true;
 }
 
 }  // namespace
 
 void write_png(const std::filesystem::path& path, const PixelView& pixels) {
+  const auto header = header_of(pixels);
+  const auto image = compressed(filtered(pixels));
   AtomicFile file(path);
   std::FILE* stream = std::fopen(file.temporary().c_str(), "wb");
   if (stream == nullptr) file.fail("cannot open");
-  const bool encoded = encode(stream, pixels);
-  if (std::fclose(stream) != 0 || !encoded) file.fail("the PNG library refused");
+  const bool written = write_chunks(stream, header, image);
+  if (std::fclose(stream) != 0 || !written) file.fail("the PNG library refused");
   file.commit();
 }
 

@@ -111,15 +111,15 @@ std::vector<float> craton_potential(const Cratons& model, const CubedSphere& mes
                                   Noise(seed, "plates.craton_bend_y"),
                                   Noise(seed, "plates.craton_bend_z")};
   const Noise history(seed, "plates.rifting");
+  constexpr double kFrequency = 1.6, kNormal = 3.2;  // fbm to a deviation of one half
+  std::array<std::vector<float>, 3> bends;
+  for (int c = 0; c < 3; ++c) bends[c] = fbm_at(bend[c], mesh.positions(), kFrequency, 6, 0.55);
+  const auto rifting = fbm_at(history, mesh.positions(), 1.2, 3);
   std::vector<float> potential(mesh.size());
 #pragma omp parallel for schedule(static)
   for (std::int32_t cell = 0; cell < mesh.size(); ++cell) {
-    const Vector3& p = mesh.position(cell);
-    constexpr double kFrequency = 1.6, kNormal = 3.2;  // fbm to a deviation of one half
-    Vector3 bent = p;
-    for (int c = 0; c < 3; ++c) {
-      bent[c] += model.warp * kNormal * bend[c].fbm(p, kFrequency, 6, 0.55);
-    }
+    Vector3 bent = mesh.position(cell);
+    for (int c = 0; c < 3; ++c) bent[c] += model.warp * kNormal * bends[c][cell];
     bent = normalised(bent);
     double sum = 0.0;
     for (const Craton& craton : cratons) {
@@ -128,7 +128,7 @@ std::vector<float> craton_potential(const Cratons& model, const CubedSphere& mes
     }
     const double ridge_km = to_ridge.angle[cell] * model.radius_km;
     // Some ridges have made oceans, others only begin to tear a continent.
-    const double begun = std::clamp(0.65 + 3.0 * history.fbm(p, 1.2, 3), 0.0, 1.0);
+    const double begun = std::clamp(0.65 + 3.0 * rifting[cell], 0.0, 1.0);
     const double opened = 6.0 * begun * std::exp(-ridge_km / model.ridge_clearance_km);
     potential[cell] = static_cast<float>(std::log(sum + 1e-26) - opened);
   }

@@ -6,22 +6,13 @@
 
 #include "geo/core/field.hpp"
 #include "geo/kernels/nearest_source.hpp"
+#include "geo/kernels/shapes.hpp"
 
 namespace geo {
 namespace {
 
 constexpr float kFar_km = 1e9F;
 constexpr std::array<int, 4> kSides{kNorth, kEast, kSouth, kWest};
-
-double smooth_step(double from, double to, double x) {
-  const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t);
-}
-
-double bell(double x, double middle, double width) {
-  const double t = (x - middle) / width;
-  return std::exp(-0.5 * t * t);
-}
 
 std::array<float, 3> position(const Grid& grid, Index cell) {
   const auto p = grid.unit_vector(grid.column(cell), grid.row(cell));

@@ -20,7 +20,8 @@ double corner_solid_angle(double x, double y) {
 
 }  // namespace
 
-CubedSphere::CubedSphere(int cells_per_edge) : n_(cells_per_edge) {
+CubedSphere::CubedSphere(int cells_per_edge)
+    : n_(cells_per_edge), spacing_(std::sqrt(4.0 * kPi / size())) {
   position_.resize(size());
   neighbours_.resize(size());
   area_sr_.resize(static_cast<std::size_t>(n_) * n_);
@@ -71,8 +72,6 @@ std::array<CubedSphere::Side, CubedSphere::kSides> CubedSphere::sides(std::int32
   }
   return all;
 }
-
-double CubedSphere::spacing() const noexcept { return std::sqrt(4.0 * kPi / size()); }
 
 Vector3 CubedSphere::on_face(int face, double u, double v) const {
   const double x = std::tan(u), y = std::tan(v);

@@ -1,6 +1,7 @@
 #include "geo/kernels/diffusion.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -16,7 +17,11 @@ namespace {
 
 constexpr int kRows = 4;      // rows solved side by side
 constexpr int kColumns = 16;  // columns solved side by side: one cache line of floats
+constexpr int kBand = 64;     // columns that exchange side by side
 constexpr double kGamma = 1.0 - 1.0 / std::numbers::sqrt2;
+// Exchange per step with one neighbour below which forward Euler does what backward Euler does:
+// they differ by its square, and neither leaves the range of the field.
+constexpr double kWeak = 0.01;
 
 // Rows and columns of one diffusion problem, cut into directions.
 class SplitDiffusion {
@@ -36,15 +41,22 @@ class SplitDiffusion {
 #pragma omp for schedule(static)
       for (int b = 0; b < blocks; ++b) {
         const int row = b * kRows;
+        if (is_weak_along_rows(row, strength)) {
+          for (int k = 0; k < std::min(kRows, ny - row); ++k) exchange_along_row(row + k, strength);
+          continue;
+        }
         couple_rows(system, row, strength);
+        std::array<float*, kRows> rows;
         for (int k = 0; k < kRows; ++k) {
-          const float* from = &field_[std::size_t(std::min(row + k, ny - 1)) * nx];
-          for (int i = 0; i < nx; ++i) value[i * kRows + k] = from[i];
+          rows[k] = &field_[std::size_t(std::min(row + k, ny - 1)) * nx];
+        }
+        for (int i = 0; i < nx; ++i) {
+          for (int k = 0; k < kRows; ++k) value[i * kRows + k] = rows[k][i];
         }
         step(system, value, stage);
-        for (int k = 0; k < std::min(kRows, ny - row); ++k) {
-          float* to = &field_[std::size_t(row + k) * nx];
-          for (int i = 0; i < nx; ++i) to[i] = static_cast<float>(value[i * kRows + k]);
+        // Beyond the last row it is written again, alike.
+        for (int i = 0; i < nx; ++i) {
+          for (int k = 0; k < kRows; ++k) rows[k][i] = static_cast<float>(value[i * kRows + k]);
         }
       }
     }
@@ -54,6 +66,7 @@ class SplitDiffusion {
     const int nx = grid_.nx(), ny = grid_.ny(), blocks = (nx + kColumns - 1) / kColumns;
     const bool periodic = grid_.topology() == Topology::torus;
     const double strength = stage_strength(dt_yr);
+    if (is_weak_along_columns(strength)) return exchange_along_columns(strength);
 #pragma omp parallel if (worth_threads())
     {
       TridiagonalBlock<kColumns> system(ny, periodic);
@@ -90,6 +103,80 @@ class SplitDiffusion {
     return (second ? kGamma : 1.0) * diffusivity_m2_yr_ * dt_yr;
   }
 
+  [[nodiscard]] double coupling_east(int row, double strength) const {
+    return strength * grid_.face_east_m(row) / (grid_.spacing_east_m(row) * grid_.area_m2(row));
+  }
+  /// Couplings of a row to those south and north of it.
+  [[nodiscard]] std::array<double, 2> couplings_north(int row, double strength) const {
+    const int south = row > 0 ? row - 1 : grid_.ny() - 1;
+    const double per_area = strength / grid_.area_m2(row);
+    return {per_area * grid_.face_north_m(row - 1) / grid_.spacing_north_m(south),
+            per_area * grid_.face_north_m(row) / grid_.spacing_north_m(row)};
+  }
+
+  [[nodiscard]] bool may_be_explicit() const {
+    return options_.scheme == DiffusionScheme::positive && grid_.topology() != Topology::torus &&
+           options_.excluded.empty();
+  }
+  [[nodiscard]] bool is_weak_along_rows(int first_row, double strength) const {
+    if (!may_be_explicit()) return false;
+    double most = 0.0;
+    for (int row = first_row; row < std::min(first_row + kRows, grid_.ny()); ++row) {
+      most = std::max(most, coupling_east(row, strength));
+    }
+    return most < kWeak;
+  }
+  [[nodiscard]] bool is_weak_along_columns(double strength) const {
+    if (!may_be_explicit()) return false;
+    double most = 0.0;
+    for (int row = 0; row < grid_.ny(); ++row) {
+      const auto [down, up] = couplings_north(row, strength);
+      most = std::max({most, down, up});
+    }
+    return most < kWeak;
+  }
+  [[nodiscard]] bool is_fixed(std::size_t cell) const {
+    return !options_.fixed.empty() && options_.fixed[cell] != 0;
+  }
+
+  void exchange_along_row(int row, double strength) {
+    const int nx = grid_.nx();
+    const bool periodic = grid_.topology() == Topology::sphere;
+    const double coupling = coupling_east(row, strength);
+    const std::size_t begin = std::size_t(row) * nx;
+    float* z = &field_[begin];
+    const double first = z[0];
+    double west = periodic ? z[nx - 1] : z[0];
+    for (int i = 0; i < nx; ++i) {
+      const double here = z[i];
+      const double east = i + 1 < nx ? z[i + 1] : (periodic ? first : here);
+      if (!is_fixed(begin + i))
+        z[i] = static_cast<float>(here + coupling * (west + east - 2.0 * here));
+      west = here;
+    }
+  }
+
+  void exchange_along_columns(double strength) {
+    const int nx = grid_.nx(), ny = grid_.ny(), blocks = (nx + kBand - 1) / kBand;
+#pragma omp parallel for schedule(static) if (worth_threads())
+    for (int b = 0; b < blocks; ++b) {
+      const int column = b * kBand, width = std::min(kBand, nx - column);
+      double south[kBand];  // as it was
+      std::copy_n(&field_[column], width, south);
+      for (int j = 0; j < ny; ++j) {
+        const auto [down, up] = couplings_north(j, strength);
+        const std::size_t begin = std::size_t(j) * nx + column;
+        const std::size_t above = j + 1 < ny ? begin + nx : begin;
+        for (int k = 0; k < width; ++k) {
+          const double here = field_[begin + k], north = field_[above + k];
+          const double change = down * (south[k] - here) + up * (north - here);
+          if (!is_fixed(begin + k)) field_[begin + k] = static_cast<float>(here + change);
+          south[k] = here;
+        }
+      }
+    }
+  }
+
   // Whether `cell` reacts to `neighbour`.
   [[nodiscard]] bool coupled(std::size_t cell, std::size_t neighbour) const {
     if (!options_.fixed.empty() && options_.fixed[cell] != 0) return false;
@@ -103,8 +190,7 @@ class SplitDiffusion {
     double coupling[kRows];
     for (int k = 0; k < kRows; ++k) {
       const int row = std::min(first_row + k, ny - 1);
-      coupling[k] =
-          strength * grid_.face_east_m(row) / (grid_.spacing_east_m(row) * grid_.area_m2(row));
+      coupling[k] = coupling_east(row, strength);
     }
     for (int i = 0; i < nx; ++i) {
       const int west = i > 0 ? i - 1 : nx - 1, east = i < nx - 1 ? i + 1 : 0;
@@ -131,9 +217,7 @@ class SplitDiffusion {
     const bool periodic = grid_.topology() == Topology::torus;
     for (int j = 0; j < ny; ++j) {
       const int south = j > 0 ? j - 1 : ny - 1, north = j < ny - 1 ? j + 1 : 0;
-      const double per_area = strength / grid_.area_m2(j);
-      const double down = per_area * grid_.face_north_m(j - 1) / grid_.spacing_north_m(south);
-      const double up = per_area * grid_.face_north_m(j) / grid_.spacing_north_m(j);
+      const auto [down, up] = couplings_north(j, strength);
       double* lower = system.lower(j);
       double* upper = system.upper(j);
       for (int k = 0; k < kColumns; ++k) {
@@ -161,8 +245,7 @@ class SplitDiffusion {
             std::vector<double>& stage) const {
     system.solve(value.data());
     if (options_.scheme == DiffusionScheme::positive) return;
-    std::copy(value.begin(), value.end(), stage.begin());
-    system.solve(stage.data());
+    system.solve(value.data(), stage.data());
     // The weights sum to 1, which keeps constants and mass.
     for (std::size_t i = 0; i < value.size(); ++i) {
       value[i] = stage[i] + std::numbers::sqrt2 * (stage[i] - value[i]);

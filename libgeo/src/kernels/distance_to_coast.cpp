@@ -74,19 +74,23 @@ class CoastLevels {
     std::fill_n(offset, nx, kNone);
     const int turns = wraps ? 2 : 1;
     int last = -1;
-    for (int k = 0; k < turns * points; ++k) {
-      if (coast[k % points]) last = k;
-      if (k % 2 == 0 && last >= 0) {
-        Offset& here = offset[k % points / 2];
-        here = static_cast<Offset>(std::min<int>(here, std::min(k - last, points)));
+    const auto shorten = [&](int column, int half_columns) {
+      offset[column] =
+          static_cast<Offset>(std::min<int>(offset[column], std::min(half_columns, points)));
+    };
+    for (int start = 0; start < turns * points; start += points) {
+      for (int i = 0; i < nx; ++i) {
+        if (coast[2 * i] != 0) last = start + 2 * i;
+        if (last >= 0) shorten(i, start + 2 * i - last);
+        if (coast[2 * i + 1] != 0) last = start + 2 * i + 1;
       }
     }
     last = -1;
-    for (int k = turns * points - 1; k >= 0; --k) {
-      if (coast[k % points]) last = k;
-      if (k % 2 == 0 && last >= 0) {
-        Offset& here = offset[k % points / 2];
-        here = static_cast<Offset>(std::min<int>(here, std::min(last - k, points)));
+    for (int start = (turns - 1) * points; start >= 0; start -= points) {
+      for (int i = nx - 1; i >= 0; --i) {
+        if (coast[2 * i + 1] != 0) last = start + 2 * i + 1;
+        if (coast[2 * i] != 0) last = start + 2 * i;
+        if (last >= 0) shorten(i, last - start - 2 * i);
       }
     }
   }

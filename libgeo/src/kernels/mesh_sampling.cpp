@@ -5,11 +5,15 @@
 namespace geo {
 
 MeshStencil stencil_at(const CubedSphere& mesh, const Vector3& unit) {
+  return stencil_at(mesh, mesh.locate(unit), unit);
+}
+
+MeshStencil stencil_at(const CubedSphere& mesh, std::int32_t cell, const Vector3& unit) {
   // The weight falls to zero, with zero slope, before the next ring of cells begins.
   constexpr double kReach = 1.2;  // cells
   const double scale = 1.0 / (kReach * mesh.spacing());
   MeshStencil stencil;
-  stencil.cell[0] = mesh.locate(unit);
+  stencil.cell[0] = cell;
   const auto& around = mesh.neighbours(stencil.cell[0]);
   for (std::size_t k = 0; k < around.size(); ++k) stencil.cell[k + 1] = around[k];
   double sum = 0.0;

@@ -110,10 +110,17 @@ void solve_moisture(const Grid& grid, const MoistureBudget& model, const Moistur
   };
   for (int sweep = 0; sweep < model.sweeps; ++sweep) {
     const bool northward = sweep % 2 == 0, eastward = sweep % 4 < 2;
-    for (int row = 0; row < ny; ++row) {
-      const int j = northward ? row : ny - 1 - row;
-      for (int column = 0; column < nx; ++column)
-        relax_cell(eastward ? column : nx - 1 - column, j);
+    // Some rows at once, each a column behind the one before: every cell still meets the neighbours
+    // that it would meet row by row, but the processor need not wait for one cell after the other.
+    constexpr int kTogether = 4;
+    for (int first = 0; first < ny; first += kTogether) {
+      const int rows = std::min(kTogether, ny - first);
+      for (int step = 0; step < nx + rows - 1; ++step) {
+        for (int k = std::max(0, step - nx + 1); k < std::min(rows, step + 1); ++k) {
+          const int column = step - k, row = first + k;
+          relax_cell(eastward ? column : nx - 1 - column, northward ? row : ny - 1 - row);
+        }
+      }
     }
   }
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -27,13 +28,28 @@ void check(const Grid& grid, std::size_t surface, std::size_t receiver, std::siz
   }
 }
 
-std::vector<std::uint8_t> receivers_of_all(const Grid& grid, const FlowWeights& weights) {
-  std::vector<std::uint8_t> receivers(grid.size());
-#pragma omp parallel for schedule(static) if (grid.size() > kWorthThreads)
+/// How all cells share: to whom, and how much.
+struct Shares {
+  std::vector<std::uint8_t> receivers;  ///< bit k: neighbour k
+  /// Not normalised; only where there are several receivers, so memory that roots and single
+  /// flow would take is never touched.
+  std::unique_ptr<Weights[]> weights;
+};
+
+Shares shares_of_all(const Grid& grid, const FlowWeights& flow) {
+  Shares shares{std::vector<std::uint8_t>(grid.size()),
+                std::make_unique_for_overwrite<Weights[]>(grid.size())};
+#pragma omp parallel for schedule(dynamic, 16) if (grid.size() > kWorthThreads)
   for (int j = 0; j < grid.ny(); ++j) {
-    for (int i = 0; i < grid.nx(); ++i) receivers[grid.cell(i, j)] = weights.receivers(i, j);
+    for (int i = 0; i < grid.nx(); ++i) {
+      const Index cell = grid.cell(i, j);
+      const std::uint8_t to = flow.receivers(i, j);
+      shares.receivers[cell] = to;
+      if ((to & (to - 1)) == 0) continue;
+      shares.weights[cell] = flow.weights(j, cell, flow.neighbours(i, j), to);
+    }
   }
-  return receivers;
+  return shares;
 }
 
 // Number of neighbours that give to each cell. Every direction is counted at its target's end, so
@@ -64,7 +80,8 @@ void accumulate_flow(const Grid& grid, std::span<const float> surface_m,
                      std::span<double> values) {
   check(grid, surface_m.size(), receiver.size(), values.size(), partition);
   const FlowWeights weights(grid, surface_m, receiver, partition);
-  const std::vector<std::uint8_t> receivers = receivers_of_all(grid, weights);
+  const Shares shares = shares_of_all(grid, weights);
+  const std::vector<std::uint8_t>& receivers = shares.receivers;
   std::vector<std::uint8_t> waiting = count_donors(grid, weights, receivers);
   constexpr std::uint8_t kDone = 255;
   std::vector<Index> ready;
@@ -81,7 +98,13 @@ void accumulate_flow(const Grid& grid, std::span<const float> surface_m,
       if (to == 0) continue;
       const int row = grid.row(cell);
       const Neighbours cells = weights.neighbours(cell - row * grid.nx(), row);
-      const Weights weight = weights.weights(row, cell, cells, to);
+      if (std::has_single_bit(to)) {
+        const Index next = cells[std::countr_zero(to)];
+        values[next] += values[cell];
+        if (--waiting[next] == 0) ready.push_back(next);
+        continue;
+      }
+      const Weights& weight = shares.weights[cell];
       double sum = 0.0;
       for (const float w : weight) sum += w;
       const double per_weight = values[cell] / sum;

@@ -42,18 +42,22 @@ class Propagation {
       const bool over_pole = behind < 0 || behind >= ny;
       const Index from = grid_.cell(0, over_pole ? j : behind);
       const int shift = over_pole ? nx / 2 : 0;
+      const Index first = grid_.cell(0, j);
+      int west = shift == 0 ? nx - 1 : shift - 1, middle = shift;
       for (int i = 0; i < nx; ++i) {
-        for (int di = -1; di <= 1; ++di) {
-          offer(grid_.cell(i, j), row[i], nearest_[from + (i + di + shift + nx) % nx]);
-        }
+        const int east = middle + 1 < nx ? middle + 1 : 0;
+        for (const int k : {west, middle, east}) offer(first + i, row[i], nearest_[from + k]);
+        west = middle;
+        middle = east;
       }
       // Twice round, so that what comes in at the seam also passes on.
-      const Index first = grid_.cell(0, j);
-      for (int k = 0; k < 2 * nx; ++k) {
-        offer(first + k % nx, row[k % nx], nearest_[first + (k + nx - 1) % nx]);
+      for (int round = 0; round < 2; ++round) {
+        offer(first, row[0], nearest_[first + nx - 1]);
+        for (int i = 1; i < nx; ++i) offer(first + i, row[i], nearest_[first + i - 1]);
       }
-      for (int k = 2 * nx - 1; k >= 0; --k) {
-        offer(first + k % nx, row[k % nx], nearest_[first + (k + 1) % nx]);
+      for (int round = 0; round < 2; ++round) {
+        offer(first + nx - 1, row[nx - 1], nearest_[first]);
+        for (int i = nx - 2; i >= 0; --i) offer(first + i, row[i], nearest_[first + i + 1]);
       }
     }
   }

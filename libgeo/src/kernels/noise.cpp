@@ -4,11 +4,11 @@
 #include <numbers>
 
 #include "geo/core/random.hpp"
+#include "noise_lattice.hpp"
 
 namespace geo {
+namespace lattice {
 namespace {
-
-using Position = std::array<double, 3>;
 
 std::array<Position, 3> rotation() {
   const double angle = 65.0 * std::numbers::pi / 180.0;
@@ -20,16 +20,12 @@ std::array<Position, 3> rotation() {
           Position{u[2] * u[0] * v - u[1] * s, u[2] * u[1] * v + u[0] * s, c + u[2] * u[2] * v}};
 }
 
-struct alignas(16) Gradient {
-  float x, y, z, unused;
-};
-
 // Length that brings the noise to about [-1, 1].
 constexpr double kGradientLength = 1.5;
 
 // Fibonacci lattice on the sphere.
-std::array<Gradient, 256> spread_gradients() {
-  std::array<Gradient, 256> table{};
+std::array<Tables::Gradient, 256> spread_gradients() {
+  std::array<Tables::Gradient, 256> table{};
   for (int i = 0; i < 256; ++i) {
     const double z = 1.0 - (2 * i + 1) / 256.0;
     const double r = std::sqrt(1.0 - z * z) * kGradientLength;
@@ -40,25 +36,21 @@ std::array<Gradient, 256> spread_gradients() {
   return table;
 }
 
-struct Tables {
-  // A turn about (1, 2, 3) by 65 degrees: no row is near a coordinate axis, and no power of it
-  // that an fbm could reach comes back to the identity.
-  std::array<Position, 3> turn = rotation();
-  std::array<Gradient, 256> gradient = spread_gradients();
-};
+}  // namespace
 
 const Tables& tables() {
-  static const Tables kTables;
+  static const Tables kTables{rotation(), spread_gradients()};
   return kTables;
 }
 
-Position turn(const Position& p, const Tables& table) {
-  Position out{};
-  for (int i = 0; i < 3; ++i) {
-    out[i] = table.turn[i][0] * p[0] + table.turn[i][1] * p[1] + table.turn[i][2] * p[2];
-  }
-  return out;
-}
+}  // namespace lattice
+
+namespace {
+
+using lattice::Position;
+using lattice::Tables;
+using lattice::tables;
+using lattice::turned;
 
 Position shift(const Position& p, const Position& by) {
   return {p[0] + by[0], p[1] + by[1], p[2] + by[2]};
@@ -80,34 +72,21 @@ Cell locate(const Position& p) {
   return cell;
 }
 
-// Hashes of the eight corners, x fastest. Each coordinate is mixed before the next is added, so
-// that no displacement of the lattice repeats the pattern; the last rounds are the "lowbias32"
-// finaliser (Wellons 2018).
+// Hashes of the eight corners, x fastest.
 std::array<std::uint32_t, 8> hash_corners(const std::array<std::uint32_t, 3>& node,
                                           std::uint32_t key) {
   std::array<std::uint32_t, 8> hash{};
   for (std::uint32_t corner = 0; corner < 8; ++corner) {
-    std::uint32_t h = key + (node[0] + (corner & 1U)) * 0x9e3779b1U;
-    h ^= h >> 15;
-    h *= 0x2c1b3c6dU;
-    h += (node[1] + (corner >> 1 & 1U)) * 0x85ebca77U;
-    h ^= h >> 13;
-    h *= 0x297a2d39U;
-    h += (node[2] + (corner >> 2)) * 0xc2b2ae3dU;
-    h ^= h >> 16;
-    h *= 0x7feb352dU;
-    h ^= h >> 15;
-    h *= 0x846ca68bU;
-    h ^= h >> 16;
-    hash[corner] = h;
+    std::uint32_t h = lattice::mixed_x(key + (node[0] + (corner & 1U)) * lattice::kStep[0]);
+    h = lattice::mixed_y(h + (node[1] + (corner >> 1 & 1U)) * lattice::kStep[1]);
+    hash[corner] = lattice::mixed_z(h + (node[2] + (corner >> 2)) * lattice::kStep[2]);
   }
   return hash;
 }
 
-float fade(float t) { return t * t * t * (t * (t * 6.0F - 15.0F) + 10.0F); }
-
 float interpolate(const std::array<float, 8>& v, const std::array<float, 3>& offset) {
-  const float along_x = fade(offset[0]), along_y = fade(offset[1]), along_z = fade(offset[2]);
+  const float along_x = lattice::fade(offset[0]), along_y = lattice::fade(offset[1]),
+              along_z = lattice::fade(offset[2]);
   std::array<float, 4> face{};
   for (int i = 0; i < 4; ++i) face[i] = v[i] + along_z * (v[i + 4] - v[i]);
   const float low = face[0] + along_y * (face[2] - face[0]);
@@ -121,7 +100,7 @@ float gradient_noise(const Position& p, std::uint32_t key, const Tables& table) 
   const auto [x, y, z] = cell.offset;
   std::array<float, 8> corner_value{};
   for (int c = 0; c < 8; ++c) {
-    const Gradient& g = table.gradient[hash[c] >> 24];
+    const Tables::Gradient& g = table.gradient[hash[c] >> 24];
     corner_value[c] = g.x * (x - static_cast<float>(c & 1)) +
                       g.y * (y - static_cast<float>(c >> 1 & 1)) +
                       g.z * (z - static_cast<float>(c >> 2));
@@ -139,11 +118,11 @@ Noise::Noise(std::uint64_t seed, std::string_view stream) {
 
 float Noise::gradient(float x, float y, float z) const {
   const Tables& table = tables();
-  return gradient_noise(shift(turn({x, y, z}, table), shift_), key_[0], table);
+  return gradient_noise(shift(turned({x, y, z}, table.turn), shift_), key_[0], table);
 }
 
 float Noise::value(float x, float y, float z) const {
-  const Cell cell = locate(shift(turn({x, y, z}, tables()), shift_));
+  const Cell cell = locate(shift(turned({x, y, z}, tables().turn), shift_));
   const auto hash = hash_corners(cell.node, key_[1]);
   std::array<float, 8> corner_value{};
   for (int c = 0; c < 8; ++c) {
@@ -158,9 +137,9 @@ float Noise::fbm(const std::array<double, 3>& position, double frequency, int oc
   Position p{position[0] * frequency, position[1] * frequency, position[2] * frequency};
   double sum = 0.0, amplitude = 1.0, total = 0.0;
   for (int octave = 0; octave < octaves; ++octave) {
-    p = turn(p, table);
-    const std::uint32_t key = key_[2] + static_cast<std::uint32_t>(octave) * 0x9e3779b9U;
-    sum += amplitude * gradient_noise(shift(p, shift_), key, table);
+    p = turned(p, table.turn);
+    sum +=
+        amplitude * gradient_noise(shift(p, shift_), lattice::octave_key(key_[2], octave), table);
     total += amplitude;
     amplitude *= gain;
     for (double& coordinate : p) coordinate *= 2.0;

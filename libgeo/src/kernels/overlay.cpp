@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "geo/core/error.hpp"
 
@@ -21,7 +22,35 @@ int wrapped(int index, int count) {
   return rest < 0 ? rest + count : rest;
 }
 
+int even(double count) { return 2 * static_cast<int>(std::lround(0.5 * count)); }
+
 }  // namespace
+
+Grid coarser_grid(const Grid& fine, double spacing_m) {
+  const double middle_dx_m = fine.spacing_east_m(fine.ny() / 2), dy_m = fine.face_east_m(0);
+  const auto fewer = [&](int cells, double size_m) {
+    return std::clamp(static_cast<int>(std::lround(cells * size_m / spacing_m)), 4, cells);
+  };
+  const int nx = fewer(fine.nx(), middle_dx_m);
+  const int ny = std::min(fine.ny(), std::max(3, fewer(fine.ny(), dy_m)));
+  switch (fine.topology()) {
+    case Topology::sphere: {
+      const int rows = std::max(
+          3,
+          std::min(fine.ny(), static_cast<int>(std::lround(180.0 * std::numbers::pi / 180.0 *
+                                                           fine.figure().radius_m / spacing_m))));
+      return Grid::sphere(std::min(even(2.0 * rows), fine.nx()), rows, fine.figure(), fine.turn());
+    }
+    case Topology::torus:
+      return Grid::torus(nx, ny, middle_dx_m * fine.nx() / nx, dy_m * fine.ny() / ny);
+    case Topology::plane:
+      break;
+  }
+  if (fine.is_latitude_longitude()) {
+    return Grid::window(nx, ny, fine.window(), fine.figure(), fine.edges());
+  }
+  return Grid::plane(nx, ny, middle_dx_m * fine.nx() / nx, dy_m * fine.ny() / ny, fine.edges());
+}
 
 Overlay::Overlay(const Grid& fine, const Grid& coarse)
     : fine_(fine),
@@ -43,43 +72,66 @@ Overlay::Overlay(const Grid& fine, const Grid& coarse_sphere, std::span<const do
   }
 }
 
-void Overlay::average_relief(std::span<const float> elevation, std::span<float> land_fraction,
-                             std::span<float> height_m, std::span<float> coverage) const {
-  const int coarse_nx = coarse_.nx(), coarse_ny = coarse_.ny();
-  const int fine_nx = fine_.nx(), fine_ny = fine_.ny();
+template <class Visit>
+void Overlay::for_overlaps(int coarse_row, Visit&& visit) const {
+  const int coarse_nx = coarse_.nx();
   const bool wraps = coarse_.topology() != Topology::plane;
+  const auto after = std::upper_bound(row_edge_.begin(), row_edge_.end(), double(coarse_row));
+  int j = std::max(0, static_cast<int>(after - row_edge_.begin()) - 1);
+  for (; j < fine_.ny() && row_edge_[j] < coarse_row + 1.0; ++j) {
+    const double share =
+        std::min(row_edge_[j + 1], coarse_row + 1.0) - std::max(row_edge_[j], double(coarse_row));
+    if (share <= 0.0) continue;
+    for (int i = 0; i < fine_.nx(); ++i) {
+      const double from = column_edge_[i], to = column_edge_[i + 1];
+      for (int column = static_cast<int>(std::floor(from)); column < to; ++column) {
+        if (!wraps && column >= coarse_nx) break;
+        const double overlap =
+            share * (std::min(to, column + 1.0) - std::max(from, double(column)));
+        visit(wraps ? wrapped(column, coarse_nx) : column, i, j, overlap);
+      }
+    }
+  }
+}
+
+void Overlay::average(std::span<const float> values, std::span<float> mean) const {
 #pragma omp parallel
   {
-    std::vector<double> land(coarse_nx), height(coarse_nx), weight(coarse_nx);
+    std::vector<double> sum(coarse_.nx()), weight(coarse_.nx());
 #pragma omp for schedule(static)
-    for (int row = 0; row < coarse_ny; ++row) {
+    for (int row = 0; row < coarse_.ny(); ++row) {
+      std::fill(sum.begin(), sum.end(), 0.0);
+      std::fill(weight.begin(), weight.end(), 0.0);
+      for_overlaps(row, [&](int at, int i, int j, double overlap) {
+        const double area = overlap * fine_.area_m2(j);
+        weight[at] += area;
+        sum[at] += area * values[fine_.cell(i, j)];
+      });
+      for (int column = 0; column < coarse_.nx(); ++column) {
+        mean[coarse_.cell(column, row)] =
+            weight[column] > 0.0 ? static_cast<float>(sum[column] / weight[column]) : 0.0F;
+      }
+    }
+  }
+}
+
+void Overlay::average_relief(std::span<const float> elevation, std::span<float> land_fraction,
+                             std::span<float> height_m, std::span<float> coverage) const {
+#pragma omp parallel
+  {
+    std::vector<double> land(coarse_.nx()), height(coarse_.nx()), weight(coarse_.nx());
+#pragma omp for schedule(static)
+    for (int row = 0; row < coarse_.ny(); ++row) {
       std::fill(land.begin(), land.end(), 0.0);
       std::fill(height.begin(), height.end(), 0.0);
       std::fill(weight.begin(), weight.end(), 0.0);
-      const auto after = std::upper_bound(row_edge_.begin(), row_edge_.end(), double(row));
-      int j = std::max(0, static_cast<int>(after - row_edge_.begin()) - 1);
-      for (; j < fine_ny && row_edge_[j] < row + 1.0; ++j) {
-        const double share =
-            std::min(row_edge_[j + 1], row + 1.0) - std::max(row_edge_[j], double(row));
-        if (share <= 0.0) continue;
-        const std::size_t begin = static_cast<std::size_t>(j) * fine_nx;
-        for (int i = 0; i < fine_nx; ++i) {
-          const float h = elevation[begin + i];
-          const double is_land = h >= 0.0F ? 1.0 : 0.0;
-          const double above = h > 0.0F ? h : 0.0;
-          const double from = column_edge_[i], to = column_edge_[i + 1];
-          for (int column = static_cast<int>(std::floor(from)); column < to; ++column) {
-            const double overlap =
-                share * (std::min(to, column + 1.0) - std::max(from, double(column)));
-            if (!wraps && column >= coarse_nx) break;
-            const int at = wraps ? wrapped(column, coarse_nx) : column;
-            weight[at] += overlap;
-            land[at] += overlap * is_land;
-            height[at] += overlap * above;
-          }
-        }
-      }
-      for (int column = 0; column < coarse_nx; ++column) {
+      for_overlaps(row, [&](int at, int i, int j, double overlap) {
+        const float h = elevation[fine_.cell(i, j)];
+        weight[at] += overlap;
+        land[at] += overlap * (h >= 0.0F ? 1.0 : 0.0);
+        height[at] += overlap * (h > 0.0F ? h : 0.0);
+      });
+      for (int column = 0; column < coarse_.nx(); ++column) {
         const Index cell = coarse_.cell(column, row);
         const double w = weight[column];
         coverage[cell] = static_cast<float>(std::min(1.0, w));

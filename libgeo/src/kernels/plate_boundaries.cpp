@@ -179,6 +179,7 @@ NearestCells nearest_cells(const CubedSphere& mesh, std::span<const std::int32_t
   using Entry = std::tuple<float, std::int32_t, std::int32_t>;  // angle, source, cell
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
   const auto offer = [&](std::int32_t source, std::int32_t cell) {
+    if (nearest.source[cell] == source) return;
     const auto angle =
         static_cast<float>(angle_between(mesh.position(sources[source]), mesh.position(cell)));
     if (angle >= nearest.angle[cell] || angle > reach_rad) return;

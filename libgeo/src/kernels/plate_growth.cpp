@@ -60,6 +60,8 @@ struct Terrain {
 Terrain terrain_of(const PlateGrowth& model, const CubedSphere& mesh, std::uint64_t seed) {
   const Noise structure(seed, "plates.structure"), phase(seed, "plates.roughness");
   const double frequency = model.radius_km / model.structure_km;
+  const auto weakness = fbm_at(structure, mesh.positions(), frequency, 4, 0.6);
+  const auto phases = fbm_at(phase, mesh.positions(), 3.0 * frequency, 2);
   Terrain terrain;
   for (auto* values : {&terrain.structure, &terrain.leaving, &terrain.entering}) {
     values->resize(mesh.size());
@@ -67,10 +69,10 @@ Terrain terrain_of(const PlateGrowth& model, const CubedSphere& mesh, std::uint6
 #pragma omp parallel for schedule(static)
   for (std::int32_t cell = 0; cell < mesh.size(); ++cell) {
     const Vector3& p = mesh.position(cell);
-    const double weak = 1.8 * structure.fbm(p, frequency, 4, 0.6);
+    const double weak = 1.8 * weakness[cell];
     terrain.structure[cell] = static_cast<float>(
         std::clamp(0.62 + 0.98 * weak + 0.36 - model.roughness * 0.17, 0.45, 1.9));
-    const double xi = 4.0 * kPi * phase.fbm(p, 3.0 * frequency, 2);
+    const double xi = 4.0 * kPi * phases[cell];
     const double polar = 1.0 + model.polar_resistance *
                                    std::abs(std::asin(std::clamp(p[2], -1.0, 1.0))) / (0.5 * kPi);
     terrain.leaving[cell] = static_cast<float>(0.22 * model.roughness * std::sin(xi));

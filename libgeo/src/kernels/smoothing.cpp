@@ -6,6 +6,7 @@
 
 #include "geo/core/error.hpp"
 #include "geo/kernels/diffusion.hpp"
+#include "geo/kernels/overlay.hpp"
 
 namespace geo {
 
@@ -21,6 +22,31 @@ void smooth(const Grid& grid, std::span<float> field, double length_m,
   for (std::size_t c = 0; c < mask.size(); ++c) excluded[c] = mask[c] == 0;
   options.excluded = excluded;
   diffuse(grid, field, 0.5 * length_m * length_m, 1.0, options);
+}
+
+void smooth_broadly(const Grid& grid, std::span<float> field, double length_m) {
+  constexpr double kCellsPerLength = 5.0, kWorthwhile = 2.0;
+  const double spacing_m = length_m / kCellsPerLength;
+  if (spacing_m < kWorthwhile * grid.face_east_m(grid.ny() / 2)) {
+    return smooth(grid, field, length_m);
+  }
+  const Grid coarse = coarser_grid(grid, spacing_m);
+  const Overlay overlay(grid, coarse);
+  std::vector<float> mean(coarse.size());
+  overlay.average(field, mean);
+  // A box of one cell, and a spline of four.
+  const double cell_m = coarse.face_east_m(coarse.ny() / 2);
+  const double added_m2 = (1.0 + 4.0) / 12.0 * cell_m * cell_m;
+  smooth(coarse, mean, std::sqrt(length_m * length_m - added_m2));
+  const Interpolator smoothed(overlay, mean);
+#pragma omp parallel
+  {
+    std::vector<float> scratch(smoothed.scratch_size());
+#pragma omp for schedule(static)
+    for (int j = 0; j < grid.ny(); ++j) {
+      smoothed.row(j, field.subspan(grid.cell(0, j), grid.nx()), scratch);
+    }
+  }
 }
 
 }  // namespace geo

@@ -50,8 +50,10 @@ class TridiagonalBlock {
   }
 
   /// x holds d before and the solution afterwards.
-  void solve(double* x) const {
-    solve_open(x);
+  void solve(double* x) const { solve(x, x); }
+  /// The same from `d`, which stays as it is, into `x`.
+  void solve(const double* d, double* x) const {
+    solve_open(d, x);
     if (!periodic_) return;
     double share[kLanes];
     const double* last = x + std::size_t(n_ - 1) * kLanes;
@@ -74,21 +76,22 @@ class TridiagonalBlock {
       last[k] = -corner_upper[k];
       corner_[k] = corner_lower[k] / first[k];
     }
-    solve_open(ring_.data());
+    solve_open(ring_.data(), ring_.data());
     for (int k = 0; k < kLanes; ++k) {
       ring_weight_[k] = 1.0 / (1.0 + ring_[k] + corner_[k] * last[k]);
     }
   }
 
-  void solve_open(double* x) const {
-    for (int k = 0; k < kLanes; ++k) x[k] *= inverse_[k];
+  void solve_open(const double* d, double* x) const {
+    for (int k = 0; k < kLanes; ++k) x[k] = d[k] * inverse_[k];
     for (int i = 1; i < n_; ++i) {
       const std::size_t at = std::size_t(i) * kLanes;
       const double* low = &lower_[at];
       const double* inverse = &inverse_[at];
+      const double* right = d + at;
       double* here = x + at;
       for (int k = 0; k < kLanes; ++k) {
-        here[k] = (here[k] + low[k] * here[k - kLanes]) * inverse[k];
+        here[k] = (right[k] + low[k] * here[k - kLanes]) * inverse[k];
       }
     }
     for (int i = n_ - 2; i >= 0; --i) {

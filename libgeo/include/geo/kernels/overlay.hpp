@@ -8,6 +8,10 @@
 
 namespace geo {
 
+/// A grid over the same area as `fine`, of the same topology, with cells of about `spacing_m`,
+/// never finer than `fine`.
+Grid coarser_grid(const Grid& fine, double spacing_m);
+
 /// A coarse raster laid over a fine one: averages relief onto it and interpolates fields back, so
 /// that smooth physics costs nothing per fine cell and does not depend on the fine resolution.
 ///
@@ -26,6 +30,8 @@ class Overlay {
   [[nodiscard]] const Grid& fine() const noexcept { return fine_; }
   [[nodiscard]] const Grid& coarse() const noexcept { return coarse_; }
 
+  /// Area-weighted mean of the fine values that each coarse cell holds; 0 where the fine grid covers nothing.
+  void average(std::span<const float> values, std::span<float> mean) const;
   /// Area-weighted means of the land fraction (elevation >= 0) and of the elevation above sea
   /// level, and the share of each coarse cell that the fine grid covers (0..1).
   void average_relief(std::span<const float> elevation, std::span<float> land_fraction,
@@ -33,6 +39,11 @@ class Overlay {
 
  private:
   friend class Interpolator;
+  /// Calls visit(coarse column, fine column, fine row, share of the coarse cell) for all fine cells
+  /// under a coarse row.
+  template <class Visit>
+  void for_overlaps(int coarse_row, Visit&& visit) const;
+
   const Grid& fine_;
   const Grid& coarse_;
   std::vector<double> column_edge_, row_edge_;  ///< in coarse cells from the coarse corner

@@ -20,4 +20,11 @@ namespace geo {
 void smooth(const Grid& grid, std::span<float> field, double length_m,
             std::span<const std::uint8_t> mask = {});
 
+/// The same blur where the bell is many cells wide, at a cost that hardly depends on the cells:
+/// worked out on cells of a fifth of the length, with the spread that averaging onto them and
+/// cubic splines back add taken off, so that its variance is the same. Values stay within the
+/// range of the field and within 2 % of the peak of the Gaussian answer; mass is kept within 0.3 %,
+/// at the poles too.
+void smooth_broadly(const Grid& grid, std::span<float> field, double length_m);
+
 }  // namespace geo
