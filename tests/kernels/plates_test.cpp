@@ -1,6 +1,7 @@
 // The pieces that plates are made of, against exact values.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <set>
@@ -53,6 +54,29 @@ TEST(CubedSphereMesh, NeighboursAreNearAndMutual) {
     for (const int k : {0, 2, 4, 6}) {
       const auto& back = mesh.neighbours(mesh.neighbours(cell)[k]);
       ASSERT_NE(std::find(back.begin(), back.end(), cell), back.end());
+    }
+  }
+}
+
+TEST(CubedSphereMesh, SidesCloseRoundEachCellAndAreSharedWithTheNext) {
+  for (const int n : {1, 2, 7, 40}) {
+    const CubedSphere mesh(n);
+    for (std::int32_t cell = 0; cell < mesh.size(); ++cell) {
+      const auto sides = mesh.sides(cell);
+      const auto& around = mesh.neighbours(cell);
+      for (int k = 0; k < CubedSphere::kSides; ++k) {
+        ASSERT_EQ(sides[k].to, sides[(k + 1) % CubedSphere::kSides].from);
+        // The cell lies to the left.
+        ASSERT_GT(dot(cross(sides[k].from, sides[k].to), mesh.position(cell)), 0.0);
+        ASSERT_NE(std::find(around.begin(), around.end(), sides[k].beyond), around.end());
+        double mismatch = 9.0;
+        for (const auto& back : mesh.sides(sides[k].beyond)) {
+          if (back.beyond != cell) continue;
+          mismatch = std::min(mismatch, length(add(back.from, sides[k].to, -1.0)) +
+                                            length(add(back.to, sides[k].from, -1.0)));
+        }
+        ASSERT_LT(mismatch, 1e-14);
+      }
     }
   }
 }
@@ -167,6 +191,44 @@ TEST(PlateBoundaries, TwoHemispheresPartOnOneSideAndCloseOnTheOther) {
     EXPECT_NEAR(point.motion.closing + point.motion.opening, rate, 0.05 * rate);
     EXPECT_GT(std::abs(point.towards[1]), 0.9);
     EXPECT_LE(point.strength, 1.0);
+  }
+}
+
+TEST(CrustBudget, OfTwoHemispheresIsTheirGreatCirclesHoweverItLies) {
+  // Half a great circle opens, half closes: the flux through each half is 2 R² of the rotation in
+  // its plane. A rotation across the plane slides along it and makes nothing. The steps of the mesh
+  // put the ends of the halves a cell off at most, on either side.
+  for (std::uint64_t k = 0; k < 10; ++k) {
+    const RandomStream random(7, "hemispheres");
+    const Vector3 normal = random.direction(2 * k);
+    const Vector3 turn = scaled(random.direction(2 * k + 1), 0.008);
+    Hemispheres two;
+    for (std::int32_t cell = 0; cell < two.mesh.size(); ++cell) {
+      two.plate[cell] = dot(two.mesh.position(cell), normal) > 0.0 ? 0 : 1;
+    }
+    two.rotation = {turn, {0, 0, 0}};
+    const auto points = find_boundaries(two.mesh, two.plate, two.rotation, 2.0, 430.0, kRadius_km);
+    const auto crust = crust_budget(two.mesh, two.plate, points, two.rotation, kRadius_km);
+    const double km2_yr = 1e-6 * kRadius_km * kRadius_km;
+    const double expected = 2.0 * km2_yr * length(tangent(turn, normal));
+    const double ends = 2.0 * km2_yr * length(turn) * two.mesh.spacing();
+    EXPECT_NEAR(crust.created, crust.consumed, 1e-12) << "pair " << k;
+    EXPECT_NEAR(crust.created, expected, ends) << "pair " << k;
+  }
+}
+
+TEST(CrustBudget, OfGrownPlatesClosesToRoundOff) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const CubedSphere mesh(48);
+    const PlateGrowth model;
+    const auto plates = draw_plates(model, seed);
+    const auto plate = grow_plates(model, mesh, plates, seed);
+    std::vector<Vector3> rotation;
+    for (const Plate& one : plates) rotation.push_back(one.rotation_rad_myr);
+    const auto points = find_boundaries(mesh, plate, rotation, 5.0, 430.0, kRadius_km);
+    const auto crust = crust_budget(mesh, plate, points, rotation, kRadius_km);
+    EXPECT_GT(crust.created, 1.0) << "seed " << seed;
+    EXPECT_NEAR(crust.created, crust.consumed, 1e-12 * crust.created) << "seed " << seed;
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include "geo/core/error.hpp"
 #include "geo/core/projection.hpp"
+#include "geo/core/vector3.hpp"
 
 namespace geo {
 namespace {
@@ -43,13 +44,20 @@ Grid::Grid(Topology topology, Edges edges, int nx, int ny, Ellipsoid figure)
   distance_m_.resize(ny);
 }
 
-Grid Grid::sphere(int nx, int ny, Ellipsoid figure) {
+Grid Grid::sphere(int nx, int ny, Ellipsoid figure, std::array<double, 3> turn) {
   if (nx % 2 != 0) {
     throw ConfigurationError("grid width " + std::to_string(nx) +
                              " must be even on a sphere: a pole crossing lands half-way round");
   }
   Grid grid(Topology::sphere, Edges::closed, nx, ny, figure);
   grid.set_latitude_longitude({-90.0, 90.0, -180.0, 180.0});
+  grid.turn_ = turn;
+  grid.is_turned_ = length(turn) > 0.0;
+  for (int k = 0; k < 3; ++k) {
+    Vector3 axis{};
+    axis[k] = 1.0;
+    grid.turned_axes_[k] = rotated(axis, turn);
+  }
   return grid;
 }
 
@@ -251,7 +259,10 @@ std::array<double, 3> Grid::unit_vector(int column, int row) const noexcept {
     return {ring * std::cos(longitude), ring * std::sin(longitude), std::sin(latitude)};
   }
   if (is_geographic()) {
-    return {cos_lat_[row] * cos_lon_[column], cos_lat_[row] * sin_lon_[column], sin_lat_[row]};
+    const Vector3 r{cos_lat_[row] * cos_lon_[column], cos_lat_[row] * sin_lon_[column],
+                    sin_lat_[row]};
+    if (!is_turned_) return r;
+    return add(add(scaled(turned_axes_[0], r[0]), turned_axes_[1], r[1]), turned_axes_[2], r[2]);
   }
   if (topology_ == Topology::torus) {
     // A ring torus: seamless, with the larger circle along the rows.
@@ -264,6 +275,11 @@ std::array<double, 3> Grid::unit_vector(int column, int row) const noexcept {
             minor * std::sin(v) / figure_.radius_m};
   }
   return {x_m(column) / figure_.radius_m, y_m(row) / figure_.radius_m, 0.0};
+}
+
+std::array<double, 3> Grid::to_axis(const std::array<double, 3>& vector) const noexcept {
+  if (!is_turned_) return vector;
+  return {dot(turned_axes_[0], vector), dot(turned_axes_[1], vector), dot(turned_axes_[2], vector)};
 }
 
 }  // namespace geo

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace geo {
 namespace {
@@ -21,8 +22,6 @@ double corner_solid_angle(double x, double y) {
 
 CubedSphere::CubedSphere(int cells_per_edge)
     : n_(cells_per_edge), spacing_(std::sqrt(4.0 * kPi / size())) {
-  const double step = 0.5 * kPi / n_;
-  const auto angle = [&](double index) { return -0.25 * kPi + step * index; };
   position_.resize(size());
   neighbours_.resize(size());
   area_sr_.resize(static_cast<std::size_t>(n_) * n_);
@@ -53,6 +52,25 @@ CubedSphere::CubedSphere(int cells_per_edge)
           locate(on_face(face, angle(i + kAlong[k] + 0.5), angle(j + kAcross[k] + 0.5)));
     }
   }
+}
+
+double CubedSphere::angle(double index) const { return -0.25 * kPi + 0.5 * kPi / n_ * index; }
+
+std::array<CubedSphere::Side, CubedSphere::kSides> CubedSphere::sides(std::int32_t cell) const {
+  const int face = cell / (n_ * n_), j = cell / n_ % n_, i = cell % n_;
+  constexpr std::array<int, kSides> kAlong{0, 1, 1, 0}, kAcross{0, 0, 1, 1};
+  constexpr std::array<double, kSides> kOutX{0.5, 1.01, 0.5, -0.01}, kOutY{-0.01, 0.5, 1.01, 0.5};
+  const bool mirrored = face % 2 == 1;  // seen from outside, the far faces run the other way
+  std::array<Side, kSides> all;
+  for (int k = 0; k < kSides; ++k) {
+    const int next = (k + 1) % kSides;
+    Side& side = all[mirrored ? kSides - 1 - k : k];
+    side.beyond = locate(on_face(face, angle(i + kOutX[k]), angle(j + kOutY[k])));
+    side.from = on_face(face, angle(i + kAlong[k]), angle(j + kAcross[k]));
+    side.to = on_face(face, angle(i + kAlong[next]), angle(j + kAcross[next]));
+    if (mirrored) std::swap(side.from, side.to);
+  }
+  return all;
 }
 
 Vector3 CubedSphere::on_face(int face, double u, double v) const {

@@ -39,7 +39,7 @@ Grid coarser_grid(const Grid& fine, double spacing_m) {
           3,
           std::min(fine.ny(), static_cast<int>(std::lround(180.0 * std::numbers::pi / 180.0 *
                                                            fine.figure().radius_m / spacing_m))));
-      return Grid::sphere(std::min(even(2.0 * rows), fine.nx()), rows, fine.figure());
+      return Grid::sphere(std::min(even(2.0 * rows), fine.nx()), rows, fine.figure(), fine.turn());
     }
     case Topology::torus:
       return Grid::torus(nx, ny, middle_dx_m * fine.nx() / nx, dy_m * fine.ny() / ny);

@@ -146,6 +146,31 @@ std::vector<BoundaryPoint> find_boundaries(const CubedSphere& mesh,
   return points;
 }
 
+CrustBudget crust_budget(const CubedSphere& mesh, std::span<const std::int16_t> plate,
+                         std::span<const BoundaryPoint> boundaries,
+                         std::span<const Vector3> rotation_rad_myr, double radius_km) {
+  std::vector<double> away(mesh.size(), 0.0);
+  for (const BoundaryPoint& point : boundaries) {
+    away[point.cell] = point.motion.opening - point.motion.closing;
+  }
+  CrustBudget budget{0.0, 0.0};
+  const double km2_yr = 1e-6 * radius_km * radius_km;
+  for (const BoundaryPoint& point : boundaries) {
+    for (const auto& side : mesh.sides(point.cell)) {
+      const std::int16_t other = plate[side.beyond];
+      if (other <= point.plate) continue;  // each side once
+      const Vector3 relative = add(rotation_rad_myr[other], rotation_rad_myr[point.plate], -1.0);
+      const double flux = km2_yr * dot(relative, add(side.to, side.from, -1.0));
+      if (away[point.cell] + away[side.beyond] > 0.0) {
+        budget.created += flux;
+      } else {
+        budget.consumed -= flux;
+      }
+    }
+  }
+  return budget;
+}
+
 NearestCells nearest_cells(const CubedSphere& mesh, std::span<const std::int32_t> sources,
                            double reach_rad) {
   NearestCells nearest;

@@ -35,7 +35,9 @@ struct Patch {
 class Patches {
  public:
   Patches(const Grid& grid, const PlateFields& fields)
-      : grid_(grid.nx() <= kColumns ? grid : Grid::sphere(kColumns, kColumns / 2, grid.figure())),
+      : grid_(grid.nx() <= kColumns
+                  ? grid
+                  : Grid::sphere(kColumns, kColumns / 2, grid.figure(), grid.turn())),
         patches_(grid_.size()) {
     const int nx = grid.nx(), ny = grid.ny();
     std::vector<std::int32_t> cells(patches_.size(), 0);
@@ -223,7 +225,7 @@ double speed_without_net_rotation(const Grid& grid, std::span<const float> veloc
   const int nx = grid.nx(), ny = grid.ny();
   // Local east and north at a cell.
   const auto axes = [&](int i, int j) {
-    const auto r = grid.unit_vector(i, j);
+    const auto r = grid.to_axis(grid.unit_vector(i, j));
     const double across = std::max(std::hypot(r[0], r[1]), 1e-300);
     const std::array east{-r[1] / across, r[0] / across, 0.0};
     const std::array north{-r[2] * east[1], r[2] * east[0], across};

@@ -36,7 +36,7 @@ void over_cell(const Grid& grid, int i, int j, double finest_m, Visit&& visit) {
   const double east_m = grid.spacing_east_m(j), north_m = grid.area_m2(j) / east_m;
   const int side = std::clamp(static_cast<int>(std::ceil(std::max(east_m, north_m) / finest_m)), 1,
                               kMostToASide);
-  const Vector3 centre = grid.unit_vector(i, j);
+  const Vector3 centre = grid.to_axis(grid.unit_vector(i, j));
   if (side == 1) return visit(centre, 1.0);
   const double weight = 1.0 / (side * side);
   if (grid.is_latitude_longitude()) {
@@ -165,7 +165,7 @@ double ReliefEvents::mean_within_m(std::span<const float> elevation_m, const Cen
   float at_nearest = 0.0F;
   for (int j = 0; j < grid_.ny(); ++j) {
     for (int i = 0; i < grid_.nx(); ++i) {
-      const double angle = angle_between(grid_.unit_vector(i, j), middle);
+      const double angle = angle_between(grid_.to_axis(grid_.unit_vector(i, j)), middle);
       const float height = elevation_m[grid_.cell(i, j)];
       if (angle < nearest) nearest = angle, at_nearest = height;
       if (angle * planet_m > radius_m) continue;
@@ -195,7 +195,8 @@ void ReliefEvents::apply(const Impact& impact, const std::string& label, EventRe
   for (int j = 0; j < grid_.ny(); ++j) {
     const double cell_m = longest_side_m(grid_, j);
     for (int i = 0; i < grid_.nx(); ++i) {
-      const double from_middle_m = planet_m * angle_between(grid_.unit_vector(i, j), middle);
+      const double from_middle_m =
+          planet_m * angle_between(grid_.to_axis(grid_.unit_vector(i, j)), middle);
       if (from_middle_m > reach_m + cell_m) continue;
       const bool near = from_middle_m < 1.5 * radius_m + cell_m;
       double change = 0.0, erased = 0.0;
@@ -256,7 +257,8 @@ void ReliefEvents::apply(const Rift& rift, const std::string& /*label*/, EventRe
   for (int j = 0; j < grid_.ny(); ++j) {
     const double cell_m = longest_side_m(grid_, j);
     for (int i = 0; i < grid_.nx(); ++i) {
-      const auto nearest = line.nearest(grid_.unit_vector(i, j), reach + cell_m / planet_m);
+      const auto nearest =
+          line.nearest(grid_.to_axis(grid_.unit_vector(i, j)), reach + cell_m / planet_m);
       if (nearest.distance > reach + cell_m / planet_m) continue;
       double change = 0.0;
       over_cell(grid_, i, j, 0.2 * section.half_width_m,

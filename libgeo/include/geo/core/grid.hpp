@@ -64,7 +64,9 @@ class Grid {
  public:
   /// The whole planet, latitudes ascending from -90, longitudes from -180. `nx` must be even, so
   /// that half-way round is a column. Throws ConfigurationError on sizes it cannot represent.
-  static Grid sphere(int nx, int ny, Ellipsoid figure = {});
+  /// `turn` (an axis times an angle, radians) turns the frame of noise and meshes under the grid:
+  /// the same planet with another place at its poles.
+  static Grid sphere(int nx, int ny, Ellipsoid figure = {}, std::array<double, 3> turn = {});
   /// A latitude-longitude window of a planet: plane topology, the metric of the ellipsoid.
   static Grid window(int nx, int ny, Window window, Ellipsoid figure = {},
                      Edges edges = Edges::open);
@@ -160,8 +162,12 @@ class Grid {
 
   /// Position for coherent noise: on the unit sphere where cells are geographic (geodetic
   /// latitude), in units of the planet's radius on a plane, on a ring torus (seamless, not
-  /// isometric) where both edges wrap.
+  /// isometric) where both edges wrap. On a sphere with a turn it is turned by it.
   [[nodiscard]] std::array<double, 3> unit_vector(int column, int row) const noexcept;
+  /// A vector of the frame of unit_vector in that of the axis: z to the north pole, x to longitude
+  /// 0. The same vector on a grid without a turn.
+  [[nodiscard]] std::array<double, 3> to_axis(const std::array<double, 3>& vector) const noexcept;
+  [[nodiscard]] const std::array<double, 3>& turn() const noexcept { return turn_; }
 
  private:
   Grid(Topology topology, Edges edges, int nx, int ny, Ellipsoid figure);
@@ -176,6 +182,9 @@ class Grid {
   Window window_{};
   std::optional<Centre> centre_;
   bool latitude_longitude_ = false;
+  std::array<double, 3> turn_{};
+  std::array<std::array<double, 3>, 3> turned_axes_{};  // x, y, z of the axis' frame, turned
+  bool is_turned_ = false;
   double step_north_m_ = 0.0;
   double total_area_m2_ = 0.0;
   std::vector<double> area_m2_, spacing_east_m_, face_east_m_, face_north_m_;

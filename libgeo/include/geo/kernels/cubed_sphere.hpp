@@ -33,11 +33,22 @@ class CubedSphere {
   [[nodiscard]] const std::array<std::int32_t, kNeighbours>& neighbours(std::int32_t cell) const {
     return neighbours_[cell];
   }
+  /// A side of a cell: an arc of a great circle, with the cell to the left of its way.
+  struct Side {
+    std::int32_t beyond;  ///< the cell on its right
+    Vector3 from, to;     ///< the corners it runs between, unit vectors
+  };
+  static constexpr int kSides = 4;
+  /// The sides of a cell, counter-clockwise seen from outside. They close, and the cell beyond a
+  /// side has the same one, run the other way (up to round-off along the edges of the cube).
+  [[nodiscard]] std::array<Side, kSides> sides(std::int32_t cell) const;
   /// Mean distance between centres of adjacent cells, radians.
   [[nodiscard]] double spacing() const noexcept { return spacing_; }
 
  private:
   [[nodiscard]] Vector3 on_face(int face, double u, double v) const;
+  /// Angle from the middle of a face to `index` cells from its edge.
+  [[nodiscard]] double angle(double index) const;
 
   int n_;
   double spacing_;

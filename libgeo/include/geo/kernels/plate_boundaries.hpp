@@ -43,6 +43,19 @@ std::vector<BoundaryPoint> find_boundaries(const CubedSphere& mesh,
                                            double plate_speed_cm_yr, double smoothing_km,
                                            double radius_km);
 
+/// Crust that opening boundaries make and closing ones consume, km2/yr.
+struct CrustBudget {
+  double created, consumed;
+};
+/// Fluxes of the relative motion through the sides of cells between plates. The flux of a rotation
+/// Ω through an arc of a great circle from a to b is exactly R² Ω . (b - a), so that the steps of a
+/// staircase add up to what the smooth line has, whatever its direction; and what plates that fill
+/// the sphere make in one place they consume in another: both sums agree to round-off. A side
+/// counts as created where the boundary, taken over its smoothing, opens, else as consumed.
+[[nodiscard]] CrustBudget crust_budget(const CubedSphere& mesh, std::span<const std::int16_t> plate,
+                                       std::span<const BoundaryPoint> boundaries,
+                                       std::span<const Vector3> rotation_rad_myr, double radius_km);
+
 /// The nearest of some cells of a mesh to every cell, by great circle.
 struct NearestCells {
   std::vector<std::int32_t> source;  ///< position in `sources`; -1 beyond the reach

@@ -6,7 +6,9 @@ namespace geo {
 
 CoarseGrid::CoarseGrid(const Grid& fine)
     : fine_(fine),
-      grid_(fine.nx() <= kColumns ? fine : Grid::sphere(kColumns, kColumns / 2, fine.figure())) {}
+      grid_(fine.nx() <= kColumns
+                ? fine
+                : Grid::sphere(kColumns, kColumns / 2, fine.figure(), fine.turn())) {}
 
 std::pair<int, int> CoarseGrid::first(int column, int row, double within) const {
   return {std::min(fine_.nx(), static_cast<int>((column + within) * fine_.nx() / grid_.nx())),

@@ -71,8 +71,9 @@ class PlatesOnGrid {
           const std::int16_t own =
               near ? grown_.plate_at(stencil) : grown_.plate()[stencil.cell[0]];
           plate[cell] = own;
-          const auto velocity =
-              east_north(velocity_mm_yr(grown_.plates()[own].rotation_rad_myr, at, radius_km_), at);
+          const Vector3 motion =
+              velocity_mm_yr(grown_.plates()[own].rotation_rad_myr, at, radius_km_);
+          const auto velocity = east_north(grid_.to_axis(motion), grid_.to_axis(at));
           east[cell] = static_cast<float>(velocity.east);
           north[cell] = static_cast<float>(velocity.north);
           age_[cell] = static_cast<float>(grown_.age_myr(stencil, own));
@@ -224,7 +225,8 @@ class PlatesOnGrid {
     std::array<std::vector<float>, 3> along_;
   };
 
-  [[nodiscard]] double fraction_at(const Vector3& at) const {
+  [[nodiscard]] double fraction_at(const Vector3& place) const {
+    const Vector3 at = grid_.to_axis(place);
     const double x = (std::atan2(at[1], at[0]) / (2.0 * kPi) + 0.5) * grid_.nx();
     const double y = (std::asin(std::clamp(at[2], -1.0, 1.0)) / kPi + 0.5) * grid_.ny();
     return fraction_[grid_.cell(std::clamp(static_cast<int>(x), 0, grid_.nx() - 1),
@@ -264,17 +266,14 @@ void report(const GrownPlates& grown, double radius_km, Budget& budget) {
   const double r2 = radius_km * radius_km;
   double area = 0.0;
   for (std::int32_t cell = 0; cell < mesh.size(); ++cell) area += mesh.area_sr(cell) * r2;
-  // A boundary has cells on both sides: each stands for half of its length.
-  double made = 0.0, consumed = 0.0;
-  const double half_km = 0.5 * mesh.spacing() * radius_km;
-  for (const BoundaryPoint& point : grown.boundaries()) {
-    made += 1e-6 * half_km * point.motion.opening;
-    consumed += 1e-6 * half_km * point.motion.closing;
-  }
+  const CrustBudget crust =
+      crust_budget(mesh, grown.plate(), grown.boundaries(), grown.rotations(), radius_km);
   budget["plates_area_km2"] = area;
   budget["plates_area_error"] = area / (4.0 * kPi * r2) - 1.0;
-  budget["crust_created_km2_yr"] = made;
-  budget["crust_consumed_km2_yr"] = consumed;
+  budget["crust_created_km2_yr"] = crust.created;
+  budget["crust_consumed_km2_yr"] = crust.consumed;
+  budget["crust_closing_error"] =
+      (crust.created - crust.consumed) / std::max(crust.created + crust.consumed, 1e-30);
 }
 
 }  // namespace

@@ -15,7 +15,9 @@ namespace geo {
 class SmoothFields {
  public:
   SmoothFields(const GrownPlates& grown, const Grid& grid)
-      : coarse_(grid.nx() <= kColumns ? grid : Grid::sphere(kColumns, kColumns / 2, grid.figure())),
+      : coarse_(grid.nx() <= kColumns
+                    ? grid
+                    : Grid::sphere(kColumns, kColumns / 2, grid.figure(), grid.turn())),
         rows_(coarse_, grid) {
     for (auto* field : {&potential_, &heat_, &convergent_km_}) field->resize(coarse_.size());
     const bool cratons = !grown.potential().empty();
