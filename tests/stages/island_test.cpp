@@ -194,7 +194,9 @@ TEST(Island, RiversThatEnterAreThereAndNoWaterIsLost) {
     if (inflow[c] == 0.0F) continue;
     EXPECT_TRUE(on_edge(island.grid(), c));
     EXPECT_GE(area[c], inflow_area[c]);
-    if (lake[c] == 0) EXPECT_GE(discharge[c], inflow[c] * (1.0F - 1e-5F));
+    if (lake[c] == 0) {
+      EXPECT_GE(discharge[c], inflow[c] * (1.0F - 1e-5F));
+    }
   }
   EXPECT_GT(entering, 100.0);
   EXPECT_NEAR(budget.at("river_inflow_m3_s"), entering, 1e-4 * entering);
