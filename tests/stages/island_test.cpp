@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "geo/core/error.hpp"
+#include "geo/kernels/blueprint_climate.hpp"
 #include "geo/kernels/catmull_rom.hpp"
 #include "geo/kernels/fine_relief.hpp"
 #include "geo/kernels/water_balance.hpp"
@@ -267,6 +268,56 @@ TEST(Island, ClimateJoinsThePlanetsAtTheEdge) {
     ++compared;
   }
   EXPECT_GT(compared, fine.nx());
+}
+
+// No noise, no smoothing, no valleys cut after the air has passed: what is left are the formulas.
+TEST(Island, BlueprintsClimateHoldsAtTheIslandsOwnPlaces) {
+  const Pipeline pipeline = make_pipeline();
+  Context context;
+  context.planet.pressure_bar = 1.3;
+  context.configuration = pipeline.parameters();
+  for (const auto& [name, value] : {std::pair{"climate.model", "blueprint"},
+                                    {"climate.temperature_noise_k", "0"},
+                                    {"climate.precipitation_noise_mm_yr", "0"},
+                                    {"climate.resolution_deg", "10"},
+                                    {"hydrology.carving", "0"},
+                                    {"hydrology.breach_depth_m", "0"},
+                                    {"hydrology.gorge_factor", "0"}}) {
+    find_parameter(context.configuration, name)->set_text(value);
+  }
+  State state = planet();
+  for (const char* name : {"climate", "hydrology"}) {
+    const Stage& stage = *pipeline.stages()[pipeline.find(name)];
+    StageIo io(state, stage.info());
+    stage.run(io, context);
+  }
+  IslandParameters p = around(place_of(great_rivers(1).front()));
+  p.climate_smoothing_km = 0.0;
+  const auto stage = make_island_stage(p);
+  StageIo io(state, stage->info());
+  stage->run(io, context);
+  const State& island = io.result();
+  const Grid& fine = island.grid();
+  const auto z = island.read(field::elevation);
+  const auto coast = island.read(field::distance_to_coast);
+  const auto temperature = island.read(field::temperature);
+  const auto rain = island.read(field::precipitation);
+  const BlueprintClimate model;
+  int sea = 0, land = 0;
+  for (Index c = 0; c < fine.size(); ++c) {
+    const double latitude = fine.position(fine.column(c), fine.row(c)).latitude_deg;
+    ASSERT_NEAR(temperature[c],
+                blueprint_temperature_c(model, latitude, z[c], 1e-3 * coast[c], 1.3), 2e-3)
+        << "cell " << c << " at " << z[c] << " m";
+    z[c] < 0.0F ? ++sea : ++land;
+    if (z[c] < 0.0F) {
+      ASSERT_NEAR(rain[c], hadley_precipitation_mm_yr(latitude) * 1.2 * std::sqrt(1.3), 0.5);
+    } else {
+      ASSERT_GE(rain[c], 19.9);
+      ASSERT_LE(rain[c], 4500.1);
+    }
+  }
+  EXPECT_GT(std::min(sea, land), fine.size() / 50);
 }
 
 TEST(Island, EdgeKeepsThePlanetsHeightsExceptInRiverGaps) {

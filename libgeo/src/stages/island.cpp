@@ -172,7 +172,7 @@ class IslandStage final : public Stage {
         state.update(field::precipitation),     state.update(field::precipitation_seasonality),
         state.update(field::wind_east),         state.update(field::wind_north),
         state.update(field::distance_to_coast), state.update(field::potential_evaporation)};
-    island_climate(cells, climate, p_,
+    island_climate(cells, climate, context.planet.pressure_bar, p_,
                    {io.read(field::elevation), planets_m, state.read(field::elevation)}, from, to);
   }
 
