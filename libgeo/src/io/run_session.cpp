@@ -65,15 +65,17 @@ void RunSession::clear_for_this_run() {
   manifest_.config_digest = digest_of(config_);
   manifest_.complete = false;
   // From here on no stage that is about to be replaced counts as complete.
+  const bool planet_stays = pipeline_.stages()[first_]->info().own_grid;
   std::erase_if(manifest_.stages, [&](const StageRecord& record) {
     const int at = pipeline_.find(record.name);
+    if (at < 0 && is_island(record)) return !planet_stays;
     return at < begin_ || at >= first_;
   });
   write_manifest(folder_.manifest(), manifest_);
   for (int at = 0; at < static_cast<int>(pipeline_.stages().size()); ++at) {
     if (at < begin_ || at >= first_) folder_.remove_stage(numbers_[at], name_of(at));
   }
-  folder_.remove_further_islands();
+  if (!planet_stays) folder_.remove_further_islands();
   folder_.remove_summaries();
   write_text_file(folder_.config(), config_);
 }
