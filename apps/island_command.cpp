@@ -43,9 +43,12 @@ void set_size(const Configuration& configuration, const std::string& text) {
 void make_island(const IslandOptions& options) {
   set_log_style({.json = false, .quiet = options.quiet});
   const geo::io::RunFolder folder(options.folder);
-  if (options.folder.empty() || !std::filesystem::exists(folder.manifest())) {
-    throw geo::ConfigurationError(fmt::format("island: {} holds no run: give the folder of one",
-                                              options.folder.empty() ? "nothing" : options.folder));
+  if (options.folder.empty()) {
+    throw geo::ConfigurationError("island: give the folder of a run: terrane island DIR");
+  }
+  if (!std::filesystem::exists(folder.manifest())) {
+    throw geo::ConfigurationError(
+        fmt::format("island: {} holds no run: give the folder of one", options.folder));
   }
   Configuration configuration;
   geo::io::apply_config_file(folder.config(), configuration.parameters(),

@@ -8,8 +8,10 @@
 #include "geo/core/projection.hpp"
 #include "geo/kernels/catmull_rom.hpp"
 #include "geo/kernels/fine_relief.hpp"
+#include "geo/kernels/inflow.hpp"
 #include "geo/kernels/noise.hpp"
 #include "geo/kernels/region_score.hpp"
+#include "geo/kernels/river_courses.hpp"
 
 namespace geo {
 namespace {
@@ -170,6 +172,100 @@ TEST(FineRelief, DetailHasUnitVarianceAndNoEdge) {
   }
   EXPECT_NEAR(sum / fine.size(), 0.0, 0.35);
   EXPECT_NEAR(squares / fine.size(), 1.0, 0.5);
+}
+
+/// A river that comes down a diagonal of the planet's cells, between ridges on either side.
+struct DiagonalRiver {
+  static constexpr float kSide_m = 800.0F;
+  Grid planet = Grid::sphere(360, 180);
+  Grid fine = Grid::equal_area(200, 120, 4000.0, Centre{0.0, 0.0});
+  PlanetCells cells{planet, fine};
+  std::vector<float> elevation_m = std::vector<float>(planet.size(), kSide_m);
+  std::vector<Index> receiver = std::vector<Index>(planet.size());
+  std::vector<double> area_m2 = std::vector<double>(planet.size());
+  std::vector<float> discharge_m3_s = std::vector<float>(planet.size());
+  std::vector<float> z = std::vector<float>(fine.size());
+
+  DiagonalRiver() {
+    for (Index c = 0; c < planet.size(); ++c) {
+      receiver[c] = c;
+      area_m2[c] = planet.area_m2(planet.row(c));
+    }
+    // North-west to south-east, 10 m down in each cell.
+    Index last = kNoCell;
+    for (int k = 0; k <= 20; ++k) {
+      const Index c = planet.cell(170 + k, 99 - k);
+      elevation_m[c] = static_cast<float>(400 - 10 * k);
+      area_m2[c] = (50.0 + k) * planet.area_m2(planet.row(c));
+      discharge_m3_s[c] = static_cast<float>(50 + k);
+      if (last != kNoCell) receiver[last] = c;
+      last = c;
+    }
+    for (Index c = 0; c < fine.size(); ++c) {
+      const CatmullRom at(planet, fine.position(fine.column(c), fine.row(c)));
+      z[c] = static_cast<float>(at.of(std::span<const float>(elevation_m)));
+    }
+  }
+  [[nodiscard]] PlanetWater water() const {
+    return {elevation_m, receiver, area_m2, discharge_m3_s, {}};
+  }
+};
+
+TEST(Inflow, RiverEntersWithWhatGatheredOutside) {
+  DiagonalRiver river;
+  std::vector<double> area(river.fine.size());
+  std::vector<float> inflow(river.fine.size());
+  const auto crossings = find_inflow(river.cells, river.water(), river.z, area, inflow);
+  ASSERT_EQ(crossings.size(), 2U);  // in and out
+  const Index in = crossings.front().planet_cell > crossings.back().planet_cell
+                       ? crossings.front().planet_cell
+                       : crossings.back().planet_cell;
+  double entered_m2 = 0.0, entered_m3_s = 0.0;
+  for (Index c = 0; c < river.fine.size(); ++c) {
+    entered_m2 += area[c];
+    entered_m3_s += inflow[c];
+    if (area[c] == 0.0) continue;
+    EXPECT_TRUE(river.fine.is_open_edge(river.fine.column(c), river.fine.row(c)));
+  }
+  // All of it but what falls within the plane on the last cell outside.
+  const double own_m2 = river.planet.area_m2(river.planet.row(in));
+  EXPECT_LE(entered_m2, river.area_m2[in]);
+  EXPECT_GE(entered_m2, river.area_m2[in] - 0.6 * own_m2);
+  EXPECT_NEAR(entered_m3_s, entered_m2 / river.area_m2[in] * river.discharge_m3_s[in], 1e-3);
+}
+
+TEST(RiverCourses, LeaveNoDamAndRaiseNothing) {
+  DiagonalRiver river;
+  std::vector<double> area(river.fine.size());
+  std::vector<float> inflow(river.fine.size());
+  const auto crossings = find_inflow(river.cells, river.water(), river.z, area, inflow);
+  // Whether water gets from where it comes in to where it goes out without rising higher.
+  const auto passes_below = [&](float limit_m) {
+    std::vector<std::uint8_t> reached(river.fine.size());
+    std::vector<Index> front{crossings.back().edge_cell};
+    while (!front.empty()) {
+      const Index c = front.back();
+      front.pop_back();
+      if (reached[c] != 0 || river.z[c] > limit_m) continue;
+      reached[c] = 1;
+      for (int k = 0; k < kDirections; ++k) {
+        if (const Index next = river.fine.neighbour(c, k); next != kNoCell) front.push_back(next);
+      }
+    }
+    return reached[crossings.front().edge_cell] != 0;
+  };
+  const float river_m =
+      std::max(river.z[crossings.front().edge_cell], river.z[crossings.back().edge_cell]);
+  EXPECT_FALSE(passes_below(river_m + 50.0F)) << "interpolation dams nothing: no case";
+  const std::vector<float> before = river.z;
+  open_river_courses(river.cells, river.water(), crossings, river.z);
+  EXPECT_TRUE(passes_below(river_m + 1.0F));
+  for (Index c = 0; c < river.fine.size(); ++c) {
+    ASSERT_LE(river.z[c], before[c]);
+    if (river.fine.is_open_edge(river.fine.column(c), river.fine.row(c))) {
+      ASSERT_EQ(river.z[c], before[c]);
+    }
+  }
 }
 
 }  // namespace

@@ -15,9 +15,6 @@
 namespace geo::io {
 namespace {
 
-// Level 1: relief hardly shrinks further, however long one tries.
-constexpr int kLevel = 1;
-
 void require(bool good) {
   if (!good) throw nc::Failure(NC_EHDFERR);
 }
@@ -54,11 +51,12 @@ void shuffle(const unsigned char* from, std::size_t values, unsigned char* to) {
 }
 
 template <class T>
-void write_chunks(hid_t dataset, const std::vector<T>& values, int ny, int nx, ChunkShape chunk) {
+void write_chunks(hid_t dataset, const std::vector<T>& values, int ny, int nx, ChunkShape chunk,
+                  int level) {
   const std::size_t cells = chunk.rows * chunk.columns, bytes = cells * sizeof(T);
   std::vector<T> raw(cells);
   std::vector<unsigned char> shuffled(bytes);
-  const Compressor compressor(libdeflate_alloc_compressor(kLevel));
+  const Compressor compressor(libdeflate_alloc_compressor(level));
   std::vector<unsigned char> packed(libdeflate_zlib_compress_bound(compressor.get(), bytes));
   for (std::size_t row = 0; row < static_cast<std::size_t>(ny); row += chunk.rows) {
     for (std::size_t column = 0; column < static_cast<std::size_t>(nx); column += chunk.columns) {
@@ -86,10 +84,12 @@ void write_chunks(hid_t dataset, const std::vector<T>& values, int ny, int nx, C
 struct ChunkWriter::Implementation {
   std::unique_lock<std::recursive_mutex> lock = nc::lock_library();
   hid_t file = -1;
+  int level = 0;
 };
 
-ChunkWriter::ChunkWriter(const std::filesystem::path& path)
+ChunkWriter::ChunkWriter(const std::filesystem::path& path, int level)
     : implementation_(std::make_unique<Implementation>()) {
+  implementation_->level = level;
   implementation_->file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
   require(implementation_->file >= 0);
 }
@@ -101,7 +101,9 @@ ChunkWriter::~ChunkWriter() {
 void ChunkWriter::write(std::string_view variable, const Values& values, int ny, int nx,
                         ChunkShape chunk) const {
   const Dataset dataset(implementation_->file, variable);
-  std::visit([&](const auto& array) { write_chunks(dataset.id(), array, ny, nx, chunk); }, values);
+  const int level = implementation_->level;
+  std::visit([&](const auto& array) { write_chunks(dataset.id(), array, ny, nx, chunk, level); },
+             values);
 }
 
 void ChunkWriter::close() { require(H5Fclose(std::exchange(implementation_->file, -1)) >= 0); }

@@ -17,10 +17,10 @@ struct ChunkShape {
 /// Fills rasters of a NetCDF-4 file whose metadata the netCDF library wrote before. It shuffles
 /// and compresses chunks with libdeflate, whose streams any zlib reads, and hands them to HDF5
 /// whole: four times as fast as the library's own filters. Rasters must be chunked as told, with
-/// the filters shuffle and deflate. Throws nc::Failure.
+/// the filters shuffle and deflate. Levels are zlib's, 0 stores. Throws nc::Failure.
 class ChunkWriter {
  public:
-  explicit ChunkWriter(const std::filesystem::path& path);
+  ChunkWriter(const std::filesystem::path& path, int level);
   ~ChunkWriter();
   ChunkWriter(const ChunkWriter&) = delete;
   ChunkWriter& operator=(const ChunkWriter&) = delete;

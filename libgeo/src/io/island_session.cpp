@@ -140,7 +140,7 @@ std::string IslandSession::execute(const RunEvents& events) {
       record.fields.push_back(summarise(*spec, *island.values(*spec), island.grid()));
     }
     const auto netcdf = folder_.stage_file(stage_number_, name, ".nc");
-    write_netcdf(netcdf, snapshot, provenance);
+    write_netcdf(netcdf, snapshot, provenance, static_cast<int>(settings_.compression));
     record.files.push_back(netcdf.filename().string());
     if (settings_.vtk) {
       const auto vti = folder_.stage_file(stage_number_, name, ".vti");

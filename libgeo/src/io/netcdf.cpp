@@ -14,7 +14,7 @@
 namespace geo::io {
 namespace {
 
-constexpr int kDeflateLevel = 1;
+constexpr int kDeflateLevel = 1;  // what the header says; chunks come compressed
 constexpr int kChunk = 512;
 
 /// Chunk length near `kChunk` that leaves the last chunk nearly full.
@@ -125,10 +125,10 @@ void write_frame(const std::filesystem::path& path, const Snapshot& snapshot,
   file.close();
 }
 
-void write_rasters(const std::filesystem::path& path, const Snapshot& snapshot) {
+void write_rasters(const std::filesystem::path& path, const Snapshot& snapshot, int level) {
   const Grid& grid = *snapshot.grid;
   const ChunkShape chunk = chunk_shape(grid);
-  ChunkWriter file(path);
+  ChunkWriter file(path, level);
   file.write(kCellArea, cell_areas(grid), grid.ny(), grid.nx(), chunk);
   for (const auto& [spec, values] : snapshot.fields) {
     file.write(spec->name, *values, grid.ny(), grid.nx(), chunk);
@@ -139,12 +139,12 @@ void write_rasters(const std::filesystem::path& path, const Snapshot& snapshot) 
 }  // namespace
 
 void write_netcdf(const std::filesystem::path& path, const Snapshot& snapshot,
-                  const Provenance& provenance) {
+                  const Provenance& provenance, int compression) {
   check_snapshot(snapshot);
   AtomicFile whole(path);
   try {
     write_frame(whole.temporary(), snapshot, provenance);
-    write_rasters(whole.temporary(), snapshot);
+    write_rasters(whole.temporary(), snapshot, compression);
   } catch (const nc::Failure& failure) {
     whole.fail(failure.what());
   }

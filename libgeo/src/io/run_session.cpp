@@ -38,8 +38,8 @@ struct StageJob {
   std::filesystem::path netcdf, vti;
   StageRecord record;
 
-  void write(bool vtk) {
-    write_netcdf(netcdf, snapshot, provenance);
+  void write(bool vtk, int compression) {
+    write_netcdf(netcdf, snapshot, provenance, compression);
     record.files.push_back(netcdf.filename().string());
     if (vtk) {
       write_vti(vti, snapshot, provenance);
@@ -121,7 +121,7 @@ void RunSession::write_stage(BackgroundWriter& writer, int position, const State
   job->record.events = context.event_records;
   job->record.warnings = context.warnings;
   writer.submit([this, job] {
-    job->write(settings_.vtk);
+    job->write(settings_.vtk, static_cast<int>(settings_.compression));
     manifest_.stages.push_back(job->record);
     write_manifest(folder_.manifest(), manifest_);
     job->snapshot.fields.clear();

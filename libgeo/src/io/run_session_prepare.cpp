@@ -20,7 +20,7 @@ namespace {
 
 // What may differ between a run and its continuation: how far it goes and what else is written.
 constexpr std::string_view kFreeOnResume[] = {"run.to", "output.vtk", "output.maps",
-                                              "output.map_width_px"};
+                                              "output.map_width_px", "output.compression"};
 // The same where stages are computed again behind others that stay.
 constexpr std::string_view kFreeOnPartialOverwrite[] = {"run.from", "run.to"};
 

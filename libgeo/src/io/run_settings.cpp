@@ -40,6 +40,8 @@ std::vector<Parameter> RunSettings::parameters() {
       flag("output.maps", maps, "draw the maps and the report", "design"),
       integer("output.map_width_px", map_width_px, "1", 300, 20000, "width of the maps in pixels",
               "design"),
+      integer("output.compression", compression, "1", 0, 9,
+              "how hard NetCDF files are compressed; 0 stores them as they are", "design"),
   };
 }
 

@@ -10,6 +10,7 @@
 #include "geo/kernels/depressions.hpp"
 #include "geo/kernels/inflow.hpp"
 #include "geo/kernels/region_score.hpp"
+#include "geo/kernels/river_courses.hpp"
 #include "geo/stages/biomes.hpp"
 #include "geo/stages/climate.hpp"
 #include "geo/stages/erosion.hpp"
@@ -120,10 +121,11 @@ class IslandStage final : public Stage {
 
     const auto inflow_area = state.update(field::inflow_area);
     const auto inflow = state.update(field::inflow_discharge);
-    find_inflow(cells,
-                {planet.elevation_m, io.read(field::flow_receiver), io.read(field::drainage_area),
-                 io.read(field::discharge), io.read_optional(field::lake_id)},
-                z, inflow_area, inflow);
+    const PlanetWater water{planet.elevation_m, io.read(field::flow_receiver),
+                            io.read(field::drainage_area), io.read(field::discharge),
+                            io.read_optional(field::lake_id)};
+    const auto crossings = find_inflow(cells, water, z, inflow_area, inflow);
+    open_river_courses(cells, water, crossings, z);
     Bytes outlets = find_outlets(fine, z), held = outlets;
     for (std::size_t c = 0; c < outlets.size(); ++c) {
       if (inflow_area[c] > 0.0) outlets[c] = 0;
@@ -170,7 +172,7 @@ class IslandStage final : public Stage {
         state.update(field::precipitation),     state.update(field::precipitation_seasonality),
         state.update(field::wind_east),         state.update(field::wind_north),
         state.update(field::distance_to_coast), state.update(field::potential_evaporation)};
-    island_climate(cells, climate, p_,
+    island_climate(cells, climate, context.planet.pressure_bar, p_,
                    {io.read(field::elevation), planets_m, state.read(field::elevation)}, from, to);
   }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "geo/kernels/blueprint_climate.hpp"
 #include "geo/kernels/catmull_rom.hpp"
 #include "geo/kernels/distance_to_coast.hpp"
 #include "geo/kernels/orography.hpp"
@@ -88,33 +89,115 @@ std::vector<float> extra_lift(const Grid& fine, const Overlay& overlay,
   return lift;
 }
 
-/// Everything that is interpolated as it is.
-void interpolate_climate(const PlanetCells& cells, const IslandHeights& heights, double lapse_k_m,
-                         const ClimateFields<const float>& from, const ClimateFields<float>& to) {
-  const Grid& planet = cells.planet();
+/// What the run's model of climate makes of a place itself, where it is and how high; all else is
+/// the planet's and is interpolated.
+class PlaceLaw {
+ public:
+  PlaceLaw(const PlanetCells& cells, const ClimateParameters& climate, double pressure_bar,
+           std::span<const float> planet_elevation_m, const ClimateFields<const float>& from)
+      : model_(climate.blueprint),
+        closed_(climate.model == "blueprint"),
+        lapse_k_m_(climate.seasonal.energy.lapse_k_m),
+        pressure_bar_(pressure_bar),
+        warmth_(cells.size()),
+        moisture_(cells.size()) {
+    const Grid& planet = cells.planet();
+    if (closed_) find_rain_left(planet, planet_elevation_m, from.precipitation);
+    for (int j = cells.first_row(); j < cells.first_row() + cells.rows(); ++j) {
+      for (int i = 0; i < planet.nx(); ++i) {
+        const Index c = planet.cell(i, j);
+        const Place place{planet.latitude_deg(j), planet_elevation_m[c], from.distance_to_coast[c]};
+        warmth_[cells.at(i, j)] = static_cast<float>(from.temperature[c] - temperature_c(place));
+        moisture_[cells.at(i, j)] = moisture_mm_yr(place, from.precipitation[c]);
+      }
+    }
+  }
+
+  struct Place {
+    double latitude_deg, elevation_m, coast_m;
+  };
+  /// Temperature of the place, up to what is interpolated.
+  [[nodiscard]] double temperature_c(const Place& at) const {
+    if (!closed_) return -lapse_k_m_ * std::max(0.0, at.elevation_m);
+    return blueprint_temperature_c(model_, at.latitude_deg, at.elevation_m, 1e-3 * at.coast_m,
+                                   pressure_bar_);
+  }
+  /// Precipitation of the place with the interpolated moisture and lift over the planet's relief.
+  [[nodiscard]] double precipitation_mm_yr(const Place& at, double moisture_mm_yr, double lift_m,
+                                           double lift_height_m) const {
+    if (!closed_) return moisture_mm_yr * std::exp(std::clamp(lift_m / lift_height_m, -1.0, 1.0));
+    return rain_left_ *
+           blueprint_precipitation_mm_yr(model_, hadley_precipitation_mm_yr(at.latitude_deg),
+                                         moisture_mm_yr + model_.lift_mm_yr_m * lift_m,
+                                         at.elevation_m, 1e-3 * at.coast_m, pressure_bar_, 0.0);
+  }
+  /// What is to be interpolated, on the covered cells of the planet.
+  [[nodiscard]] std::span<const float> warmth() const { return warmth_; }
+  [[nodiscard]] std::span<const float> moisture() const { return moisture_; }
+  [[nodiscard]] double least_moisture_mm_yr() const { return closed_ ? -1e9 : 0.0; }
+
+ private:
+  /// Dust of impacts leaves the same share of rain everywhere; at sea the rest is known.
+  void find_rain_left(const Grid& planet, std::span<const float> z, std::span<const float> rain) {
+    for (Index c = 0; c < planet.size(); ++c) {
+      if (z[c] >= 0.0F) continue;
+      rain_left_ =
+          rain[c] / blueprint_precipitation_mm_yr(
+                        model_, hadley_precipitation_mm_yr(planet.latitude_deg(planet.row(c))), 0.0,
+                        z[c], 0.0, pressure_bar_, 0.0);
+      return;
+    }
+  }
+  /// Rain, or what wind and relief add to the blueprint's (5.5-5.8): eq. 5.10 backwards.
+  [[nodiscard]] float moisture_mm_yr(const Place& at, double rain_mm_yr) const {
+    if (!closed_) return static_cast<float>(rain_mm_yr);
+    if (at.elevation_m < 0.0)
+      return static_cast<float>(model_.windward_mm_yr + model_.coastal_mm_yr);
+    const double altitude = std::max(0.1, std::exp(-at.elevation_m * model_.altitude_decay_1_m));
+    const double inland = std::exp(-1e-3 * at.coast_m / model_.continental_decay_km);
+    const double all = rain_mm_yr / (rain_left_ * std::sqrt(pressure_bar_) * altitude);
+    return static_cast<float>(all - inland * hadley_precipitation_mm_yr(at.latitude_deg));
+  }
+
+  const BlueprintClimate& model_;
+  bool closed_;
+  double lapse_k_m_, pressure_bar_;
+  double rain_left_ = 1.0;
+  std::vector<float> warmth_, moisture_;
+};
+
+/// Everything but lift. Precipitation is the interpolated moisture still.
+void interpolate_climate(const PlanetCells& cells, const PlaceLaw& law,
+                         const IslandHeights& heights, const ClimateFields<const float>& from,
+                         const ClimateFields<float>& to) {
   const Grid& fine = cells.fine();
 #pragma omp parallel for schedule(static)
   for (int j = 0; j < fine.ny(); ++j) {
     for (int i = 0; i < fine.nx(); ++i) {
       const Index c = fine.cell(i, j);
-      const CatmullRom stencil(planet, fine.position(i, j));
-      const auto height = [&](double z) { return std::max(0.0, z); };
-      const double at_sea_level = stencil.of([&](int column, int row) {
-        const Index at = planet.cell(column, row);
-        return from.temperature[at] + lapse_k_m * height(heights.planet_elevation_m[at]);
-      });
-      to.temperature[c] =
-          static_cast<float>(at_sea_level - lapse_k_m * height(heights.elevation_m[c]));
+      const Centre position = fine.position(i, j);
+      const CatmullRom stencil(cells.planet(), position);
       const auto take = [&](std::span<const float> values) {
         return static_cast<float>(stencil.of(values));
       };
+      const auto covered = [&](std::span<const float> values) {
+        return stencil.of([&](int column, int row) { return values[cells.at(column, row)]; });
+      };
+      const double warmth = covered(law.warmth());
+      const auto temperature_at = [&](double height_m, double coast_m) {
+        return warmth + law.temperature_c({position.latitude_deg, height_m, coast_m});
+      };
+      to.temperature[c] =
+          static_cast<float>(temperature_at(heights.elevation_m[c], to.distance_to_coast[c]));
       to.temperature_range[c] = std::max(0.0F, take(from.temperature_range));
-      to.precipitation[c] = std::max(0.0F, take(from.precipitation));
+      to.precipitation[c] =
+          static_cast<float>(std::max(law.least_moisture_mm_yr(), covered(law.moisture())));
       to.precipitation_seasonality[c] =
           std::clamp(take(from.precipitation_seasonality), -1.0F, 1.0F);
       to.wind_east[c] = static_cast<float>(stencil.of(from.wind_east, -1.0));
       to.wind_north[c] = static_cast<float>(stencil.of(from.wind_north, -1.0));
-      const double planets_c = at_sea_level - lapse_k_m * height(heights.interpolated_m[c]);
+      const double planets_c =
+          temperature_at(heights.interpolated_m[c], std::max(0.0F, take(from.distance_to_coast)));
       const double usual = evaporating_warmth(planets_c, to.temperature_range[c]);
       const double here = evaporating_warmth(to.temperature[c], to.temperature_range[c]);
       constexpr double kMost = 3.0;
@@ -147,22 +230,19 @@ void measure_coast(const PlanetCells& cells, std::span<const float> elevation_m,
 
 }  // namespace
 
-void island_climate(const PlanetCells& cells, const ClimateParameters& climate,
+void island_climate(const PlanetCells& cells, const ClimateParameters& climate, double pressure_bar,
                     const IslandParameters& p, const IslandHeights& heights,
                     const ClimateFields<const float>& from, const ClimateFields<float>& to) {
   const Grid& fine = cells.fine();
-  const bool closed = climate.model == "blueprint";
-  const double lapse_k_m =
-      closed ? 1e-3 * climate.blueprint.lapse_k_km : climate.seasonal.energy.lapse_k_m;
-  interpolate_climate(cells, heights, lapse_k_m, from, to);
   measure_coast(cells, heights.elevation_m, from.distance_to_coast, to.distance_to_coast);
+  const PlaceLaw law(cells, climate, pressure_bar, heights.planet_elevation_m, from);
+  interpolate_climate(cells, law, heights, from, to);
 
   const double reach_m = 1000.0 * p.lift_reach_km;
   const Grid air = air_grid(fine, std::max(0.2 * reach_m, p.cell_m));
   const Overlay overlay(fine, air);
   const auto lift = extra_lift(fine, overlay, heights, to.wind_east, to.wind_north, reach_m);
   const Interpolator lift_of(overlay, lift);
-  const double per_lift = 1.0 / climate.lift_height_m;
 #pragma omp parallel
   {
     std::vector<float> scratch(lift_of.scratch_size()), lifted(fine.nx());
@@ -171,8 +251,11 @@ void island_climate(const PlanetCells& cells, const ClimateParameters& climate,
       lift_of.row(j, lifted, scratch);
       for (int i = 0; i < fine.nx(); ++i) {
         const double ramp = edge_ramp(fine, i, j, cells.planet().face_east_m(0));
-        const double ascent = std::clamp(ramp * lifted[i] * per_lift, -1.0, 1.0);
-        to.precipitation[fine.cell(i, j)] *= static_cast<float>(std::exp(ascent));
+        const Index c = fine.cell(i, j);
+        float& rain = to.precipitation[c];
+        rain = static_cast<float>(law.precipitation_mm_yr(
+            {fine.position(i, j).latitude_deg, heights.elevation_m[c], to.distance_to_coast[c]},
+            rain, ramp * lifted[i], climate.lift_height_m));
       }
     }
   }

@@ -25,13 +25,17 @@ struct IslandHeights {
 
 /// The planet's climate at the island's true places, adapted to its relief.
 ///
-/// Temperature: reduced to the sea level with the lapse rate of the run, interpolated, and back up.
+/// Temperature: what the run's model makes of a place itself (height by the lapse rate; the
+/// blueprint: latitude, sea and distance to it as well, eqs 5.1-5.3a) is taken off, the rest
+/// interpolated, and the island's own put on.
 /// Precipitation: interpolated, times exp(lift difference / lift height), where lift is that of the
 /// fine relief less that of the interpolated one (`upwind_lift`), so that both join at the edge.
+/// With the blueprint's climate, what wind and relief add (5.5-5.8) is interpolated, with 5.7 of
+/// the lift difference, and eq. 5.10 holds at the island's own heights and distances to the coast.
 /// Potential evaporation: interpolated, in proportion to what the formula of Oudin et al. (2005)
 /// makes of the change in temperature. Distance to the coast: on the fine grid as far as it
 /// reaches, the planet's beyond. Seasons and winds: interpolated.
-void island_climate(const PlanetCells& cells, const ClimateParameters& climate,
+void island_climate(const PlanetCells& cells, const ClimateParameters& climate, double pressure_bar,
                     const IslandParameters& p, const IslandHeights& heights,
                     const ClimateFields<const float>& from, const ClimateFields<float>& to);
 

@@ -34,6 +34,7 @@ struct RunSettings {
   bool vtk = true;
   bool maps = true;
   std::int64_t map_width_px = 1800;
+  std::int64_t compression = 1;
 
   std::vector<Event> events;
 

@@ -29,10 +29,11 @@ struct Snapshot {
   std::vector<std::pair<const FieldSpec*, std::shared_ptr<const Values>>> fields;
 };
 
-/// Writes a snapshot as NetCDF-4 with CF-1.10 metadata: temporary name, flush, rename. Deflate 1,
-/// shuffle, chunked. Throws IoError (which names the path and the reason).
+/// Writes a snapshot as NetCDF-4 with CF-1.10 metadata: temporary name, flush, rename. Shuffled,
+/// chunked, deflated; at level 1, relief hardly shrinks further however long one tries, level 0
+/// stores. Throws IoError (which names the path and the reason).
 void write_netcdf(const std::filesystem::path& path, const Snapshot& snapshot,
-                  const Provenance& provenance);
+                  const Provenance& provenance, int compression = 1);
 /// Writes a snapshot as VTK XML ImageData: cell data, appended raw. Temporary name, flush, rename.
 void write_vti(const std::filesystem::path& path, const Snapshot& snapshot,
                const Provenance& provenance);

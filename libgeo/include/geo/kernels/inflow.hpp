@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "geo/core/grid.hpp"
 #include "geo/kernels/fine_relief.hpp"
@@ -17,21 +18,31 @@ struct PlanetWater {
   std::span<const std::int32_t> lake_id;  ///< may be empty
 };
 
+/// Planet cells that make a river worth keeping.
+inline constexpr double kRiverCells = 2.5;
+
+/// Where a river of the planet crosses the edge of a part of it.
+struct RiverCrossing {
+  Index planet_cell = kNoCell;  ///< the last on this side of the edge, whichever that is
+  Index edge_cell = kNoCell;    ///< of the fine grid
+};
+
 /// Water that enters a part of a planet from outside, for a fine plane in an equal-area projection.
 ///
-/// Wherever the water of at least `kRiverCells` planet cells passes the edge, the river crosses it
+/// Wherever a river, the water of at least `kRiverCells` planet cells, passes the edge, it crosses
 /// at the lowest land cell within half a planet cell of where the line between the two cell centres
 /// does, and that cell sinks to the river's level, interpolated between the two, so that the coarse
 /// relief dams no river at the edge. What gathered upstream of the last cell outside (drainage area
-/// and discharge) enters there; what falls on that cell itself enters evenly along the stretch. So
-/// rivers keep their area and discharge. No edge cell that water comes in over is to be an outlet.
-/// Where a larger planet river leaves at a cell, nothing enters there. On a lake, whose cells all
-/// carry the discharge of the whole, discharge goes by the share of the drainage area.
-/// Outputs: one value per fine cell, 0 elsewhere; `elevation_m` of the fine cells: in and out.
-void find_inflow(const PlanetCells& cells, const PlanetWater& water, std::span<float> elevation_m,
-                 std::span<double> inflow_area_m2, std::span<float> inflow_m3_s);
-
-/// Planet cells that make a river worth keeping at the edge of a part of the planet.
-inline constexpr double kRiverCells = 2.5;
+/// and discharge) enters there. What falls on as much of that cell itself as lies outside enters
+/// evenly along the stretch. Lesser brooks enter whole at the lowest cell, which stays as it is. So
+/// rivers keep their area and discharge, and no ground counts twice. No edge cell that water comes
+/// in over is to be an outlet. Where a larger planet river leaves at a cell, nothing enters there.
+/// On a lake, whose cells all carry the discharge of the whole, discharge goes by the share of the
+/// drainage area. Outputs: one value per fine cell, 0 elsewhere; `elevation_m` of the fine cells:
+/// in and out. Returns every crossing, in and out.
+std::vector<RiverCrossing> find_inflow(const PlanetCells& cells, const PlanetWater& water,
+                                       std::span<float> elevation_m,
+                                       std::span<double> inflow_area_m2,
+                                       std::span<float> inflow_m3_s);
 
 }  // namespace geo

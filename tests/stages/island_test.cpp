@@ -1,0 +1,380 @@
+// An island against the planet that it is a part of.
+#include "geo/stages/island.hpp"
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "geo/core/error.hpp"
+#include "geo/kernels/blueprint_climate.hpp"
+#include "geo/kernels/catmull_rom.hpp"
+#include "geo/kernels/fine_relief.hpp"
+#include "geo/kernels/water_balance.hpp"
+#include "geo/stages/climate.hpp"
+#include "geo/stages/stages.hpp"
+
+namespace geo {
+namespace {
+
+const double kLapse_k_m = ClimateParameters{}.seasonal.energy.lapse_k_m;
+
+/// A small planet with everything that an island reads; made once.
+const State& planet() {
+  static const State kPlanet = [] {
+    State state(std::make_shared<const Grid>(Grid::sphere(256, 128)));
+    const Pipeline pipeline = make_pipeline();
+    const auto parameters = pipeline.parameters();
+    find_parameter(parameters, "climate.resolution_deg")->set_text("10");  // takes a moment only
+    Context context;
+    context.seed = 3;
+    State whole(state.shared_grid());
+    Pipeline::Observer observer;
+    observer.after = [&](int, const State& now, const Context&) {
+      for (const FieldSpec* spec : now.present()) whole.share(*spec, now.values(*spec));
+    };
+    pipeline.run(state, context, 0, pipeline.find("biomes"), observer);
+    return whole;
+  }();
+  return kPlanet;
+}
+
+struct Made {
+  State island;
+  Budget budget;
+};
+
+Made make(IslandParameters p) {
+  State state = planet();
+  Context context;
+  context.seed = 3;
+  const auto stage = make_island_stage(std::move(p));
+  StageIo io(state, stage->info());
+  stage->run(io, context);
+  return {io.result(), context.budget};
+}
+
+std::string text(Centre place) {
+  return std::to_string(place.latitude_deg) + "," + std::to_string(place.longitude_deg);
+}
+
+/// Ten planet cells wide at the equator, six high.
+IslandParameters around(Centre place) {
+  IslandParameters p;
+  p.nx = 320;
+  p.ny = 192;
+  p.cell_m = 5000.0;
+  p.center = text(place);
+  return p;
+}
+
+Centre place_of(Index planet_cell) {
+  const Grid& grid = planet().grid();
+  return grid.position(grid.column(planet_cell), grid.row(planet_cell));
+}
+
+/// Cells that the largest rivers of different basins pass through half-way, away from the poles.
+std::vector<Index> great_rivers(std::size_t count) {
+  const Grid& grid = planet().grid();
+  const auto discharge = planet().read(field::discharge);
+  const auto receiver = planet().read(field::flow_receiver);
+  const auto basin = planet().read(field::basin_id);
+  const auto lake = planet().read(field::lake_id);
+  std::vector<Index> cells(grid.size());
+  for (Index c = 0; c < grid.size(); ++c) cells[c] = c;
+  std::stable_sort(cells.begin(), cells.end(),
+                   [&](Index a, Index b) { return discharge[a] > discharge[b]; });
+  std::vector<Index> rivers;
+  std::vector<std::int32_t> seen;
+  for (const Index c : cells) {
+    if (rivers.size() == count) break;
+    if (std::abs(grid.latitude_deg(grid.row(c))) > 60.0 || lake[c] > 0 || receiver[c] == c)
+      continue;
+    if (std::find(seen.begin(), seen.end(), basin[c]) != seen.end()) continue;
+    // Far enough upstream for the sea to be out of sight, with half of the water.
+    Index up = c;
+    for (int step = 0; step < 4; ++step) {
+      Index largest = kNoCell;
+      for (int k = 0; k < kDirections; ++k) {
+        const Index next = grid.neighbour(up, k);
+        if (next == kNoCell || receiver[next] != up || next == up) continue;
+        if (largest == kNoCell || discharge[next] > discharge[largest]) largest = next;
+      }
+      if (largest == kNoCell) break;
+      up = largest;
+    }
+    seen.push_back(basin[c]);
+    if (discharge[up] > 0.5 * discharge[c]) rivers.push_back(up);
+  }
+  return rivers;
+}
+
+bool on_edge(const Grid& grid, Index c) { return grid.is_open_edge(grid.column(c), grid.row(c)); }
+
+/// Land of which an island has plenty.
+const Made& example() {
+  static const Made kMade = make(around(place_of(great_rivers(1).front())));
+  return kMade;
+}
+
+/// The same ground in fewer cells.
+IslandParameters coarse_look() {
+  IslandParameters p = around(place_of(great_rivers(1).front()));
+  p.nx = 160;
+  p.ny = 96;
+  p.cell_m = 10e3;
+  return p;
+}
+
+TEST(Island, MeansOverThePlanetsCellsAreThePlanetsWithinTheDetail) {
+  const State& island = example().island;
+  const Grid& fine = island.grid();
+  const Grid& coarse = planet().grid();
+  const PlanetCells cells(coarse, fine);
+  std::vector<std::uint8_t> there(coarse.size()), cut(coarse.size());
+  for (Index c = 0; c < fine.size(); ++c) {
+    there[cells.cell_of()[c]] = 1;
+    if (on_edge(fine, c)) cut[cells.cell_of()[c]] = 1;
+  }
+  const auto planets_m = planet().read(field::elevation);
+  std::vector<float> roughness_m(cells.size());  // the standard deviation of detail
+  local_roughness(cells, planets_m, roughness_m);
+  const auto mean_m = cells.means(island.read(field::elevation), {}, 0.0F);
+  int whole = 0;
+  double bias_m = 0.0, detail_m = 0.0;
+  for (Index c = 0; c < coarse.size(); ++c) {
+    if (there[c] == 0 || cut[c] != 0) continue;
+    const auto k = cells.at(coarse.column(c), coarse.row(c));
+    EXPECT_NEAR(mean_m[k], planets_m[c], roughness_m[k]) << "planet cell " << c;
+    bias_m += mean_m[k] - planets_m[c];
+    detail_m += roughness_m[k];
+    ++whole;
+  }
+  ASSERT_GT(whole, 20);
+  EXPECT_LT(std::abs(bias_m), 0.15 * detail_m);
+}
+
+TEST(Island, LandDrainsToTheSeaOffTheEdgeOrIntoALake) {
+  const State& island = example().island;
+  const Grid& fine = island.grid();
+  const auto z = island.read(field::elevation);
+  const auto receiver = island.read(field::flow_receiver);
+  const auto lake = island.read(field::lake_id);
+  std::vector<std::int8_t> good(fine.size(), -1);  // -1: not known yet
+  std::vector<Index> way;
+  Index land = 0;
+  for (Index start = 0; start < fine.size(); ++start) {
+    if (z[start] < 0.0F) continue;
+    ++land;
+    Index c = start;
+    way.clear();
+    while (good[c] < 0 && receiver[c] != c) {
+      way.push_back(c);
+      ASSERT_LE(way.size(), static_cast<std::size_t>(fine.size())) << "round and round";
+      c = receiver[c];
+    }
+    if (good[c] < 0) good[c] = z[c] < 0.0F || on_edge(fine, c) || lake[c] > 0 ? 1 : 0;
+    for (const Index passed : way) good[passed] = good[c];
+    ASSERT_EQ(good[start], 1) << "cell " << start << " ends at " << c;
+  }
+  EXPECT_GT(land, fine.size() / 4);
+}
+
+TEST(Island, RiversThatEnterAreThereAndNoWaterIsLost) {
+  const auto& [island, budget] = example();
+  const auto inflow = island.read(field::inflow_discharge);
+  const auto inflow_area = island.read(field::inflow_area);
+  const auto discharge = island.read(field::discharge);
+  const auto area = island.read(field::drainage_area);
+  const auto lake = island.read(field::lake_id);
+  double entering = 0.0;
+  for (Index c = 0; c < island.grid().size(); ++c) {
+    entering += inflow[c];
+    if (inflow[c] == 0.0F) continue;
+    EXPECT_TRUE(on_edge(island.grid(), c));
+    EXPECT_GE(area[c], inflow_area[c]);
+    if (lake[c] == 0) {
+      EXPECT_GE(discharge[c], inflow[c] * (1.0F - 1e-5F));
+    }
+  }
+  EXPECT_GT(entering, 100.0);
+  EXPECT_NEAR(budget.at("river_inflow_m3_s"), entering, 1e-4 * entering);
+  EXPECT_LT(std::abs(budget.at("water_closing_error")), 1e-6);
+}
+
+// Interpolation dams a valley that is one cell wide: rivers once left by the edge that they had
+// come in over.
+TEST(Island, RiversCarryWhatTheyCarryOnThePlanet) {
+  const auto receiver = planet().read(field::flow_receiver);
+  const auto planets = planet().read(field::discharge);
+  for (const Index c : great_rivers(4)) {
+    SCOPED_TRACE("river at " + text(place_of(c)));
+    const State island = make(around(place_of(c))).island;
+    const PlanetCells cells(planet().grid(), island.grid());
+    const auto discharge = island.read(field::discharge);
+    float most = 0.0F;
+    for (Index k = 0; k < island.grid().size(); ++k) {
+      if (cells.cell_of()[k] == c) most = std::max(most, discharge[k]);
+    }
+    EXPECT_GT(most, 0.9 * planets[c]);
+    // Where rivers meet may move by a cell or two.
+    EXPECT_LT(most, 1.1 * planets[receiver[receiver[c]]]);
+  }
+}
+
+TEST(Island, RunoffIsThatOfThePlanetOverTheSameGround) {
+  const Grid& coarse = planet().grid();
+  const auto z = planet().read(field::elevation);
+  std::vector<std::uint8_t> sea(coarse.size());
+  std::transform(z.begin(), z.end(), sea.begin(), [](float height) { return height < 0.0F; });
+  std::vector<double> runoff(coarse.size());
+  std::vector<float> loss(coarse.size());
+  land_water(coarse, sea, planet().read(field::precipitation),
+             planet().read(field::potential_evaporation), runoff, loss);
+  const auto& [island, budget] = example();
+  const PlanetCells cells(coarse, island.grid());
+  double planets_m3_s = 0.0;
+  for (const Index c : cells.cell_of()) {
+    planets_m3_s += runoff[c] / coarse.area_m2(coarse.row(c)) * island.grid().area_m2(0);
+  }
+  EXPECT_NEAR(budget.at("land_precipitation_m3_s") - budget.at("land_evaporation_m3_s"),
+              planets_m3_s, 0.1 * planets_m3_s);
+}
+
+TEST(Island, ClimateJoinsThePlanetsAtTheEdge) {
+  const State& island = example().island;
+  const Grid& fine = island.grid();
+  const auto planets_z = planet().read(field::elevation);
+  const auto planets_t = planet().read(field::temperature);
+  const auto planets_p = planet().read(field::precipitation);
+  const auto z = island.read(field::elevation);
+  const auto t = island.read(field::temperature);
+  const auto p = island.read(field::precipitation);
+  const auto height = [](double h) { return std::max(0.0, h); };
+  int compared = 0;
+  for (Index c = 0; c < fine.size(); ++c) {
+    if (!on_edge(fine, c)) continue;
+    const CatmullRom stencil(planet().grid(), fine.position(fine.column(c), fine.row(c)));
+    const double rain = std::max(0.0, stencil.of(planets_p));
+    ASSERT_NEAR(p[c], rain, 1e-3 * rain + 0.1) << "cell " << c;
+    // The air came before rivers cut their gaps.
+    if (std::abs(z[c] - stencil.of(planets_z)) > 1.0) continue;
+    const double at_sea_level = stencil.of([&](int i, int j) {
+      const Index k = planet().grid().cell(i, j);
+      return planets_t[k] + kLapse_k_m * height(planets_z[k]);
+    });
+    ASSERT_NEAR(t[c] + kLapse_k_m * height(z[c]), at_sea_level, 0.05) << "cell " << c;
+    ++compared;
+  }
+  EXPECT_GT(compared, fine.nx());
+}
+
+// No noise, no smoothing, no valleys cut after the air has passed: what is left are the formulas.
+TEST(Island, BlueprintsClimateHoldsAtTheIslandsOwnPlaces) {
+  const Pipeline pipeline = make_pipeline();
+  Context context;
+  context.planet.pressure_bar = 1.3;
+  context.configuration = pipeline.parameters();
+  for (const auto& [name, value] : {std::pair{"climate.model", "blueprint"},
+                                    {"climate.temperature_noise_k", "0"},
+                                    {"climate.precipitation_noise_mm_yr", "0"},
+                                    {"climate.resolution_deg", "10"},
+                                    {"hydrology.carving", "0"},
+                                    {"hydrology.breach_depth_m", "0"},
+                                    {"hydrology.gorge_factor", "0"}}) {
+    find_parameter(context.configuration, name)->set_text(value);
+  }
+  State state = planet();
+  for (const char* name : {"climate", "hydrology"}) {
+    const Stage& stage = *pipeline.stages()[pipeline.find(name)];
+    StageIo io(state, stage.info());
+    stage.run(io, context);
+  }
+  IslandParameters p = around(place_of(great_rivers(1).front()));
+  p.climate_smoothing_km = 0.0;
+  const auto stage = make_island_stage(p);
+  StageIo io(state, stage->info());
+  stage->run(io, context);
+  const State& island = io.result();
+  const Grid& fine = island.grid();
+  const auto z = island.read(field::elevation);
+  const auto coast = island.read(field::distance_to_coast);
+  const auto temperature = island.read(field::temperature);
+  const auto rain = island.read(field::precipitation);
+  const BlueprintClimate model;
+  int sea = 0, land = 0;
+  for (Index c = 0; c < fine.size(); ++c) {
+    const double latitude = fine.position(fine.column(c), fine.row(c)).latitude_deg;
+    ASSERT_NEAR(temperature[c],
+                blueprint_temperature_c(model, latitude, z[c], 1e-3 * coast[c], 1.3), 2e-3)
+        << "cell " << c << " at " << z[c] << " m";
+    z[c] < 0.0F ? ++sea : ++land;
+    if (z[c] < 0.0F) {
+      ASSERT_NEAR(rain[c], hadley_precipitation_mm_yr(latitude) * 1.2 * std::sqrt(1.3), 0.5);
+    } else {
+      ASSERT_GE(rain[c], 19.9);
+      ASSERT_LE(rain[c], 4500.1);
+    }
+  }
+  EXPECT_GT(std::min(sea, land), fine.size() / 50);
+}
+
+TEST(Island, EdgeKeepsThePlanetsHeightsExceptInRiverGaps) {
+  const State& island = example().island;
+  const Grid& fine = island.grid();
+  const auto planets_m = planet().read(field::elevation);
+  const auto z = island.read(field::elevation);
+  int edge = 0, same = 0;
+  for (Index c = 0; c < fine.size(); ++c) {
+    if (!on_edge(fine, c)) continue;
+    const CatmullRom stencil(planet().grid(), fine.position(fine.column(c), fine.row(c)));
+    const double there_m = stencil.of(planets_m);
+    EXPECT_LT(z[c], there_m + 1.0);
+    ++edge;
+    if (z[c] > there_m - 1.0) ++same;
+  }
+  EXPECT_GT(same, 0.8 * edge);
+}
+
+TEST(Island, FadingEdgeSinksBelowTheSea) {
+  IslandParameters p = coarse_look();
+  p.edge_fade = true;
+  const State island = make(p).island;
+  const Grid& fine = island.grid();
+  const auto z = island.read(field::elevation);
+  const auto inflow = island.read(field::inflow_discharge);
+  float highest = -1e9F;
+  for (Index c = 0; c < fine.size(); ++c) {
+    highest = std::max(highest, z[c]);
+    if (!on_edge(fine, c)) continue;
+    EXPECT_LT(z[c], -400.0F);
+    EXPECT_EQ(inflow[c], 0.0F);
+  }
+  EXPECT_GT(highest, 0.0F);
+}
+
+TEST(Island, IsTheSameOnAnyNumberOfThreads) {
+  const int usual = omp_get_max_threads();
+  omp_set_num_threads(1);
+  const State one = make(coarse_look()).island;
+  for (const int threads : {2, 4}) {
+    omp_set_num_threads(threads);
+    const State more = make(coarse_look()).island;
+    for (const FieldSpec* spec : one.present()) {
+      EXPECT_TRUE(*one.values(*spec) == *more.values(*spec)) << spec->name << " " << threads;
+    }
+  }
+  omp_set_num_threads(usual);
+}
+
+TEST(Island, BadCentresAreRefused) {
+  for (const char* centre : {"91,0", "0,361", "north", "10", "10,20,30", "nan,0", ""}) {
+    IslandParameters p = coarse_look();
+    p.center = centre;
+    EXPECT_THROW(make(p), ConfigurationError) << centre;
+  }
+}
+
+}  // namespace
+}  // namespace geo
