@@ -315,6 +315,17 @@ TEST(PlateEvolution, APlateMovesRigidly) {
   EXPECT_EQ(plate[mesh.locate(at(20, (0.4 + 0.62) / kRadians))], 1);
 }
 
+TEST(Continents, PlatesThatWereConsumedCarryNoCratons) {
+  const Hemispheres two;
+  const auto points = find_boundaries(two.mesh, two.plate, two.rotation, 2.0, 430.0, kRadius_km);
+  Cratons model;
+  model.plate_share = 1.0;
+  std::vector<Plate> plates(2);
+  const auto expected = craton_potential(model, two.mesh, two.plate, plates, points, 4);
+  plates.emplace_back();  // of no cell
+  EXPECT_EQ(craton_potential(model, two.mesh, two.plate, plates, points, 4), expected);
+}
+
 TEST(Continents, WholePlatesComeAsNearToTheShareAsTheyCan) {
   const CubedSphere mesh(32);
   PlateGrowth model;

@@ -5,10 +5,12 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
 #include "geo/core/error.hpp"
+#include "geo/core/vector3.hpp"
 #include "geo/kernels/airy.hpp"
 #include "geo/kernels/quantiles.hpp"
 #include "geo/stages/plates.hpp"
@@ -148,6 +150,44 @@ TEST(Isostasy, DeformationFadesAndCratonsAreStrong) {
     }
   }
   EXPECT_LT(*std::min_element(weakness.begin(), weakness.end()), 0.02F);
+}
+
+TEST(Isostasy, BlueprintDeformationIsTheLargestThatReachesACell) {
+  // Equations 3.2 and 3.2a from the fields themselves, by brute force over all boundary cells.
+  IsostasyParameters settings = blueprint();
+  settings.deformation_smoothing_km = 0.0;
+  const Planetary p = planet(128, 2, settings);
+  const Grid& grid = p.state.grid();
+  const auto type = p.state.read(field::boundary_type);
+  const auto strength = p.state.read(field::boundary_strength);
+  const auto share = p.state.read(field::continental_fraction);
+  const std::array deformation{p.state.read(field::convergent_deformation),
+                               p.state.read(field::divergent_deformation),
+                               p.state.read(field::transform_deformation)};
+  const auto weakness = p.state.read(field::lithospheric_weakness);
+  const auto position = [&](Index c) { return grid.unit_vector(grid.column(c), grid.row(c)); };
+  std::vector<Index> boundary;
+  for (Index c = 0; c < grid.size(); ++c) {
+    if (type[c] != 0) boundary.push_back(c);
+  }
+  constexpr std::array kLength_km{200.0, 150.0, 100.0};  // convergent, divergent, transform
+  for (Index c = 0; c < grid.size(); ++c) {
+    std::array<double, 3> reached{};
+    double nearest_km = 1e9;
+    for (const Index b : boundary) {
+      const double km = 6371.0 * angle_between(position(c), position(b));
+      const int kind = type[b] - 1;
+      reached[kind] = std::max(reached[kind], strength[b] * std::exp(-km / kLength_km[kind]));
+      nearest_km = std::min(nearest_km, km);
+    }
+    const double weak = std::exp(-nearest_km / 300.0);
+    if (share[c] > 0.1F) reached[0] *= weak;
+    // Distances handed from cell to cell may be too long, by a fraction of a cell of 313 km.
+    const double found_km = -300.0 * std::log(weakness[c]);
+    ASSERT_GT(found_km, nearest_km - 1.0);
+    ASSERT_LT(found_km, nearest_km + 45.0);
+    for (int kind = 0; kind < 3; ++kind) ASSERT_NEAR(deformation[kind][c], reached[kind], 2e-3);
+  }
 }
 
 TEST(Isostasy, ContinentsAreThickAndOceansDeepen) {

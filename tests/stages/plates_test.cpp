@@ -10,6 +10,8 @@
 #include <numeric>
 
 #include "geo/core/vector3.hpp"
+#include "geo/kernels/plate_figures.hpp"
+#include "geo/kernels/quantiles.hpp"
 
 namespace geo {
 namespace {
@@ -33,22 +35,23 @@ double area_where(const State& state, const std::function<bool(Index)>& holds) {
   return area / grid.total_area_m2();
 }
 
-TEST(Plates, MoveAsRigidBodies) {
-  const State state = planet(256, 3);
+/// Up, east and north at a cell.
+std::array<Vector3, 3> axes(const Grid& grid, Index cell) {
+  const Vector3 r = grid.unit_vector(grid.column(cell), grid.row(cell));
+  const double c = std::hypot(r[0], r[1]);
+  const Vector3 e{-r[1] / c, r[0] / c, 0.0};
+  return {r, e, cross(r, e)};
+}
+
+/// The rotation that fits each plate's velocities best (least squares), mm/yr.
+std::map<int, Vector3> fitted_rotations(const State& state) {
   const Grid& grid = state.grid();
   const auto plate = state.read(field::plate_id);
   const auto east = state.read(field::plate_velocity_east);
   const auto north = state.read(field::plate_velocity_north);
-  // Least squares for each plate's rotation; what is left must be round-off of single precision.
   std::map<int, std::array<std::array<double, 4>, 3>> normal;
-  const auto axes = [&](Index cell) {
-    const Vector3 r = grid.unit_vector(grid.column(cell), grid.row(cell));
-    const double c = std::hypot(r[0], r[1]);
-    const Vector3 e{-r[1] / c, r[0] / c, 0.0};
-    return std::array<Vector3, 3>{r, e, cross(r, e)};
-  };
   for (Index cell = 0; cell < grid.size(); ++cell) {
-    const auto [r, e, n] = axes(cell);
+    const auto [r, e, n] = axes(grid, cell);
     // v . e = omega . (r x e)
     for (const auto& [row, value] : {std::pair{cross(r, e), static_cast<double>(east[cell])},
                                      std::pair{cross(r, n), static_cast<double>(north[cell])}}) {
@@ -70,11 +73,96 @@ TEST(Plates, MoveAsRigidBodies) {
     }
     omega[id] = {m[0][3] / m[0][0], m[1][3] / m[1][1], m[2][3] / m[2][2]};
   }
-  for (Index cell = 0; cell < grid.size(); ++cell) {
-    const auto [r, e, n] = axes(cell);
-    const Vector3 v = cross(omega[plate[cell]], r);
-    ASSERT_NEAR(east[cell], dot(v, e), 1e-3);
-    ASSERT_NEAR(north[cell], dot(v, n), 1e-3);
+  return omega;
+}
+
+/// The blueprint's plates: whole continents, speeds as drawn.
+PlatesParameters blueprint() {
+  PlatesParameters p;
+  p.growth.count = 15;
+  p.growth.speed_cm_yr = 5.0;
+  p.growth.polar_resistance = 0.1;
+  p.growth.size_spread = 0.4;
+  p.no_net_rotation = false;
+  p.continents = "plates";
+  return p;
+}
+
+TEST(Plates, MoveAsRigidBodies) {
+  for (const auto& parameters : {PlatesParameters{}, blueprint()}) {
+    const State state = planet(256, 3, parameters);
+    const auto plate = state.read(field::plate_id);
+    const auto east = state.read(field::plate_velocity_east);
+    const auto north = state.read(field::plate_velocity_north);
+    auto omega = fitted_rotations(state);
+    // What is left must be round-off of single precision.
+    for (Index cell = 0; cell < state.grid().size(); ++cell) {
+      const auto [r, e, n] = axes(state.grid(), cell);
+      const Vector3 v = cross(omega[plate[cell]], r);
+      ASSERT_NEAR(east[cell], dot(v, e), 1e-3);
+      ASSERT_NEAR(north[cell], dot(v, n), 1e-3);
+    }
+  }
+}
+
+TEST(Plates, OfTheBlueprintTurnAsFastAsItDraws) {
+  // 5 cm/yr times 0.5 to 1.5 times 0.82 to 1.24 at the equator of each plate's pole.
+  double least = 1e9, most = 0.0;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    for (const auto& [id, omega] : fitted_rotations(planet(128, seed, blueprint()))) {
+      least = std::min(least, length(omega));
+      most = std::max(most, length(omega));
+    }
+  }
+  EXPECT_GT(least, 50.0 * 0.5 * 0.82 - 0.01);
+  EXPECT_LT(least, 30.0);
+  EXPECT_LT(most, 50.0 * 1.5 * 1.24 + 0.01);
+  EXPECT_GT(most, 70.0);
+}
+
+TEST(Plates, AreOfTheSizesAndAgesOfEarths) {
+  // Means over planets, within the tolerances of the scorecard: seven largest plates (Bird 2003),
+  // ages of the floor (Mueller et al. 2008), speed without net rotation.
+  constexpr int kSeeds = 6;
+  constexpr std::array kShares{0.1, 0.5, 0.9};
+  std::array<double, 3> age_myr{};
+  double largest = 0.0, speed = 0.0, growth = 0.0;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const State state = planet(256, seed);
+    const Grid& grid = state.grid();
+    const auto age = state.read(field::crust_age);
+    const auto fraction = state.read(field::continental_fraction);
+    std::vector<std::uint8_t> floor(grid.size());
+    for (Index c = 0; c < grid.size(); ++c) floor[c] = fraction[c] < 0.5F && age[c] <= 250.0F;
+    for (std::size_t k = 0; k < kShares.size(); ++k) {
+      age_myr[k] += quantile(grid, age, kShares[k], floor) / kSeeds;
+    }
+    growth += 1e-6 * 1e-7 * grid.total_area_m2() / kSeeds *
+              area_where(state, [&](Index c) { return floor[c] != 0 && age[c] < 10.0F; });
+    const auto shares = plate_shares(grid, state.read(field::plate_id));
+    largest += std::accumulate(shares.begin(), shares.begin() + 7, 0.0) / kSeeds;
+    speed += speed_without_net_rotation(grid, state.read(field::plate_velocity_east),
+                                        state.read(field::plate_velocity_north)) /
+             kSeeds;
+  }
+  EXPECT_NEAR(largest, 0.81, 0.12);
+  EXPECT_NEAR(speed, 43.9, 13.0);
+  EXPECT_NEAR(age_myr[0], 10.2, 5.0);
+  EXPECT_NEAR(age_myr[1], 55.6, 12.0);
+  EXPECT_NEAR(age_myr[2], 131.0, 25.0);
+  EXPECT_NEAR(growth, 3.01, 0.8);
+}
+
+TEST(Plates, MakeAsMuchCrustAsTheyConsume) {
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+    State state(std::make_shared<Grid>(Grid::sphere(64, 32)));
+    const auto stage = make_plates_stage();
+    StageIo io(state, stage->info());
+    Context context;
+    context.seed = seed;
+    stage->run(io, context);
+    EXPECT_NEAR(context.budget.at("crust_closing_error"), 0.0, 1e-12) << "seed " << seed;
+    EXPECT_NEAR(context.budget.at("crust_created_km2_yr"), 4.0, 2.0) << "seed " << seed;
   }
 }
 

@@ -96,7 +96,7 @@ std::vector<float> craton_potential(const Cratons& model, const CubedSphere& mes
   const RandomStream random(seed, "plates.cratons");
   std::vector<Craton> cratons;
   for (std::size_t k = 0; k < plates.size(); ++k) {
-    if (carries[k] == 0) continue;
+    if (carries[k] == 0 || area_sr[k] == 0.0) continue;  // some plates are all consumed
     const double count = model.per_sphere * area_sr[k] / (4.0 * kPi);
     place_cratons(model, mesh, plate, static_cast<int>(k),
                   std::max(1, static_cast<int>(std::lround(count))), random, cratons);
