@@ -7,6 +7,7 @@
 #include "geo/core/error.hpp"
 #include "geo/kernels/diffusion.hpp"
 #include "geo/kernels/overlay.hpp"
+#include "tridiagonal.hpp"
 
 namespace geo {
 
@@ -45,6 +46,37 @@ void smooth_broadly(const Grid& grid, std::span<float> field, double length_m) {
 #pragma omp for schedule(static)
     for (int j = 0; j < grid.ny(); ++j) {
       smoothed.row(j, field.subspan(grid.cell(0, j), grid.nx()), scratch);
+    }
+  }
+}
+
+void smooth_slivers(const Grid& grid, std::span<float> field, std::span<const std::uint8_t> fixed) {
+  if (grid.topology() != Topology::sphere) return;
+  constexpr double kShare = 0.3;
+  const int nx = grid.nx();
+#pragma omp parallel
+  {
+    TridiagonalBlock<1> system(nx, /*periodic=*/true);
+    std::vector<double> value(nx);
+#pragma omp for schedule(dynamic, 8)
+    for (int j = 0; j < grid.ny(); ++j) {
+      const double width = grid.spacing_east_m(j), height = grid.face_east_m(j);
+      const double variance_m2 = kShare * (height * height - 4.0 * width * width);
+      if (variance_m2 <= 0.0) continue;
+      const double exchange = 0.5 * variance_m2 / (width * width);
+      const Index begin = grid.cell(0, j);
+      const auto wall = [&](int i) { return fixed[begin + i] != 0; };
+      for (int i = 0; i < nx; ++i) {
+        const int west = i > 0 ? i - 1 : nx - 1, east = i + 1 < nx ? i + 1 : 0;
+        *system.lower(i) = wall(i) || wall(west) ? 0.0 : exchange;
+        *system.upper(i) = wall(i) || wall(east) ? 0.0 : exchange;
+        value[i] = field[begin + i];
+      }
+      system.factorise();
+      system.solve(value.data());
+      for (int i = 0; i < nx; ++i) {
+        if (!wall(i)) field[begin + i] = static_cast<float>(value[i]);
+      }
     }
   }
 }

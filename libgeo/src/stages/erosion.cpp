@@ -157,6 +157,8 @@ class Landscape {
     before_.assign(z_.begin(), z_.end());
     incise<float>(grid_, graph_, area_m2_, erodibility_, law(), z_);
     creep();
+    // Near a pole a river would cut a valley as narrow as its cells are there.
+    smooth_slivers(grid_, z_, outlets_);
     book_lowering();
     if (p_.rebound_fraction > 0.0) rebound();
   }
