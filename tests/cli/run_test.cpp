@@ -227,7 +227,7 @@ TEST_F(Run, LaterSayWins) {
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const std::string config = text_of(folder_ / "out/config.toml");
   for (const char* line : {"\ngrid = \"36x18\"\n", "\nseed = 6\n", "\nsteps = 4\n",
-                           "\ntime_step_yr = 7.0\n", "\nmap_width_px = 1024\n"}) {
+                           "\ntime_step_yr = 7.0\n", "\nmap_width_px = 800\n"}) {
     EXPECT_THAT(config, HasSubstr(line));
   }
 }
