@@ -6,27 +6,31 @@
 namespace geo::io {
 namespace {
 
-/// Costs of a stage per cell: time on one thread and memory at its peak, fields included.
+/// Costs of a stage: time on one thread, whatever the grid and per cell, and memory per cell at its
+/// peak, fields included.
 struct StageCost {
   std::string_view stage;
+  double seconds;
   double nanoseconds;
   double memory_bytes;
 };
 
 // Measured on default planets and on Earth's relief at 5', two cores of an AMD EPYC.
 constexpr StageCost kStageCosts[] = {
-    {"plates", 900.0, 60.0},   {"isostasy", 900.0, 115.0},  {"erosion", 4000.0, 130.0},
-    {"climate", 900.0, 110.0}, {"hydrology", 900.0, 150.0}, {"biomes", 500.0, 130.0},
-    {"island", 4000.0, 400.0},  // per cell of its own
+    {"plates", 0.8, 650.0, 60.0},     {"isostasy", 0.2, 650.0, 115.0},
+    {"erosion", 0.0, 2600.0, 130.0},  {"climate", 0.8, 270.0, 110.0},
+    {"hydrology", 0.0, 380.0, 150.0}, {"biomes", 0.0, 90.0, 130.0},
+    {"island", 0.0, 4500.0, 400.0},  // per cell of its own
 };
-constexpr StageCost kUnknownStage{"", 1000.0, 150.0};
+constexpr StageCost kUnknownStage{"", 0.0, 1000.0, 150.0};
 
 constexpr double kIslandCells = 1024.0 * 512.0;
 constexpr double kBaseMemory_bytes = 120e6;  // program and libraries
 constexpr double kWriting_ns = 45.0;         // per value: deflate and digest, in the background
 constexpr double kCompression = 0.55;        // NetCDF values after deflate
-constexpr double kMaps_s = 12.0;             // all maps at their default width, one thread
+constexpr double kMaps_s = 8.0;              // all maps at their default width, one thread
 constexpr double kMaps_bytes = 12e6;
+constexpr double kMapWidth_px = 1800.0;
 constexpr double kParallelShare = 0.8;  // of the time, Amdahl
 
 double value_bytes(const FieldSpec& spec) {
@@ -45,7 +49,7 @@ double value_bytes(const FieldSpec& spec) {
 }  // namespace
 
 Prediction predict(const Pipeline& pipeline, int first, int last, double cells, int threads,
-                   bool vtk, bool maps) {
+                   bool vtk, double map_width_px) {
   Prediction sum;
   for (int at = first; at <= last; ++at) {
     const StageInfo& info = pipeline.stages()[at]->info();
@@ -57,13 +61,12 @@ Prediction predict(const Pipeline& pipeline, int first, int last, double cells, 
     double bytes = 0.0;
     for (const FieldSpec* spec : info.writes) bytes += value_bytes(*spec);
     const double writing_ns = kWriting_ns * static_cast<double>(info.writes.size());
-    sum.seconds += (cost->nanoseconds + writing_ns) * 1e-9 * own_cells;
+    sum.seconds += cost->seconds + (cost->nanoseconds + writing_ns) * 1e-9 * own_cells;
     sum.disk_bytes += bytes * own_cells * (kCompression + (vtk ? 1.0 : 0.0));
   }
-  if (maps) {
-    sum.seconds += kMaps_s;
-    sum.disk_bytes += kMaps_bytes;
-  }
+  const double map_area = std::pow(map_width_px / kMapWidth_px, 2);
+  sum.seconds += map_area * kMaps_s;
+  sum.disk_bytes += map_area * kMaps_bytes;
   sum.seconds *= (1.0 - kParallelShare) + kParallelShare / std::max(threads, 1);
   sum.memory_bytes += kBaseMemory_bytes;
   return sum;

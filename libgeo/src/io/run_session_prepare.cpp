@@ -381,7 +381,7 @@ void RunSession::read_given_fields() {
 
 Prediction RunSession::prediction() const {
   return predict(pipeline_, first_, last_, static_cast<double>(grid().size()), request_.threads,
-                 settings_.vtk, settings_.maps);
+                 settings_.vtk, settings_.maps ? static_cast<double>(settings_.map_width_px) : 0.0);
 }
 
 std::vector<std::string_view> RunSession::stages_to_run() const {

@@ -12,8 +12,8 @@ struct Prediction {
 };
 
 /// Predicts stages first..last of a pipeline on `cells` cells from costs per cell, one table in the
-/// source. `vtk` and `maps` as in RunSettings.
+/// source. `vtk` as in RunSettings; `map_width_px` is 0 where no maps are drawn.
 Prediction predict(const Pipeline& pipeline, int first, int last, double cells, int threads,
-                   bool vtk, bool maps);
+                   bool vtk, double map_width_px);
 
 }  // namespace geo::io
