@@ -33,8 +33,9 @@ struct FlowPartition {
 /// Σ of sources. Poles are crossed and edges wrapped.
 ///
 /// Cells are visited when the last donor has given: linear, no sort. Weights are computed before
-/// that, by all threads; 2 bytes per cell of memory and a stack, and 32 where water parts. Results do not depend on the number of threads. Throws
-/// InputError if shapes do not fit or the exponent is not positive, Bug if a receiver climbs.
+/// that, by all threads; 2 bytes per cell of memory and a stack, and 32 where water parts. Results
+/// do not depend on the number of threads. Throws InputError if shapes do not fit or the exponent
+/// is not positive, Bug if a receiver climbs.
 void accumulate_flow(const Grid& grid, std::span<const float> surface_m,
                      std::span<const Index> receiver, const FlowPartition& partition,
                      std::span<double> values);

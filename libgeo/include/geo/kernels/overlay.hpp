@@ -30,7 +30,8 @@ class Overlay {
   [[nodiscard]] const Grid& fine() const noexcept { return fine_; }
   [[nodiscard]] const Grid& coarse() const noexcept { return coarse_; }
 
-  /// Area-weighted mean of the fine values that each coarse cell holds; 0 where the fine grid covers nothing.
+  /// Area-weighted mean of the fine values that each coarse cell holds; 0 where the fine grid
+  /// covers nothing.
   void average(std::span<const float> values, std::span<float> mean) const;
   /// Area-weighted means of the land fraction (elevation >= 0) and of the elevation above sea
   /// level, and the share of each coarse cell that the fine grid covers (0..1).
