@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "geo/core/place.hpp"
 #include "geo/core/vector3.hpp"
 
 namespace geo::io {
@@ -11,12 +12,6 @@ namespace {
 
 constexpr Rgb kMark{0.70F, 0.07F, 0.13F};
 constexpr double kRadians = std::numbers::pi / 180.0;
-
-Vector3 unit_vector_of(const Centre& place) {
-  const double latitude = place.latitude_deg * kRadians, longitude = place.longitude_deg * kRadians;
-  return {std::cos(latitude) * std::cos(longitude), std::cos(latitude) * std::sin(longitude),
-          std::sin(latitude)};
-}
 
 Centre place_of(const Vector3& at) {
   return {std::asin(std::clamp(at[2], -1.0, 1.0)) / kRadians, std::atan2(at[1], at[0]) / kRadians};

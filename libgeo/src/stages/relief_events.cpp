@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "geo/core/error.hpp"
+#include "geo/core/place.hpp"
 #include "geo/core/vector3.hpp"
 #include "geo/kernels/impact_crater.hpp"
 #include "geo/kernels/noise.hpp"
@@ -21,12 +22,6 @@ namespace {
 
 constexpr double kCubicKilometre_m3 = 1e9;
 constexpr double kRadians = std::numbers::pi / 180.0;
-
-Vector3 unit_vector_of(const Centre& place) {
-  const double latitude = place.latitude_deg * kRadians, longitude = place.longitude_deg * kRadians;
-  return {std::cos(latitude) * std::cos(longitude), std::cos(latitude) * std::sin(longitude),
-          std::sin(latitude)};
-}
 
 /// Calls `visit(place, weight)` for points spread evenly over the area of a cell, as many to a side
 /// that they lie `finest_m` apart; weights add up to 1.
