@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+
+#include "geo/kernels/sphere_mesh.hpp"
+#include "geo/kernels/sphere_state.hpp"
+#include "geo/kernels/sphere_tectonics.hpp"
+
+namespace geo {
+
+/// How a planet's plates and crust begin (Cortial et al. 2019, section 3): plates are the spherical
+/// Voronoi cells of random centroids, with distances warped by noise.
+struct SphereStart {
+  std::int64_t plates = 40;
+  double continental_share = 0.3;   ///< of the area
+  bool whole_plates = false;        ///< continents are whole plates; else they lie across plates
+  double warp_km = 700.0;           ///< of the plates' borders
+  double continent_km = 4500.0;     ///< wavelength of continents
+  double continental_km = 36.0;     ///< thickness of their crust
+  double oldest_floor_myr = 130.0;  ///< of the first sea floor, far from boundaries
+};
+
+/// Plates, motion and crust of a seed. Axes are uniform on the sphere, speeds uniform from a fifth
+/// of the fastest to it.
+SphereState start_sphere(const SphereMesh& mesh, const SphereStart& start,
+                         const SphereSettings& settings, std::uint64_t seed);
+
+}  // namespace geo

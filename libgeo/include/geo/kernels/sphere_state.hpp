@@ -1,0 +1,73 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "geo/core/field.hpp"
+#include "geo/core/vector3.hpp"
+#include "geo/kernels/quaternion.hpp"
+
+namespace geo {
+
+/// Crust data of a sample (Cortial et al. 2019, Table 1), one array each; 48 bytes a sample.
+/// Samples are those of a Fibonacci sphere and stay where they are in the frame of their plate.
+struct SphereCrust {
+  std::vector<std::int16_t> plate;       ///< place in SphereState::plates; -1: consumed
+  std::vector<std::int8_t> continental;  ///< crust type: 1 continental, 0 oceanic
+  std::vector<std::int8_t> orogeny;      ///< OrogenyType
+  std::vector<float> thickness_m;
+  std::vector<float> elevation_m;
+  std::vector<float> age_myr;               ///< of oceanic crust, since it left its ridge
+  std::vector<float> orogeny_age_myr;       ///< of continental crust, since it was last folded
+  std::vector<std::array<float, 3>> ridge;  ///< unit vector along the ridge that made it, or zero
+  std::vector<std::array<float, 3>> fold;   ///< direction of folds in the ground, or zero
+
+  void resize(std::size_t samples);
+  [[nodiscard]] std::int32_t size() const { return static_cast<std::int32_t>(plate.size()); }
+};
+
+/// A rigid plate. Positions of its samples are `turn` times those of the lattice.
+struct SpherePlate {
+  Quaternion turn;              ///< since the last resampling
+  Vector3 axis{0.0, 0.0, 1.0};  ///< w, unit vector
+  double speed_rad_myr = 0.0;   ///< omega
+  bool alive = true;
+  /// The plate that carries this body since it collided with it, or -1: both move as one and become
+  /// one at the next resampling.
+  std::int16_t carrier = -1;
+  double born_myr = 0.0;
+};
+
+/// What is remembered of two plates, the one of lower number first.
+struct PlatePair {
+  std::int8_t ocean_top = -1;      ///< which one's ocean floor stays up: 0 first, 1 second
+  std::int8_t continent_top = -1;  ///< the same of their continents
+  float last_contact_myr = -1e9F;
+};
+
+/// All that a run of the sphere model needs to go on.
+struct SphereState {
+  SphereCrust crust;
+  std::vector<SpherePlate> plates;
+  std::vector<PlatePair> pairs;  ///< plates.size() squared; used where row < column
+  double time_myr = 0.0;
+  std::int64_t steps = 0;
+  double resampled_myr = 0.0;  ///< time of the last resampling
+
+  [[nodiscard]] PlatePair& pair(int a, int b) {
+    return pairs[static_cast<std::size_t>(a < b ? a : b) * plates.size() + (a < b ? b : a)];
+  }
+  [[nodiscard]] const PlatePair& pair(int a, int b) const {
+    return pairs[static_cast<std::size_t>(a < b ? a : b) * plates.size() + (a < b ? b : a)];
+  }
+  /// The plate that a body moves with: itself unless it is carried.
+  [[nodiscard]] int root(int plate) const {
+    while (plates[plate].carrier >= 0) plate = plates[plate].carrier;
+    return plate;
+  }
+  /// A new plate in the place of a dead one, or behind the others; its pairs forget.
+  int add_plate(const SpherePlate& plate);
+};
+
+}  // namespace geo

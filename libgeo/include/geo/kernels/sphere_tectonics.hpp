@@ -1,0 +1,165 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "geo/kernels/noise.hpp"
+#include "geo/kernels/sphere_mesh.hpp"
+#include "geo/kernels/sphere_partition.hpp"
+#include "geo/kernels/sphere_state.hpp"
+#include "geo/kernels/tectonic_laws.hpp"
+
+namespace geo {
+
+/// Settings of the plates of a sphere through time.
+struct SphereSettings {
+  TectonicConstants law;
+  double radius_km = 6370.0;
+  bool driftworld_uplift = false;     ///< Driftworld's f instead of the piecewise one
+  double uplift_control_km = 200.0;   ///< where subduction raises most
+  double fold_per_km = 0.002;         ///< beta of the fold direction, per km of relative motion
+  double slab_pull = 1e-3;            ///< epsilon, per Myr and 1000 km of front
+  double penetration_km = 300.0;      ///< of continents, before they collide
+  double surge_km = 4.5;              ///< most that one collision lifts
+  double oceanic_km = 7.0;            ///< thickness of new crust
+  double arc_km = 25.0;               ///< thickness of an island arc when it emerges
+  double ridge_falloff = 0.05;        ///< sigma of the ridge's profile, in radii
+  bool floor_by_age = false;          ///< depth by GDH1 instead of damping
+  double accretion_top_km = -3.0;     ///< up to which a trench's sediment piles
+  double accretion_width_km = 100.0;  ///< of the wedge
+  double rift_per_myr = 0.004;        ///< lambda_0
+  double rift_smallest = 0.5;         ///< smaller plates, in mean areas, do not rift
+  double rift_speed_mm_yr = 30.0;     ///< at which fragments part
+  double rift_warp_km = 400.0;        ///< of their borders
+  double mean_area_km2 = 1.27e7;      ///< A_0
+  double smallest_piece_km2 = 5e5;    ///< detached pieces below join a neighbour
+  bool no_net_rotation = true;
+  std::int64_t least_steps = 10, most_steps = 60;  ///< between resamplings
+  double rebound = 6.6;  ///< thickness of a root per height: rho_m / (rho_m - rho_c)
+};
+
+/// Sums over a step. Areas km2, volumes of continental crust km3.
+struct SphereBudget {
+  double time_myr = 0.0;
+  int plates = 0;
+  bool resampled = false;
+  int collisions = 0, rifts = 0;
+  double area_error = 0.0;        ///< sum of the plates' areas over the sphere's, less 1
+  double created_km2 = 0.0;       ///< new ocean floor
+  double consumed_km2 = 0.0;      ///< ocean floor that had gone below another plate
+  double buried_km2 = 0.0;        ///< continents that had gone below others
+  double ocean_change_km2 = 0.0;  ///< of the oceanic area, measured
+  double ocean_error_km2 = 0.0;   ///< created - consumed - turned into continent - change
+  double emerged_km2 = 0.0;       ///< ocean floor that became continental
+  double continental_km3 = 0.0;   ///< volume of continental crust at the end of the step
+  double raised_km3 = 0.0;        ///< added by subduction: magma and accretion
+  double eroded_km3 = 0.0;
+  double emerged_km3 = 0.0;     ///< of arcs when they became continental
+  double swallowed_km3 = 0.0;   ///< taken by collisions from below and given back as mountains
+  double lost_km3 = 0.0;        ///< gone below oceanic crust or beyond the highest summit
+  double resampling_km3 = 0.0;  ///< what interpolation added or took
+};
+
+/// A happening worth telling.
+struct SphereEvent {
+  enum class Kind { collision, rift } kind;
+  double time_myr;
+  int first, second;  ///< plates: terrane's and collided one, or the plate that rifted and -1
+  Vector3 place;      ///< centroid, unit vector
+  double area_km2;    ///< of the terrane or plate
+};
+
+/// Plates on a sphere through time: the model of "Procedural Tectonic Planets" (Cortial, Peytavie,
+/// Galin & Guerin 2019) on the samples of a Fibonacci sphere.
+///
+/// Samples stay where they are in the frame of their plate, which turns as a rigid body. Whether
+/// two plates overlap is asked of the lattice: a sample carried into another plate's frame lies
+/// over the sample nearest to it. Only samples in blocks that may touch another plate are asked.
+/// The top of an overlap is the continental crust, of two oceans the plate whose floor was younger
+/// when they met, of two continents the plate that carries more of it. From time to time all is
+/// read anew at the lattice's places (resampling), where new floor fills what has opened.
+///
+/// Results do not depend on the number of threads. Cost: linear in samples.
+class SphereTectonics {
+ public:
+  /// Takes the state over. Throws Bug when it does not fit the mesh.
+  SphereTectonics(const SphereMesh& mesh, const SphereSettings& settings, SphereState state,
+                  std::uint64_t seed);
+
+  /// One step of settings.law.step_myr.
+  void advance();
+  /// Reads the crust anew at the places of the lattice and fills gaps with new floor.
+  void resample();
+  /// Splits a plate by the nearest of some places, warped; the fragments part at the speed.
+  void rift(int plate, std::span<const Vector3> places, double speed_mm_yr);
+
+  [[nodiscard]] const SphereState& state() const noexcept { return state_; }
+  /// For what changes a state from outside, between steps; call repartition() after changing
+  /// plates.
+  [[nodiscard]] SphereState& state() noexcept { return state_; }
+  void repartition();
+  [[nodiscard]] const SphereMesh& mesh() const noexcept { return *mesh_; }
+  [[nodiscard]] const SphereSettings& settings() const noexcept { return settings_; }
+  [[nodiscard]] const SphereBudget& budget() const noexcept { return budget_; }
+  [[nodiscard]] const std::vector<SphereEvent>& events() const noexcept { return events_; }
+  [[nodiscard]] const SpherePartition& partition() const noexcept { return partition_; }
+  /// Rotation of each plate, rad/Myr, in the frame of the planet.
+  [[nodiscard]] const std::vector<Vector3>& rotations() const noexcept { return rotation_; }
+  /// Sample of another plate that lies at the same place, or -1, as of the last step.
+  [[nodiscard]] std::span<const std::int32_t> partners() const noexcept { return partner_; }
+  /// Whether a sample has gone below its partner.
+  [[nodiscard]] std::span<const std::uint8_t> hidden() const noexcept { return hidden_; }
+
+  /// An edge of an overriding plate above one that goes down.
+  struct Front {
+    std::int32_t sample;      ///< of the overriding plate
+    std::int16_t lower;       ///< plate that goes down
+    float lower_elevation_m;  ///< of what goes down there
+  };
+  [[nodiscard]] const std::vector<Front>& fronts() const noexcept { return fronts_; }
+  /// The nearest front of the same plate to each sample, or -1.
+  [[nodiscard]] std::span<const std::int32_t> nearest_front() const noexcept { return front_of_; }
+
+ private:
+  void move();
+  void set_frames();
+  void find_contacts();
+  void decide_pairs();
+  void find_fronts();
+  void spread_fronts();
+  void raise();
+  void pull_slabs();
+  void collide();
+  void collide(std::int32_t sample);
+  void surge(int upper, std::span<const std::int32_t> terrane, const Vector3& centroid,
+             double area_km2, double speed_mm_yr);
+  void rift_by_chance();
+  void subtract_net_rotation();
+  void fill_gaps(SphereCrust& now, std::vector<std::int16_t>& owner);
+  void tidy_pieces();
+  void measure_volume();
+  [[nodiscard]] bool is_on_top(std::int32_t sample, std::int32_t other) const;
+  [[nodiscard]] bool is_due() const;
+  [[nodiscard]] double distance_km(std::int32_t a, std::int32_t b) const;
+  [[nodiscard]] double sample_km2() const;
+  [[nodiscard]] std::vector<std::int32_t> terrane_of(std::int32_t sample) const;
+
+  const SphereMesh* mesh_;
+  SphereSettings settings_;
+  SphereState state_;
+  std::uint64_t seed_;
+  Noise warp_;
+  SphereBudget budget_;
+  std::vector<SphereEvent> events_;
+  SpherePartition partition_;
+  std::vector<Matrix3> frame_;     // of each plate
+  std::vector<Vector3> rotation_;  // of each plate, rad/Myr
+  std::vector<std::int32_t> partner_, contacts_, front_of_;
+  std::vector<std::uint8_t> hidden_;
+  std::vector<Front> fronts_;
+  std::vector<float> chord2_;
+};
+
+}  // namespace geo

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+namespace geo {
+
+/// Sum of value(i) for i below `count`, in blocks of one size added in order: the same bits for any
+/// number of threads.
+template <class Value>
+double sum_over(std::int32_t count, Value&& value) {
+  constexpr std::int32_t kBlock = 8192;
+  const std::int32_t blocks = (count + kBlock - 1) / kBlock;
+  std::vector<double> part(blocks, 0.0);
+#pragma omp parallel for schedule(static)
+  for (std::int32_t block = 0; block < blocks; ++block) {
+    double sum = 0.0;
+    const std::int32_t end = std::min(count, (block + 1) * kBlock);
+    for (std::int32_t i = block * kBlock; i < end; ++i) sum += value(i);
+    part[block] = sum;
+  }
+  double sum = 0.0;
+  for (const double one : part) sum += one;
+  return sum;
+}
+
+/// What chunks of a parallel loop found, one after the other.
+template <class T>
+std::vector<T> joined(const std::vector<std::vector<T>>& parts) {
+  std::size_t size = 0;
+  for (const auto& part : parts) size += part.size();
+  std::vector<T> all;
+  all.reserve(size);
+  for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+}  // namespace geo

@@ -1,0 +1,180 @@
+#include <algorithm>
+#include <cmath>
+
+#include "geo/kernels/sphere_tectonics.hpp"
+#include "sample_sums.hpp"
+
+namespace geo {
+namespace {
+
+constexpr auto kHimalayan = static_cast<std::int8_t>(OrogenyType::himalayan);
+/// A plate that would keep less than this share of the mean area goes along with its terrane.
+constexpr double kRemnant = 0.05;
+
+}  // namespace
+
+std::vector<std::int32_t> SphereTectonics::terrane_of(std::int32_t sample) const {
+  const SphereCrust& crust = state_.crust;
+  const std::int16_t plate = crust.plate[sample];
+  std::vector<std::int32_t> terrane{sample};
+  std::vector<std::uint8_t> seen(crust.plate.size(), 0);
+  seen[sample] = 1;
+  for (std::size_t k = 0; k < terrane.size(); ++k) {
+    for (const std::int32_t j : mesh_->neighbours(terrane[k])) {
+      if (seen[j] != 0 || crust.plate[j] != plate || crust.continental[j] == 0) continue;
+      seen[j] = 1;
+      terrane.push_back(j);
+    }
+  }
+  return terrane;
+}
+
+/// Continents that have gone far enough below another one collide with it.
+void SphereTectonics::collide() {
+  const SphereCrust& crust = state_.crust;
+  const auto count = static_cast<std::int32_t>(contacts_.size());
+  constexpr std::int32_t kChunk = 1024;
+  std::vector<std::vector<std::int32_t>> found((count + kChunk - 1) / kChunk);
+#pragma omp parallel for schedule(dynamic)
+  for (std::size_t chunk = 0; chunk < found.size(); ++chunk) {
+    const auto from = static_cast<std::int32_t>(chunk) * kChunk;
+    for (std::int32_t k = from; k < std::min(count, from + kChunk); ++k) {
+      const std::int32_t i = contacts_[k], above = partner_[i];
+      if (hidden_[i] == 0 || crust.continental[i] == 0 || crust.continental[above] == 0) continue;
+      const std::int32_t front = front_of_[above];
+      if (front < 0 || fronts_[front].lower != crust.plate[i]) continue;
+      if (distance_km(above, fronts_[front].sample) < settings_.penetration_km) continue;
+      found[chunk].push_back(i);
+    }
+  }
+  bool changed = false;
+  for (const std::int32_t i : joined(found)) {
+    // Consumed or detached by a collision before it in this step.
+    if (crust.plate[i] < 0 || crust.plate[partner_[i]] < 0) continue;
+    if (state_.root(crust.plate[i]) == state_.root(crust.plate[partner_[i]])) continue;
+    collide(i);
+    changed = true;
+  }
+  if (changed) repartition();
+}
+
+/// Slab break, suture and surge: the terrane that holds `sample` comes to its partner's plate.
+void SphereTectonics::collide(std::int32_t sample) {
+  SphereCrust& crust = state_.crust;
+  const FibonacciSphere& samples = mesh_->samples();
+  const int lower = crust.plate[sample], upper = crust.plate[partner_[sample]];
+  const std::vector<std::int32_t> terrane = terrane_of(sample);
+  const double area_km2 = sample_km2() * static_cast<double>(terrane.size());
+  Vector3 sum{};
+  for (const std::int32_t i : terrane) sum = add(sum, samples.position(i));
+  const Vector3 centroid = times(frame_[lower], normalised(sum));
+  const Vector3 relative = add(rotation_[lower], rotation_[upper], -1.0);
+  const double speed_mm_yr = settings_.radius_km * length(cross(relative, centroid));
+  surge(upper, terrane, centroid, area_km2, speed_mm_yr);
+
+  SpherePlate body = state_.plates[lower];
+  body.carrier = static_cast<std::int16_t>(upper);
+  body.born_myr = state_.time_myr;
+  const double rest_km2 =
+      sample_km2() * (partition_.cap(lower).samples - static_cast<double>(terrane.size()));
+  if (rest_km2 < kRemnant * settings_.mean_area_km2) {
+    state_.plates[lower].carrier = static_cast<std::int16_t>(state_.root(upper));
+  } else {
+    const int carried = state_.add_plate(body);
+    for (const std::int32_t i : terrane) {
+      if (crust.plate[i] >= 0) crust.plate[i] = static_cast<std::int16_t>(carried);
+    }
+  }
+  set_frames();
+  ++budget_.collisions;
+  events_.push_back(
+      {SphereEvent::Kind::collision, state_.time_myr, lower, upper, centroid, area_km2});
+}
+
+/// Mountains of the collided plate around a terrane. The crust that the terrane had pushed below is
+/// consumed and given back as their roots: the profile and the reach are those of 4.2, its height
+/// at most `surge_km`, and its reach drawn in until its volume is what was swallowed.
+void SphereTectonics::surge(int upper, std::span<const std::int32_t> terrane,
+                            const Vector3& centroid, double area_km2, double speed_mm_yr) {
+  SphereCrust& crust = state_.crust;
+  const FibonacciSphere& samples = mesh_->samples();
+  const SphereSettings& s = settings_;
+  double swallowed_km3 = 0.0;
+  std::vector<std::int32_t> queue, next, reached;
+  std::fill(chord2_.begin(), chord2_.end(), 9.0F);
+  std::vector<std::int32_t> source(crust.plate.size(), -1);
+  for (const std::int32_t i : terrane) {
+    const std::int32_t above = partner_[i];
+    if (hidden_[i] == 0 || above < 0 || crust.plate[above] != upper) continue;
+    swallowed_km3 += sample_km2() * 1e-3 * crust.thickness_m[i];
+    crust.plate[i] = -1;
+    if (source[above] >= 0) continue;
+    source[above] = above;
+    chord2_[above] = 0.0F;
+    queue.push_back(above);
+  }
+  const double reach_km = collision_radius_km(speed_mm_yr, area_km2, s.mean_area_km2, s.law);
+  const double half = std::sin(0.5 * std::min(reach_km / s.radius_km, 3.1));
+  const auto most = static_cast<float>(4.0 * half * half);
+  reached = queue;
+  while (!queue.empty()) {
+    next.clear();
+    for (const std::int32_t i : queue) {
+      for (const std::int32_t j : mesh_->neighbours(i)) {
+        if (crust.plate[j] != upper || crust.continental[j] == 0 || source[j] == source[i])
+          continue;
+        const Vector3 way = add(samples.position(j), samples.position(source[i]), -1.0);
+        const auto chord2 = static_cast<float>(dot(way, way));
+        if (chord2 >= most || chord2 >= chord2_[j]) continue;
+        if (source[j] < 0) reached.push_back(j);
+        source[j] = source[i];
+        chord2_[j] = chord2;
+        next.push_back(j);
+      }
+    }
+    queue.swap(next);
+  }
+  const double height_km =
+      std::min(s.surge_km, collision_surge_km(area_km2, 0.0, std::max(reach_km, 1.0), s.law));
+  std::vector<double> far_km;
+  for (const std::int32_t i : reached) far_km.push_back(distance_km(i, source[i]));
+  const auto lifted_km = [&](std::size_t k, double radius_km) {
+    const double above = std::max(0.0, s.law.summit_km - 1e-3 * crust.elevation_m[reached[k]]);
+    return std::min(above, height_km * collision_profile(far_km[k], radius_km));
+  };
+  const auto volume_km3 = [&](double radius_km) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < reached.size(); ++k) sum += lifted_km(k, radius_km);
+    return sample_km2() * s.rebound * sum;
+  };
+  double low = 0.0, high = std::max(reach_km, 1.0);
+  if (volume_km3(high) > swallowed_km3) {
+    for (int k = 0; k < 30; ++k) {
+      const double middle = 0.5 * (low + high);
+      (volume_km3(middle) > swallowed_km3 ? high : low) = middle;
+    }
+    high = low;
+  }
+  // What the profile does not take thickens the crust above what was swallowed.
+  const double given_km3 = volume_km3(high);
+  const double rest_km = reached.empty() ? 0.0
+                                         : (swallowed_km3 - given_km3) /
+                                               (sample_km2() * static_cast<double>(reached.size()));
+  const Vector3 q = back(frame_[upper], centroid);
+  for (std::size_t k = 0; k < reached.size(); ++k) {
+    const std::int32_t i = reached[k];
+    const double lifted = lifted_km(k, high);
+    const double raised_m = crust.elevation_m[i] + 1e3 * (lifted + rest_km / s.rebound);
+    crust.elevation_m[i] = static_cast<float>(std::min(1e3 * s.law.summit_km, raised_m));
+    crust.thickness_m[i] += static_cast<float>(1e3 * (s.rebound * lifted + rest_km));
+    if (lifted < 0.02) continue;
+    crust.orogeny[i] = kHimalayan;
+    crust.orogeny_age_myr[i] = 0.0F;
+    const Vector3 fold = collision_fold(samples.position(i), q);
+    for (int c = 0; c < 3; ++c) crust.fold[i][c] = static_cast<float>(fold[c]);
+  }
+  budget_.swallowed_km3 += swallowed_km3;
+  if (reached.empty()) budget_.lost_km3 += swallowed_km3;
+}
+
+}  // namespace geo

@@ -1,0 +1,179 @@
+#include <algorithm>
+#include <cmath>
+
+#include "geo/kernels/sphere_tectonics.hpp"
+#include "sample_sums.hpp"
+
+namespace geo {
+
+void SphereTectonics::find_contacts() {
+  const auto& blocks = partition_.blocks();
+  const auto block_count = static_cast<std::int32_t>(blocks.size());
+  const auto plates = static_cast<int>(state_.plates.size());
+  const FibonacciSphere& samples = mesh_->samples();
+  const SphereCrust& crust = state_.crust;
+  std::vector<int> root(plates);
+  for (int p = 0; p < plates; ++p) root[p] = state_.root(p);
+  std::fill(partner_.begin(), partner_.end(), -1);
+  constexpr std::int32_t kChunk = 64;
+  std::vector<std::vector<std::int32_t>> found((block_count + kChunk - 1) / kChunk);
+#pragma omp parallel for schedule(dynamic)
+  for (std::size_t chunk = 0; chunk < found.size(); ++chunk) {
+    const auto from = static_cast<std::int32_t>(chunk) * kChunk;
+    for (std::int32_t b = from; b < std::min(block_count, from + kChunk); ++b) {
+      const auto& block = blocks[b];
+      const int own = block.plate;
+      const Vector3 centre = times(frame_[own], partition_.centre(block.coarse));
+      for (int other = 0; other < plates; ++other) {
+        if (root[other] == root[own] || !state_.plates[other].alive) continue;
+        if (!partition_.may_hold(other, back(frame_[other], centre))) continue;
+        const Matrix3 to_other = back_times(frame_[other], frame_[own]);
+        for (const std::int32_t i : partition_.samples(block)) {
+          if (partner_[i] >= 0 && crust.continental[partner_[i]] != 0) continue;
+          const std::int32_t under = samples.nearest(times(to_other, samples.position(i)));
+          if (crust.plate[under] != other) continue;
+          if (partner_[i] < 0) found[chunk].push_back(i);
+          if (partner_[i] < 0 || crust.continental[under] != 0) partner_[i] = under;
+        }
+      }
+    }
+  }
+  contacts_ = joined(found);
+}
+
+/// Which plate stays up where two meet anew: of oceans the one with the younger floor there, of
+/// continents the one with more of them.
+void SphereTectonics::decide_pairs() {
+  constexpr float kForgotten_myr = 30.0F;
+  const SphereCrust& crust = state_.crust;
+  const std::size_t plates = state_.plates.size();
+  struct Ages {
+    double own = 0.0, other = 0.0;
+    std::int32_t count = 0;
+  };
+  std::vector<Ages> ages(plates * plates);
+  std::vector<std::uint8_t> touching(plates * plates, 0);
+  for (const std::int32_t i : contacts_) {
+    const std::int32_t j = partner_[i];
+    const int a = crust.plate[i], b = crust.plate[j];
+    if (a > b) continue;  // the other side sees the same
+    touching[a * plates + b] = 1;
+    if (crust.continental[i] != 0 || crust.continental[j] != 0) continue;
+    Ages& pair = ages[a * plates + b];
+    pair.own += crust.age_myr[i];
+    pair.other += crust.age_myr[j];
+    ++pair.count;
+  }
+  const auto now = static_cast<float>(state_.time_myr);
+  for (std::size_t a = 0; a < plates; ++a) {
+    for (std::size_t b = a + 1; b < plates; ++b) {
+      if (touching[a * plates + b] == 0) continue;
+      PlatePair& pair = state_.pair(static_cast<int>(a), static_cast<int>(b));
+      if (now - pair.last_contact_myr > kForgotten_myr) pair = {};
+      pair.last_contact_myr = now;
+      const Ages& met = ages[a * plates + b];
+      if (pair.ocean_top < 0 && met.count > 0) pair.ocean_top = met.own <= met.other ? 0 : 1;
+      if (pair.continent_top < 0) {
+        const auto first = partition_.cap(static_cast<int>(a)).continental;
+        const auto second = partition_.cap(static_cast<int>(b)).continental;
+        pair.continent_top = first >= second ? 0 : 1;
+      }
+    }
+  }
+}
+
+bool SphereTectonics::is_on_top(std::int32_t sample, std::int32_t other) const {
+  const SphereCrust& crust = state_.crust;
+  const bool land = crust.continental[sample] != 0;
+  if (land != (crust.continental[other] != 0)) return land;
+  const int a = crust.plate[sample], b = crust.plate[other];
+  const PlatePair& pair = state_.pair(a, b);
+  const std::int8_t top = land ? pair.continent_top : pair.ocean_top;
+  return (top == 1) == (a > b);
+}
+
+void SphereTectonics::find_fronts() {
+  const FibonacciSphere& samples = mesh_->samples();
+  const SphereCrust& crust = state_.crust;
+  const auto count = static_cast<std::int32_t>(contacts_.size());
+  std::fill(hidden_.begin(), hidden_.end(), 0);
+#pragma omp parallel for schedule(static)
+  for (std::int32_t k = 0; k < count; ++k) {
+    const std::int32_t i = contacts_[k];
+    hidden_[i] = is_on_top(i, partner_[i]) ? 0 : 1;
+  }
+  constexpr std::int32_t kChunk = 1024;
+  std::vector<std::vector<Front>> found((count + kChunk - 1) / kChunk);
+#pragma omp parallel for schedule(dynamic)
+  for (std::size_t chunk = 0; chunk < found.size(); ++chunk) {
+    const auto from = static_cast<std::int32_t>(chunk) * kChunk;
+    for (std::int32_t k = from; k < std::min(count, from + kChunk); ++k) {
+      const std::int32_t i = contacts_[k];
+      if (hidden_[i] != 0) continue;
+      const Vector3& here = samples.position(i);
+      const std::int16_t own = crust.plate[i];
+      Vector3 outward{};
+      bool is_edge = false;
+      for (const std::int32_t j : mesh_->neighbours(i)) {
+        const bool out = crust.plate[j] != own || hidden_[j] != 0;
+        is_edge = is_edge || out;
+        outward = add(outward, add(samples.position(j), here, -1.0), out ? 1.0 : -1.0);
+      }
+      if (!is_edge) continue;
+      const std::int32_t below = partner_[i];
+      const std::int16_t lower = crust.plate[below];
+      const Vector3 relative =
+          cross(back(frame_[own], add(rotation_[lower], rotation_[own], -1.0)), here);
+      if (dot(relative, outward) >= 0.0) continue;  // they part
+      found[chunk].push_back({i, lower, crust.elevation_m[below]});
+    }
+  }
+  fronts_ = joined(found);
+}
+
+/// The nearest front to each sample of an overriding plate within the reach of subduction: fronts
+/// are handed from sample to sample, each plate by itself.
+void SphereTectonics::spread_fronts() {
+  const FibonacciSphere& samples = mesh_->samples();
+  const SphereCrust& crust = state_.crust;
+  const double reach = settings_.law.subduction_distance_km / settings_.radius_km;
+  const double half = std::sin(0.5 * std::min(reach, 3.1));
+  const auto most = static_cast<float>(4.0 * half * half);
+  std::fill(front_of_.begin(), front_of_.end(), -1);
+  std::vector<std::vector<std::int32_t>> of_plate(state_.plates.size());
+  for (std::size_t k = 0; k < fronts_.size(); ++k) {
+    of_plate[crust.plate[fronts_[k].sample]].push_back(static_cast<std::int32_t>(k));
+  }
+#pragma omp parallel for schedule(dynamic, 1)
+  for (std::size_t p = 0; p < of_plate.size(); ++p) {
+    if (of_plate[p].empty()) continue;
+    std::vector<std::int32_t> queue, next;
+    for (const std::int32_t k : of_plate[p]) {
+      const std::int32_t i = fronts_[k].sample;
+      front_of_[i] = k;
+      chord2_[i] = 0.0F;
+      queue.push_back(i);
+    }
+    while (!queue.empty()) {
+      next.clear();
+      for (const std::int32_t i : queue) {
+        const std::int32_t front = front_of_[i];
+        const Vector3& source = samples.position(fronts_[front].sample);
+        for (const std::int32_t j : mesh_->neighbours(i)) {
+          if (crust.plate[j] != static_cast<std::int16_t>(p) || hidden_[j] != 0) continue;
+          if (front_of_[j] == front) continue;
+          const Vector3& at = samples.position(j);
+          const double x = at[0] - source[0], y = at[1] - source[1], z = at[2] - source[2];
+          const auto chord2 = static_cast<float>(x * x + y * y + z * z);
+          if (chord2 >= most || (front_of_[j] >= 0 && chord2 >= chord2_[j])) continue;
+          front_of_[j] = front;
+          chord2_[j] = chord2;
+          next.push_back(j);
+        }
+      }
+      queue.swap(next);
+    }
+  }
+}
+
+}  // namespace geo

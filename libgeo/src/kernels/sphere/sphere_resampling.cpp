@@ -1,0 +1,303 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "geo/kernels/ocean_depth.hpp"
+#include "geo/kernels/sphere_tectonics.hpp"
+#include "sample_sums.hpp"
+
+namespace geo {
+namespace {
+
+using Float3 = std::array<float, 3>;
+
+Float3 turned(const Matrix3& frame, const Float3& v) {
+  const Vector3 r = times(frame, {v[0], v[1], v[2]});
+  return {static_cast<float>(r[0]), static_cast<float>(r[1]), static_cast<float>(r[2])};
+}
+
+/// One sample of a plate and the corners of its triangle that are of the same plate and type, with
+/// weights of sum 1.
+struct Reading {
+  std::array<std::int32_t, 3> corner;
+  std::array<double, 3> weight;
+
+  [[nodiscard]] float operator()(const std::vector<float>& values) const {
+    double sum = 0.0;
+    for (int k = 0; k < 3; ++k) sum += weight[k] * values[corner[k]];
+    return static_cast<float>(sum);
+  }
+  [[nodiscard]] Float3 operator()(const std::vector<Float3>& values) const {
+    std::array<double, 3> sum{};
+    for (int k = 0; k < 3; ++k) {
+      for (int c = 0; c < 3; ++c) sum[c] += weight[k] * values[corner[k]][c];
+    }
+    return {static_cast<float>(sum[0]), static_cast<float>(sum[1]), static_cast<float>(sum[2])};
+  }
+};
+
+Reading read_around(const SphereMesh& mesh, const SphereCrust& crust, const Vector3& at,
+                    std::int32_t nearest) {
+  const auto place = mesh.locate(at, nearest);
+  Reading reading{place.corner, {}};
+  double sum = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    const std::int32_t corner = place.corner[k];
+    const bool same = crust.plate[corner] == crust.plate[nearest] &&
+                      crust.continental[corner] == crust.continental[nearest];
+    reading.weight[k] = same ? place.weight[k] : 0.0;
+    sum += reading.weight[k];
+  }
+  if (sum < 1e-6) return {{nearest, nearest, nearest}, {1.0, 0.0, 0.0}};
+  for (double& weight : reading.weight) weight /= sum;
+  return reading;
+}
+
+}  // namespace
+
+void SphereTectonics::resample() {
+  const FibonacciSphere& samples = mesh_->samples();
+  const std::int32_t n = mesh_->size();
+  const SphereCrust before = std::move(state_.crust);
+  state_.crust = before;  // is_on_top and the partition ask for it while the new one grows
+  SphereCrust now;
+  now.resize(n);
+  std::vector<std::int16_t> owner(n, -1);
+  const auto plates = static_cast<int>(state_.plates.size());
+  std::vector<int> root(plates);
+  for (int p = 0; p < plates; ++p) root[p] = state_.root(p);
+  const std::int32_t places = partition_.coarse().size();
+#pragma omp parallel for schedule(dynamic, 16)
+  for (std::int32_t g = 0; g < places; ++g) {
+    std::vector<int> candidates;
+    for (int p = 0; p < plates; ++p) {
+      if (!state_.plates[p].alive) continue;
+      if (partition_.may_hold(p, back(frame_[p], partition_.centre(g)))) candidates.push_back(p);
+    }
+    for (const std::int32_t i : partition_.samples_at(g)) {
+      std::int32_t top = -1, below = -1;
+      for (const int p : candidates) {
+        const std::int32_t j = samples.nearest(back(frame_[p], samples.position(i)));
+        if (before.plate[j] != p) continue;
+        if (top < 0) {
+          top = j;
+          continue;
+        }
+        const int q = before.plate[top];
+        // A body lies below the plate that carries it, as far as both are of one type.
+        const bool carried = root[p] == root[q] && before.continental[j] == before.continental[top];
+        const bool above = carried ? root[p] == p : is_on_top(j, top);
+        if (above) std::swap(top, below);
+        (above ? top : below) = j;
+      }
+      if (top < 0) continue;
+      const int p = before.plate[top];
+      const auto reading = read_around(*mesh_, before, back(frame_[p], samples.position(i)), top);
+      owner[i] = static_cast<std::int16_t>(root[p]);
+      now.continental[i] = before.continental[top];
+      now.orogeny[i] = before.orogeny[top];
+      now.thickness_m[i] = reading(before.thickness_m);
+      now.elevation_m[i] = reading(before.elevation_m);
+      now.age_myr[i] = reading(before.age_myr);
+      now.orogeny_age_myr[i] = reading(before.orogeny_age_myr);
+      now.ridge[i] = turned(frame_[p], reading(before.ridge));
+      now.fold[i] = turned(frame_[p], reading(before.fold));
+      if (below < 0 || root[before.plate[below]] == root[p]) continue;
+      // Continental crust that has gone below another continent stays there, as its root.
+      if (before.continental[below] != 0 && before.continental[top] != 0) {
+        const double added = before.thickness_m[below];
+        now.thickness_m[i] += static_cast<float>(added);
+        now.elevation_m[i] = static_cast<float>(std::min(
+            1e3 * settings_.law.summit_km, now.elevation_m[i] + added / settings_.rebound));
+        now.orogeny[i] = static_cast<std::int8_t>(OrogenyType::himalayan);
+        now.orogeny_age_myr[i] = 0.0F;
+      }
+    }
+  }
+  const auto oceanic = [&](const SphereCrust& crust) {
+    return sample_km2() * sum_over(n, [&](std::int32_t i) {
+             return crust.plate[i] >= 0 && crust.continental[i] == 0 ? 1.0 : 0.0;
+           });
+  };
+  const double ocean_before_km2 = oceanic(before);
+  measure_volume();
+  const double volume_before_km3 = budget_.continental_km3;
+  budget_.created_km2 =
+      sample_km2() * sum_over(n, [&](std::int32_t i) { return owner[i] < 0 ? 1.0 : 0.0; });
+  const auto gone_km2 = [&](std::int8_t type) {
+    return sample_km2() * sum_over(n, [&](std::int32_t i) {
+             return before.continental[i] == type && (before.plate[i] < 0 || hidden_[i] != 0) ? 1.0
+                                                                                              : 0.0;
+           });
+  };
+  budget_.consumed_km2 = gone_km2(0);
+  budget_.buried_km2 = gone_km2(1);
+  fill_gaps(now, owner);
+  state_.crust = std::move(now);
+  state_.crust.plate = std::move(owner);
+  for (SpherePlate& plate : state_.plates) {
+    plate.turn = {};
+    if (plate.carrier >= 0) plate.alive = false;
+    plate.carrier = -1;
+  }
+  state_.resampled_myr = state_.time_myr;
+  tidy_pieces();
+  repartition();
+  std::fill(partner_.begin(), partner_.end(), -1);
+  std::fill(hidden_.begin(), hidden_.end(), 0);
+  std::fill(front_of_.begin(), front_of_.end(), -1);
+  fronts_.clear();
+  contacts_.clear();
+  measure_volume();
+  budget_.resampling_km3 = budget_.continental_km3 - volume_before_km3;
+  budget_.ocean_change_km2 = oceanic(state_.crust) - ocean_before_km2;
+  budget_.ocean_error_km2 = budget_.created_km2 - budget_.consumed_km2 - budget_.ocean_change_km2;
+  budget_.resampled = true;
+}
+
+/// New floor where no plate is: each place hears of the nearest sample of the two nearest plates;
+/// the ridge runs half way between them.
+void SphereTectonics::fill_gaps(SphereCrust& now, std::vector<std::int16_t>& owner) {
+  const FibonacciSphere& samples = mesh_->samples();
+  const SphereSettings& s = settings_;
+  const std::int32_t n = mesh_->size();
+  struct Sides {
+    std::array<std::int32_t, 2> source{-1, -1};
+    std::array<float, 2> chord2{9.0F, 9.0F};
+  };
+  std::vector<std::int32_t> number(n, -1), gaps, queue, next;
+  for (std::int32_t i = 0; i < n; ++i) {
+    if (owner[i] >= 0) continue;
+    number[i] = static_cast<std::int32_t>(gaps.size());
+    gaps.push_back(i);
+  }
+  std::vector<Sides> sides(gaps.size());
+  /// True when the place did not know of a source as near of that plate.
+  const auto offer = [&](std::int32_t i, std::int32_t source) {
+    Sides& at = sides[number[i]];
+    const Vector3 way = add(samples.position(i), samples.position(source), -1.0);
+    const auto chord2 = static_cast<float>(dot(way, way));
+    int slot = -1;
+    for (int k = 0; k < 2; ++k) {
+      if (at.source[k] >= 0 && owner[at.source[k]] == owner[source]) slot = k;
+    }
+    if (slot < 0) slot = at.source[0] < 0 ? 0 : 1;
+    if (chord2 >= at.chord2[slot]) return false;
+    at.source[slot] = source;
+    at.chord2[slot] = chord2;
+    if (at.source[1] >= 0 && at.chord2[1] < at.chord2[0]) {
+      std::swap(at.source[0], at.source[1]);
+      std::swap(at.chord2[0], at.chord2[1]);
+    }
+    return true;
+  };
+  for (const std::int32_t i : gaps) {
+    bool reached = false;
+    for (const std::int32_t j : mesh_->neighbours(i)) {
+      if (owner[j] >= 0) reached = offer(i, j) || reached;
+    }
+    if (reached) queue.push_back(i);
+  }
+  while (!queue.empty()) {
+    next.clear();
+    for (const std::int32_t i : queue) {
+      for (const std::int32_t j : mesh_->neighbours(i)) {
+        if (owner[j] >= 0) continue;
+        bool reached = false;
+        for (const std::int32_t source : sides[number[i]].source) {
+          if (source >= 0) reached = offer(j, source) || reached;
+        }
+        if (reached) next.push_back(j);
+      }
+    }
+    queue.swap(next);
+  }
+  const double elapsed_myr = state_.time_myr - state_.resampled_myr;
+  const auto gap_count = static_cast<std::int32_t>(gaps.size());
+  std::vector<std::int16_t> nearest_plate(gaps.size());
+#pragma omp parallel for schedule(static)
+  for (std::int32_t k = 0; k < gap_count; ++k) {
+    const std::int32_t i = gaps[k];
+    const auto [first, second] = sides[k].source;
+    const double near_km = distance_km(i, first);
+    const double far_km = second >= 0 ? distance_km(i, second) : near_km;
+    const double ridge_km = 0.5 * (far_km - near_km);
+    const double share = ridge_share(ridge_km, near_km);
+    const double mean_km =
+        1e-3 *
+        (now.elevation_m[first] * far_km +
+         (second >= 0 ? now.elevation_m[second] : now.elevation_m[first]) * near_km) /
+        std::max(1e-9, near_km + far_km);
+    const double profile_km = ridge_profile_km(ridge_km, s.ridge_falloff * s.radius_km, s.law);
+    nearest_plate[k] = owner[first];
+    now.age_myr[i] = static_cast<float>(share * elapsed_myr);
+    now.elevation_m[i] =
+        static_cast<float>(s.floor_by_age ? -ocean_depth_m(share * elapsed_myr)
+                                          : 1e3 * new_floor_km(share, mean_km, profile_km));
+    now.thickness_m[i] = static_cast<float>(1e3 * s.oceanic_km);
+    if (second < 0) continue;
+    const Vector3& p = samples.position(i);
+    const Vector3 from_ridge = add(samples.position(first), samples.position(second), -1.0);
+    const Vector3 ridge = normalised(cross(from_ridge, p));
+    for (int c = 0; c < 3; ++c) now.ridge[i][c] = static_cast<float>(ridge[c]);
+  }
+  for (std::int32_t k = 0; k < gap_count; ++k) owner[gaps[k]] = nearest_plate[k];
+}
+
+/// Detached pieces of plates: small ones join the neighbour they border most, large ones are plates
+/// of their own that go on as they did.
+void SphereTectonics::tidy_pieces() {
+  auto& plate = state_.crust.plate;
+  const std::int32_t n = mesh_->size();
+  std::vector<std::int32_t> piece(n, -1), size;
+  std::vector<std::int32_t> member, first;
+  for (std::int32_t i = 0; i < n; ++i) {
+    if (piece[i] >= 0) continue;
+    const auto number = static_cast<std::int32_t>(size.size());
+    first.push_back(static_cast<std::int32_t>(member.size()));
+    member.push_back(i);
+    piece[i] = number;
+    for (std::size_t k = first.back(); k < member.size(); ++k) {
+      for (const std::int32_t j : mesh_->neighbours(member[k])) {
+        if (piece[j] >= 0 || plate[j] != plate[i]) continue;
+        piece[j] = number;
+        member.push_back(j);
+      }
+    }
+    size.push_back(static_cast<std::int32_t>(member.size()) - first.back());
+  }
+  first.push_back(n);
+  std::vector<std::int32_t> largest(state_.plates.size(), -1);
+  for (std::size_t k = 0; k < size.size(); ++k) {
+    std::int32_t& best = largest[plate[member[first[k]]]];
+    if (best < 0 || size[k] > size[best]) best = static_cast<std::int32_t>(k);
+  }
+  const double small = settings_.smallest_piece_km2 / sample_km2();
+  for (std::size_t k = 0; k < size.size(); ++k) {
+    const auto own = plate[member[first[k]]];
+    const auto members = std::span(member).subspan(first[k], size[k]);
+    const bool keeps = largest[own] == static_cast<std::int32_t>(k);
+    if (keeps && (size[k] > small || size.size() < 3)) continue;
+    if (size[k] > small) {
+      if (keeps) continue;
+      SpherePlate copy = state_.plates[own];
+      copy.born_myr = state_.time_myr;
+      const int fresh = state_.add_plate(copy);
+      for (const std::int32_t i : members) plate[i] = static_cast<std::int16_t>(fresh);
+      continue;
+    }
+    std::vector<std::int32_t> border(state_.plates.size(), 0);
+    for (const std::int32_t i : members) {
+      for (const std::int32_t j : mesh_->neighbours(i)) {
+        if (piece[j] != static_cast<std::int32_t>(k) && plate[j] != own) ++border[plate[j]];
+      }
+    }
+    const auto best = std::max_element(border.begin(), border.end());
+    if (*best == 0) continue;
+    for (const std::int32_t i : members) {
+      plate[i] = static_cast<std::int16_t>(best - border.begin());
+    }
+  }
+}
+
+}  // namespace geo

@@ -1,0 +1,94 @@
+#include <algorithm>
+#include <cmath>
+
+#include "geo/core/random.hpp"
+#include "geo/kernels/sphere_tectonics.hpp"
+
+namespace geo {
+
+void SphereTectonics::rift_by_chance() {
+  const RandomStream random(seed_, "plates.rifts");
+  const auto step = static_cast<std::uint64_t>(state_.steps) << 10U;
+  const auto plates = static_cast<int>(state_.plates.size());
+  for (int p = 0; p < plates; ++p) {
+    if (!state_.plates[p].alive || state_.plates[p].carrier >= 0) continue;
+    const auto& cap = partition_.cap(p);
+    const double ratio = sample_km2() * cap.samples / settings_.mean_area_km2;
+    if (ratio < settings_.rift_smallest) continue;
+    // Continents break more easily than the floor of oceans.
+    const double weight = 0.2 + 0.8 * cap.continental / std::max(1, cap.samples);
+    const std::uint64_t index = step + static_cast<std::uint64_t>(p);
+    const double chance =
+        rift_probability(settings_.rift_per_myr * settings_.law.step_myr, weight, ratio);
+    if (random.uniform(index) >= chance) continue;
+    const double draw = random.uniform(index, 1);
+    const int fragments = draw < 0.6 ? 2 : draw < 0.9 ? 3 : 4;
+    // Places drawn on the sphere until enough lie on the plate.
+    std::vector<Vector3> places;
+    for (std::uint64_t k = 0; k < 4000 && std::ssize(places) < fragments; ++k) {
+      const Vector3 at = random.direction((index << 12U) + k);
+      if (state_.crust.plate[mesh_->samples().nearest(back(frame_[p], at))] == p) {
+        places.push_back(at);
+      }
+    }
+    if (std::ssize(places) < 2) continue;
+    rift(p, places, settings_.rift_speed_mm_yr * random.uniform(index, 2, 0.6, 1.4));
+  }
+}
+
+void SphereTectonics::rift(int plate, std::span<const Vector3> places, double speed_mm_yr) {
+  const FibonacciSphere& samples = mesh_->samples();
+  auto& of = state_.crust.plate;
+  const auto& cap = partition_.cap(plate);
+  const Vector3 centre = times(frame_[plate], cap.centre);
+  const double area_km2 = sample_km2() * cap.samples;
+  std::vector<Vector3> local;
+  for (const Vector3& place : places) local.push_back(back(frame_[plate], place));
+  const double most = 2.2 * settings_.rift_warp_km / settings_.radius_km;
+  constexpr double kWavelength_km = 1500.0;
+  std::vector<std::int8_t> fragment(of.size(), -1);
+#pragma omp parallel for schedule(static)
+  for (std::int32_t i = 0; i < mesh_->size(); ++i) {
+    if (of[i] != plate) continue;
+    Vector3 at = samples.position(i);
+    const Vector3 straight = at;
+    for (int c = 0; c < 3; ++c) {
+      const Vector3 shifted{straight[0] + 3.1 * c, straight[1] - 1.7 * c, straight[2] + 0.9 * c};
+      at[c] += most * warp_.fbm(shifted, settings_.radius_km / kWavelength_km, 5);
+    }
+    double least = 9.0;
+    for (std::size_t k = 0; k < local.size(); ++k) {
+      const double far = length(add(at, local[k], -1.0));
+      if (far < least) {
+        least = far;
+        fragment[i] = static_cast<std::int8_t>(k);
+      }
+    }
+  }
+  const SpherePlate whole = state_.plates[plate];
+  const Vector3 drift = scaled(whole.axis, whole.speed_rad_myr);
+  for (std::size_t k = 0; k < local.size(); ++k) {
+    SpherePlate part = whole;
+    part.born_myr = state_.time_myr;
+    // Away from the middle of the plate that was.
+    const Vector3 away = normalised(cross(centre, places[k]));
+    const Vector3 rotation = add(drift, away, speed_mm_yr / settings_.radius_km);
+    part.speed_rad_myr =
+        std::min(length(rotation), settings_.law.speed_mm_yr / settings_.radius_km);
+    if (part.speed_rad_myr > 0.0) part.axis = normalised(rotation);
+    int number = plate;
+    if (k == 0) {
+      state_.plates[plate] = part;
+    } else {
+      number = state_.add_plate(part);
+    }
+    for (std::int32_t i = 0; i < mesh_->size(); ++i) {
+      if (fragment[i] == static_cast<std::int8_t>(k)) of[i] = static_cast<std::int16_t>(number);
+    }
+  }
+  ++budget_.rifts;
+  events_.push_back({SphereEvent::Kind::rift, state_.time_myr, plate, -1, centre, area_km2});
+  repartition();
+}
+
+}  // namespace geo

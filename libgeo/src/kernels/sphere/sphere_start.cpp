@@ -1,0 +1,197 @@
+#include "geo/kernels/sphere_start.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "geo/core/random.hpp"
+#include "geo/kernels/noise.hpp"
+#include "geo/kernels/ocean_depth.hpp"
+
+namespace geo {
+namespace {
+
+class Beginning {
+ public:
+  Beginning(const SphereMesh& mesh, const SphereStart& start, const SphereSettings& settings,
+            std::uint64_t seed)
+      : mesh_(mesh), start_(start), settings_(settings), seed_(seed) {
+    state_.crust.resize(mesh.size());
+  }
+
+  SphereState make() {
+    cut_plates();
+    draw_continents();
+    draw_relief();
+    return std::move(state_);
+  }
+
+ private:
+  /// Voronoi cells of centroids that keep apart, as warped distances see them.
+  void cut_plates() {
+    const RandomStream random(seed_, "plates.sphere");
+    std::vector<Vector3> centroids;
+    for (std::int64_t k = 0; k < start_.plates; ++k) {
+      // The farthest of three candidates from those before: cells of unequal size, none tiny.
+      Vector3 best{};
+      double most = -1.0;
+      for (std::uint64_t c = 0; c < 3; ++c) {
+        const Vector3 at = random.direction(3 * static_cast<std::uint64_t>(k) + c);
+        double least = 9.0;
+        for (const Vector3& other : centroids) {
+          least = std::min(least, length(add(at, other, -1.0)));
+        }
+        if (least > most) {
+          most = least;
+          best = at;
+        }
+      }
+      centroids.push_back(best);
+      SpherePlate plate;
+      plate.axis = random.direction(100000 + static_cast<std::uint64_t>(k));
+      plate.speed_rad_myr = settings_.law.speed_mm_yr / settings_.radius_km *
+                            random.uniform(200000 + static_cast<std::uint64_t>(k), 0, 0.2, 1.0);
+      state_.add_plate(plate);
+    }
+    const std::array<Noise, 3> warp{Noise(seed_, "plates.warp_x"), Noise(seed_, "plates.warp_y"),
+                                    Noise(seed_, "plates.warp_z")};
+    const double amplitude = 2.2 * start_.warp_km / settings_.radius_km;
+    constexpr double kWavelength_km = 3000.0;
+#pragma omp parallel for schedule(static)
+    for (std::int32_t i = 0; i < mesh_.size(); ++i) {
+      const Vector3& straight = mesh_.samples().position(i);
+      Vector3 at = straight;
+      for (int c = 0; c < 3; ++c) {
+        at[c] += amplitude * warp[c].fbm(straight, settings_.radius_km / kWavelength_km, 6, 0.5);
+      }
+      double least = 9.0;
+      for (std::size_t k = 0; k < centroids.size(); ++k) {
+        const double far = length(add(at, centroids[k], -1.0));
+        if (far >= least) continue;
+        least = far;
+        state_.crust.plate[i] = static_cast<std::int16_t>(k);
+      }
+    }
+  }
+
+  void draw_continents() {
+    const std::int32_t n = mesh_.size();
+    const auto wanted = static_cast<std::int32_t>(std::lround(start_.continental_share * n));
+    SphereCrust& crust = state_.crust;
+    if (start_.whole_plates) {
+      // Plates in random order until the share is reached as nearly as may be.
+      const RandomStream random(seed_, "plates.continental");
+      std::vector<std::int32_t> size(state_.plates.size(), 0), order(state_.plates.size());
+      for (const std::int16_t plate : crust.plate) ++size[plate];
+      std::iota(order.begin(), order.end(), 0);
+      std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
+        return random.uniform(static_cast<std::uint64_t>(a)) <
+               random.uniform(static_cast<std::uint64_t>(b));
+      });
+      std::vector<std::uint8_t> chosen(state_.plates.size(), 0);
+      std::int32_t sum = 0;
+      for (const std::int32_t p : order) {
+        if (std::abs(sum + size[p] - wanted) >= std::abs(sum - wanted)) continue;
+        sum += size[p];
+        chosen[p] = 1;
+      }
+      for (std::int32_t i = 0; i < n; ++i) {
+        crust.continental[i] = static_cast<std::int8_t>(chosen[crust.plate[i]]);
+      }
+      return;
+    }
+    const Noise noise(seed_, "plates.continents");
+    const auto height = fbm_at(noise, mesh_.samples().positions(),
+                               settings_.radius_km / start_.continent_km, 8, 0.55);
+    std::vector<float> sorted(height);
+    const auto at = std::clamp(n - wanted, 0, n - 1);
+    std::nth_element(sorted.begin(), sorted.begin() + at, sorted.end());
+    for (std::int32_t i = 0; i < n; ++i) {
+      crust.continental[i] = wanted > 0 && height[i] >= sorted[at] ? 1 : 0;
+    }
+  }
+
+  /// Low, worn continents; floor that ages away from the borders of its plate.
+  void draw_relief() {
+    SphereCrust& crust = state_.crust;
+    const std::vector<float> boundary_km = distance_to_boundary_km();
+    const Noise swell(seed_, "plates.first_relief");
+    const auto relief =
+        fbm_at(swell, mesh_.samples().positions(), settings_.radius_km / 1800.0, 5, 0.5);
+    constexpr double kHalfRate_mm_yr = 35.0, kLow_m = 350.0, kSwell_m = 900.0;
+#pragma omp parallel for schedule(static)
+    for (std::int32_t i = 0; i < mesh_.size(); ++i) {
+      if (crust.continental[i] != 0) {
+        const double lift_m = std::max(10.0, kLow_m + kSwell_m * relief[i]);
+        crust.elevation_m[i] = static_cast<float>(lift_m);
+        crust.thickness_m[i] =
+            static_cast<float>(1e3 * start_.continental_km + settings_.rebound * (lift_m - kLow_m));
+        crust.orogeny_age_myr[i] = 1000.0F;
+        continue;
+      }
+      const double oldest = start_.oldest_floor_myr;
+      const double age = oldest * std::tanh(boundary_km[i] / kHalfRate_mm_yr / oldest);
+      crust.age_myr[i] = static_cast<float>(age);
+      crust.thickness_m[i] = static_cast<float>(1e3 * settings_.oceanic_km);
+      crust.elevation_m[i] = static_cast<float>(
+          settings_.floor_by_age
+              ? -ocean_depth_m(age)
+              : 1e3 * ridge_profile_km(boundary_km[i],
+                                       settings_.ridge_falloff * settings_.radius_km,
+                                       settings_.law));
+    }
+  }
+
+  [[nodiscard]] std::vector<float> distance_to_boundary_km() const {
+    const FibonacciSphere& samples = mesh_.samples();
+    const auto& plate = state_.crust.plate;
+    std::vector<std::int32_t> source(mesh_.size(), -1), queue, next;
+    std::vector<float> chord2(mesh_.size(), 9.0F);
+    for (std::int32_t i = 0; i < mesh_.size(); ++i) {
+      for (const std::int32_t j : mesh_.neighbours(i)) {
+        if (plate[j] == plate[i]) continue;
+        source[i] = i;
+        chord2[i] = 0.0F;
+        queue.push_back(i);
+        break;
+      }
+    }
+    while (!queue.empty()) {
+      next.clear();
+      for (const std::int32_t i : queue) {
+        for (const std::int32_t j : mesh_.neighbours(i)) {
+          if (source[j] == source[i]) continue;
+          const Vector3 way = add(samples.position(j), samples.position(source[i]), -1.0);
+          const auto far2 = static_cast<float>(dot(way, way));
+          if (far2 >= chord2[j]) continue;
+          chord2[j] = far2;
+          source[j] = source[i];
+          next.push_back(j);
+        }
+      }
+      queue.swap(next);
+    }
+    std::vector<float> distance(mesh_.size(), 20000.0F);
+    for (std::int32_t i = 0; i < mesh_.size(); ++i) {
+      if (source[i] < 0) continue;
+      distance[i] = static_cast<float>(
+          settings_.radius_km * angle_between(samples.position(i), samples.position(source[i])));
+    }
+    return distance;
+  }
+
+  const SphereMesh& mesh_;
+  const SphereStart& start_;
+  const SphereSettings& settings_;
+  std::uint64_t seed_;
+  SphereState state_;
+};
+
+}  // namespace
+
+SphereState start_sphere(const SphereMesh& mesh, const SphereStart& start,
+                         const SphereSettings& settings, std::uint64_t seed) {
+  return Beginning(mesh, start, settings, seed).make();
+}
+
+}  // namespace geo

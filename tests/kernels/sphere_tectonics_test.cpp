@@ -1,0 +1,327 @@
+// Plates of a sphere through time.
+#include "geo/kernels/sphere_tectonics.hpp"
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include <cmath>
+#include <cstring>
+#include <numbers>
+
+#include "geo/kernels/ocean_depth.hpp"
+#include "geo/kernels/sphere_start.hpp"
+
+namespace geo {
+namespace {
+
+constexpr double kKmPerDegree = 6370.0 * std::numbers::pi / 180.0;
+
+Vector3 place(double latitude_deg, double longitude_deg) {
+  const double phi = latitude_deg * std::numbers::pi / 180.0;
+  const double lambda = longitude_deg * std::numbers::pi / 180.0;
+  return {std::cos(phi) * std::cos(lambda), std::cos(phi) * std::sin(lambda), std::sin(phi)};
+}
+double longitude_deg(const Vector3& at) {
+  return std::atan2(at[1], at[0]) * 180.0 / std::numbers::pi;
+}
+double latitude_deg(const Vector3& at) { return std::asin(at[2]) * 180.0 / std::numbers::pi; }
+
+struct World {
+  explicit World(std::int32_t n) : samples(n), mesh(samples) {}
+  FibonacciSphere samples;
+  SphereMesh mesh;
+};
+
+/// Two plates that part or meet along longitude 0 and half-way round, all ocean of age 50 Myr.
+SphereState hemispheres(const World& world, double relative_mm_yr) {
+  SphereState state;
+  state.crust.resize(world.mesh.size());
+  for (const double sign : {-0.5, 0.5}) {
+    SpherePlate plate;
+    plate.axis = {0.0, 0.0, relative_mm_yr * sign < 0.0 ? -1.0 : 1.0};
+    plate.speed_rad_myr = std::abs(sign * relative_mm_yr) / 6370.0;
+    state.add_plate(plate);
+  }
+  for (std::int32_t i = 0; i < world.mesh.size(); ++i) {
+    state.crust.plate[i] = longitude_deg(world.samples.position(i)) < 0.0 ? 0 : 1;
+    state.crust.thickness_m[i] = 7000.0F;
+    state.crust.elevation_m[i] = -5000.0F;
+    state.crust.age_myr[i] = state.crust.plate[i] == 0 ? 50.0F : 60.0F;
+  }
+  return state;
+}
+
+SphereSettings quiet() {
+  SphereSettings settings;
+  settings.rift_per_myr = 0.0;
+  settings.slab_pull = 0.0;
+  settings.no_net_rotation = false;
+  return settings;
+}
+
+TEST(SphereTectonics, OpensAnOceanWithItsRidgeInTheMiddleAndAgesToItsSides) {
+  const World world(30000);
+  SphereSettings settings = quiet();
+  settings.floor_by_age = true;
+  // Part at longitude 0 and meet at 180: 100 mm/yr for 20 Myr opens 2000 km at the equator.
+  SphereTectonics model(world.mesh, settings, hemispheres(world, 100.0), 1);
+  for (int k = 0; k < 10; ++k) model.advance();
+  model.resample();
+  EXPECT_EQ(model.state().time_myr, 20.0);
+  const SphereCrust& crust = model.state().crust;
+  double worst = 0.0;
+  int seen = 0;
+  for (std::int32_t i = 0; i < world.mesh.size(); ++i) {
+    const Vector3& at = world.samples.position(i);
+    if (std::abs(latitude_deg(at)) > 20.0 || std::abs(longitude_deg(at)) > 7.0) continue;
+    const double from_ridge_km =
+        std::abs(longitude_deg(at)) * kKmPerDegree * std::cos(std::asin(at[2]));
+    const double half_km = 1000.0 * std::cos(std::asin(at[2]));
+    worst = std::max(worst, std::abs(crust.age_myr[i] - 20.0 * from_ridge_km / half_km));
+    EXPECT_EQ(crust.plate[i], longitude_deg(at) < 0.0 ? 0 : 1) << longitude_deg(at);
+    EXPECT_FLOAT_EQ(crust.elevation_m[i], static_cast<float>(-ocean_depth_m(crust.age_myr[i])));
+    EXPECT_GT(std::abs(crust.ridge[i][2]), 0.9F);  // the ridge runs north
+    ++seen;
+  }
+  EXPECT_GT(seen, 300);
+  // The borders of plates are steps of samples, 140 km apart here.
+  EXPECT_LT(worst, 20.0 * 180.0 / 1000.0);
+}
+
+TEST(SphereTectonics, OpensWhatTheRelativeMotionSweeps) {
+  const World world(30000);
+  SphereTectonics model(world.mesh, quiet(), hemispheres(world, 100.0), 1);
+  for (int k = 0; k < 10; ++k) model.advance();
+  model.resample();
+  // A lune of angle 2000 km / R has the area 2 R^2 angle; the steps of samples along the borders,
+  // 140 km wide, open a little more.
+  const double lune_km2 = 2.0 * 6370.0 * 2000.0;
+  EXPECT_NEAR(model.budget().created_km2, lune_km2, 0.05 * lune_km2);
+  EXPECT_NEAR(model.budget().consumed_km2, lune_km2, 0.05 * lune_km2);
+  EXPECT_NEAR(model.budget().area_error, 0.0, 1e-12);
+  EXPECT_NEAR(model.budget().ocean_change_km2, 0.0, 1.0);
+}
+
+TEST(SphereTectonics, OlderFloorGoesDown) {
+  const World world(20000);
+  SphereTectonics model(world.mesh, quiet(), hemispheres(world, 100.0), 1);
+  for (int k = 0; k < 5; ++k) model.advance();
+  int below = 0, above = 0;
+  for (std::int32_t i = 0; i < world.mesh.size(); ++i) {
+    (model.state().crust.plate[i] == 1 ? below : above) += model.hidden()[i];
+  }
+  EXPECT_GT(below, 100);
+  EXPECT_EQ(above, 0);
+  for (const auto& front : model.fronts()) {
+    EXPECT_EQ(model.state().crust.plate[front.sample], 0);
+    EXPECT_EQ(front.lower, 1);
+  }
+  EXPECT_GT(model.fronts().size(), 40U);
+}
+
+TEST(SphereTectonics, RaisesTheOverridingPlateByItsLaw) {
+  const World world(30000);
+  SphereSettings settings = quiet();
+  settings.law.damping_mm_yr = 0.0;
+  settings.accretion_width_km = 0.0;
+  SphereTectonics model(world.mesh, settings, hemispheres(world, 100.0), 1);
+  model.advance();
+  int raised = 0;
+  for (std::int32_t i = 0; i < world.mesh.size(); ++i) {
+    const std::int32_t k = model.nearest_front()[i];
+    if (k < 0) continue;
+    const Vector3& at = world.samples.position(i);
+    const double d_km =
+        6370.0 * angle_between(at, world.samples.position(model.fronts()[k].sample));
+    const double v = 100.0 * std::hypot(at[0], at[1]);
+    // 0.6 mm/yr f g h with h = (5 / 20)^2, for 2 Myr.
+    const double rise_m = 1200.0 * uplift_by_distance(d_km, 200.0, 1800.0) * v / 100.0 / 16.0;
+    ASSERT_NEAR(model.state().crust.elevation_m[i], -5000.0 + rise_m, 0.01);
+    raised += rise_m > 10.0;
+  }
+  EXPECT_GT(raised, 500);
+}
+
+/// A continent on each side, so placed that they meet at longitude 180.
+SphereState two_continents(const World& world, double gap_km, double relative_mm_yr) {
+  SphereState state = hemispheres(world, relative_mm_yr);
+  for (std::int32_t i = 0; i < world.mesh.size(); ++i) {
+    const Vector3& at = world.samples.position(i);
+    const double from_180_km = (180.0 - std::abs(longitude_deg(at))) * kKmPerDegree;
+    const double wide_km = state.crust.plate[i] == 0 ? 4000.0 : 1500.0;
+    if (std::abs(latitude_deg(at)) > 15.0 || from_180_km < 0.5 * gap_km ||
+        from_180_km > 0.5 * gap_km + wide_km) {
+      continue;
+    }
+    state.crust.continental[i] = 1;
+    state.crust.elevation_m[i] = 300.0F;
+    state.crust.thickness_m[i] = 36000.0F;
+  }
+  return state;
+}
+
+TEST(SphereTectonics, ContinentsCollideWhenThreeHundredKilometresHaveGoneUnder) {
+  const World world(30000);
+  // 500 km apart, 100 mm/yr: they touch after 5 Myr and collide after 8, at a step of 2 Myr and
+  // samples 140 km apart.
+  SphereTectonics model(world.mesh, quiet(), two_continents(world, 500.0, 100.0), 1);
+  while (model.events().empty() && model.state().time_myr < 20.0) model.advance();
+  ASSERT_EQ(model.events().size(), 1U);
+  const SphereEvent& event = model.events().front();
+  EXPECT_EQ(event.kind, SphereEvent::Kind::collision);
+  EXPECT_GE(event.time_myr, 8.0);
+  EXPECT_LE(event.time_myr, 12.0);
+  EXPECT_EQ(event.first, 1);  // the smaller one
+  EXPECT_EQ(event.second, 0);
+  EXPECT_NEAR(event.area_km2, 1500.0 * 30.0 * kKmPerDegree, 0.06 * event.area_km2);
+  // The mountains hold what went below.
+  const SphereBudget& budget = model.budget();
+  EXPECT_GT(budget.swallowed_km3, 300.0 * 2000.0 * 30.0);
+  double high = 0.0;
+  for (std::int32_t i = 0; i < world.mesh.size(); ++i) {
+    if (model.state().crust.orogeny[i] == static_cast<std::int8_t>(OrogenyType::himalayan)) {
+      high = std::max(high, static_cast<double>(model.state().crust.elevation_m[i]));
+    }
+  }
+  EXPECT_GT(high, 3000.0);
+}
+
+TEST(SphereTectonics, CollisionsKeepTheVolumeOfContinents) {
+  const World world(30000);
+  SphereSettings settings = quiet();
+  settings.law.erosion_mm_yr = 0.0;
+  settings.law.uplift_mm_yr = 0.0;
+  SphereTectonics model(world.mesh, settings, two_continents(world, 500.0, 100.0), 1);
+  model.advance();
+  const double before = model.budget().continental_km3;
+  double lost = 0.0, resampling = 0.0;
+  while (model.state().time_myr < 20.0) {
+    model.advance();
+    lost += model.budget().lost_km3;
+    resampling += model.budget().resampling_km3;
+  }
+  ASSERT_EQ(model.events().size(), 1U);
+  EXPECT_NEAR(model.budget().continental_km3, before - lost + resampling, 1e-6 * before);
+  EXPECT_NEAR(resampling, 0.0, 0.02 * before);
+  EXPECT_EQ(lost, 0.0);
+}
+
+TEST(SphereTectonics, RiftsSplitAPlateIntoPartsThatPart) {
+  const World world(20000);
+  SphereTectonics model(world.mesh, quiet(), hemispheres(world, 0.0), 1);
+  const std::vector<Vector3> places{place(0.0, 60.0), place(0.0, 120.0)};
+  model.rift(1, places, 40.0);
+  ASSERT_EQ(model.state().plates.size(), 3U);
+  std::array<int, 3> count{};
+  for (const std::int16_t plate : model.state().crust.plate) ++count[plate];
+  EXPECT_GT(count[1], 2000);
+  EXPECT_GT(count[2], 2000);
+  EXPECT_NEAR(count[1] + count[2], 10000, 30);
+  // One moves west, the other east, at the speed that was asked for.
+  const Vector3 west = cross(model.rotations()[1], places[0]),
+                east = cross(model.rotations()[2], places[1]);
+  const Vector3 eastward{-1.0, 0.0, 0.0};  // at longitude 90
+  EXPECT_LT(dot(west, eastward), 0.0);
+  EXPECT_GT(dot(east, eastward), 0.0);
+  EXPECT_NEAR(6370.0 * length(model.rotations()[1]), 40.0, 1e-9);
+}
+
+TEST(SphereTectonics, SlabPullBringsAPlateToItsFront) {
+  const World world(20000);
+  SphereSettings settings = quiet();
+  settings.slab_pull = 0.02;
+  // Both plates turn about the axis; plate 1 goes down at longitude 180, north and south alike, so
+  // its axis keeps; one front alone, north of the equator, would tilt it.
+  SphereTectonics model(world.mesh, settings, hemispheres(world, 100.0), 1);
+  for (int k = 0; k < 5; ++k) model.advance();
+  EXPECT_LT(length(add(model.state().plates[1].axis, {0.0, 0.0, 1.0}, -1.0)), 0.01);
+  EXPECT_EQ(model.state().plates[0].axis, (Vector3{0.0, 0.0, -1.0}));
+}
+
+TEST(SphereTectonics, TakesTheNetRotationAway) {
+  const World world(5000);
+  SphereSettings settings;
+  settings.rift_per_myr = 0.0;
+  settings.slab_pull = 0.0;
+  SphereTectonics model(world.mesh, settings, start_sphere(world.mesh, {}, settings, 3), 3);
+  for (int k = 0; k < 4; ++k) model.advance();
+  model.resample();
+  const auto plate = model.state().crust.plate;  // they fill the sphere
+  model.advance();
+  Vector3 sum{};
+  double speeds = 0.0;
+  for (std::int32_t i = 0; i < world.mesh.size(); ++i) {
+    const Vector3& r = world.samples.position(i);
+    const Vector3 v = cross(model.rotations()[plate[i]], r);
+    sum = add(sum, cross(r, v));
+    speeds += length(v);
+  }
+  EXPECT_GT(speeds * 6370.0 / world.mesh.size(), 10.0);  // mm/yr
+  EXPECT_LT(6370.0 * length(sum) / world.mesh.size(), 1e-12);
+}
+
+bool same_bits(const SphereState& a, const SphereState& b) {
+  const auto same = [](const auto& x, const auto& y) {
+    return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0;
+  };
+  bool all = a.plates.size() == b.plates.size();
+  for (std::size_t p = 0; all && p < a.plates.size(); ++p) {
+    all = a.plates[p].axis == b.plates[p].axis &&
+          a.plates[p].speed_rad_myr == b.plates[p].speed_rad_myr &&
+          a.plates[p].turn.w == b.plates[p].turn.w && a.plates[p].alive == b.plates[p].alive;
+  }
+  return all && same(a.crust.plate, b.crust.plate) &&
+         same(a.crust.continental, b.crust.continental) && same(a.crust.orogeny, b.crust.orogeny) &&
+         same(a.crust.elevation_m, b.crust.elevation_m) &&
+         same(a.crust.thickness_m, b.crust.thickness_m) && same(a.crust.age_myr, b.crust.age_myr) &&
+         same(a.crust.fold, b.crust.fold) && same(a.crust.ridge, b.crust.ridge);
+}
+
+TEST(SphereTectonics, GivesTheSameBitsOnAnyNumberOfThreads) {
+  const World world(12000);
+  SphereSettings settings;
+  settings.rift_per_myr = 0.02;
+  const int threads = omp_get_max_threads();
+  std::vector<SphereState> ends;
+  for (const int number : {1, 2, 4}) {
+    omp_set_num_threads(number);
+    SphereTectonics model(world.mesh, settings, start_sphere(world.mesh, {}, settings, 5), 5);
+    for (int k = 0; k < 35; ++k) model.advance();
+    ends.push_back(model.state());
+  }
+  omp_set_num_threads(threads);
+  EXPECT_TRUE(same_bits(ends[0], ends[1]));
+  EXPECT_TRUE(same_bits(ends[0], ends[2]));
+}
+
+TEST(SphereTectonics, PlanetsOfManySeedsStayWhole) {
+  const World world(8000);
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    SphereSettings settings;
+    settings.floor_by_age = true;
+    SphereTectonics model(world.mesh, settings, start_sphere(world.mesh, {}, settings, seed), seed);
+    for (int k = 0; k < 50; ++k) {
+      model.advance();
+      if (!model.budget().resampled) continue;
+      ASSERT_NEAR(model.budget().area_error, 0.0, 1e-12);
+      ASSERT_NEAR(model.budget().created_km2,
+                  model.budget().consumed_km2 + model.budget().buried_km2,
+                  0.08 * model.budget().created_km2);
+    }
+    model.resample();
+    const SphereCrust& crust = model.state().crust;
+    for (std::int32_t i = 0; i < crust.size(); ++i) {
+      ASSERT_GE(crust.plate[i], 0);
+      ASSERT_TRUE(model.state().plates[crust.plate[i]].alive);
+      ASSERT_TRUE(std::isfinite(crust.elevation_m[i]) && std::isfinite(crust.thickness_m[i]));
+      ASSERT_TRUE(std::isfinite(crust.age_myr[i]) && crust.age_myr[i] >= 0.0F);
+      ASSERT_GT(crust.elevation_m[i], -11000.0F);
+      ASSERT_LT(crust.elevation_m[i], 12000.0F);
+    }
+    EXPECT_GT(model.budget().plates, 8);
+  }
+}
+
+}  // namespace
+}  // namespace geo
