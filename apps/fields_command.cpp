@@ -24,17 +24,32 @@ struct Row {
   std::vector<std::string_view> writers;
 };
 
-std::vector<Row> rows_of(const geo::Pipeline& pipeline) {
+/// What a stage writes, whichever of its models runs.
+std::vector<const geo::FieldSpec*> written_by(const geo::StageEntry& entry) {
+  const auto stage = entry.make();
+  std::vector<const geo::FieldSpec*> all = stage->info().writes;
+  const auto parameters = stage->parameters();
+  const auto* model =
+      geo::find_parameter(parameters, fmt::format("{}.model", std::string_view(entry.name)));
+  if (model == nullptr) return all;
+  for (const std::string_view choice : model->choices) {
+    model->set_text(choice);
+    const auto& writes = stage->info().writes;
+    all.insert(all.end(), writes.begin(), writes.end());
+  }
+  return all;
+}
+
+std::vector<Row> rows_of_vocabulary() {
   std::vector<Row> rows;
-  for (const geo::FieldSpec* spec : geo::field::all()) {
-    Row row{spec, {}};
-    for (const auto& stage : pipeline.stages()) {
-      const auto& writes = stage->info().writes;
-      if (std::find(writes.begin(), writes.end(), spec) != writes.end()) {
-        row.writers.push_back(stage->info().name);
+  for (const geo::FieldSpec* spec : geo::field::all()) rows.push_back({spec, {}});
+  for (const geo::StageEntry& entry : geo::stage_table()) {
+    const auto writes = written_by(entry);
+    for (Row& row : rows) {
+      if (std::find(writes.begin(), writes.end(), row.spec) != writes.end()) {
+        row.writers.push_back(entry.name);
       }
     }
-    rows.push_back(row);
   }
   return rows;
 }
@@ -106,8 +121,7 @@ void add_fields_command(CLI::App& program, Action& action) {
   command->add_option("--format", *format, "table, json or markdown")->type_name("FORMAT");
   command->callback([&action, format] {
     action = [format] {
-      const geo::Pipeline pipeline = geo::make_pipeline();
-      const auto rows = rows_of(pipeline);
+      const auto rows = rows_of_vocabulary();
       constexpr std::string_view kFormats[] = {"table", "json", "markdown"};
       if (*format == "table") return print_table(rows);
       if (*format == "json") return print_json(rows);

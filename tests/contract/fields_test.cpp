@@ -71,13 +71,15 @@ TEST(Vocabulary, HasFlagsOfOneWordEachThatFitTheirType) {
 
 TEST(Vocabulary, HasNoFieldThatNoStageKnows) {
   std::set<std::string_view> known;
-  const Pipeline pipeline = make_pipeline();
-  for (const auto& stage : pipeline.stages()) {
-    for (const auto* list :
-         {&stage->info().reads, &stage->info().optional, &stage->info().writes}) {
-      for (const FieldSpec* spec : *list) {
-        EXPECT_EQ(field::find(spec->name), spec);
-        known.insert(spec->name);
+  for (const StageEntry& entry : stage_table()) {
+    for (const std::string& model : test::models_of(entry)) {
+      const auto stage = test::stage_of(entry, model);
+      for (const auto* list :
+           {&stage->info().reads, &stage->info().optional, &stage->info().writes}) {
+        for (const FieldSpec* spec : *list) {
+          EXPECT_EQ(field::find(spec->name), spec);
+          known.insert(spec->name);
+        }
       }
     }
   }

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "geo/kernels/noise.hpp"
+#include "support.hpp"
 
 namespace geo {
 namespace {
@@ -60,12 +61,14 @@ bool lists(const std::vector<const FieldSpec*>& specs, const FieldSpec& spec) {
 }
 
 /// A stage with settings that keep the tests short without leaving anything out.
-std::unique_ptr<Stage> quick(const StageEntry& entry) {
-  auto stage = entry.make();
+std::unique_ptr<Stage> quick(const StageEntry& entry, const std::string& model) {
+  auto stage = test::stage_of(entry, model);
   const auto parameters = stage->parameters();
   const auto set = [&](std::string_view name, std::string_view text) {
     if (const Parameter* p = find_parameter(parameters, name)) p->set_text(text);
   };
+  set("plates.samples", "1500");
+  set("plates.time_myr", "44");
   set("erosion.steps", "3");
   set("erosion.uplift_mm_yr", "0.2");
   set("erosion.rebound_fraction", "0.8");
@@ -98,13 +101,15 @@ void on_every_stage(Action&& action) {
     State state(world.grid);
     state.set(field::elevation, relief(*world.grid));
     for (const StageEntry& entry : stage_table()) {
-      SCOPED_TRACE(std::string(entry.name) + " on a " + world.name);
-      const auto stage = quick(entry);
+      const auto stage = quick(entry, "");
       const bool makes_a_planet = !lists(stage->info().reads, field::elevation);
       const bool needs_a_planet = makes_a_planet || stage->info().own_grid;
       if (needs_a_planet && world.grid->topology() != Topology::sphere) continue;
-      action(*stage, std::as_const(state));
-      if (testing::Test::HasFatalFailure()) return;
+      for (const std::string& model : test::models_of(entry)) {
+        SCOPED_TRACE(std::string(entry.name) + ' ' + model + " on a " + world.name);
+        action(*quick(entry, model), std::as_const(state));
+        if (testing::Test::HasFatalFailure()) return;
+      }
       run(*stage, state);
     }
   }

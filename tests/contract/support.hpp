@@ -34,6 +34,24 @@ struct Declarations {
   }
 };
 
+/// The models among which a stage lets its user choose; the empty word where there is no choice.
+inline std::vector<std::string> models_of(const StageEntry& entry) {
+  const auto stage = entry.make();
+  const auto parameters = stage->parameters();
+  const Parameter* model = find_parameter(parameters, std::string(entry.name) + ".model");
+  if (model == nullptr) return {""};
+  return {model->choices.begin(), model->choices.end()};
+}
+
+/// A stage that runs one of its models, or its default for the empty word.
+inline std::unique_ptr<Stage> stage_of(const StageEntry& entry, const std::string& model) {
+  auto stage = entry.make();
+  if (model.empty()) return stage;
+  const auto parameters = stage->parameters();
+  find_parameter(parameters, std::string(entry.name) + ".model")->set_text(model);
+  return stage;
+}
+
 /// Asks UDUNITS, as every client of the files does.
 class Units {
  public:

@@ -73,6 +73,21 @@ const Field<std::int8_t> orogeny_type{{"orogeny_type", "", "",
                                        Type::int8, kOrogenyFlags, -1, "area: point"}};
 const Field<float> heat_anomaly{
     {"heat_anomaly", "1", "", "heat of the mantle below against its mean, 0 to 1", Type::float32}};
+const Field<float> crust_elevation{{"crust_elevation", "m", "",
+                                    "height of the crust that the plates' history has made",
+                                    Type::float32}};
+const Field<float> orogeny_age{
+    {"orogeny_age", "Myr", "", "time since continental crust was last folded", Type::float32}};
+const Field<float> fold_direction_east{
+    {"fold_direction_east", "1", "", "eastward part of the direction of folds", Type::float32}};
+const Field<float> fold_direction_north{
+    {"fold_direction_north", "1", "", "northward part of the direction of folds", Type::float32}};
+const Field<float> ridge_direction_east{
+    {"ridge_direction_east", "1", "",
+     "eastward part of the direction of the ridge that made the floor", Type::float32}};
+const Field<float> ridge_direction_north{
+    {"ridge_direction_north", "1", "",
+     "northward part of the direction of the ridge that made the floor", Type::float32}};
 const Field<float> convergent_deformation{
     {"convergent_deformation", "1", "",
      "shortening of the crust near convergent boundaries, 0 to 1", Type::float32}};
@@ -229,7 +244,7 @@ const Field<float> settlement_suitability{{"settlement_suitability", "1", "",
                                            Type::float32}};
 
 std::span<const FieldSpec* const> all() {
-  static const std::array<const FieldSpec*, 44> kAll{&plate_id,
+  static const std::array<const FieldSpec*, 50> kAll{&plate_id,
                                                      &continental_fraction,
                                                      &plate_velocity_east,
                                                      &plate_velocity_north,
@@ -238,6 +253,12 @@ std::span<const FieldSpec* const> all() {
                                                      &crust_age,
                                                      &orogeny_type,
                                                      &heat_anomaly,
+                                                     &crust_elevation,
+                                                     &orogeny_age,
+                                                     &fold_direction_east,
+                                                     &fold_direction_north,
+                                                     &ridge_direction_east,
+                                                     &ridge_direction_north,
                                                      &convergent_deformation,
                                                      &divergent_deformation,
                                                      &transform_deformation,

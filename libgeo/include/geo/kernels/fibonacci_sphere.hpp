@@ -14,7 +14,7 @@ namespace geo {
 ///
 /// The nearest point of any place is found in constant time from the lattice's own geometry: about
 /// a latitude the points form a grid whose two basis vectors are steps of consecutive Fibonacci
-/// numbers (Keinert, Innmann, Saenger, Stamminger 2015). Here the corners of the grid cell around a
+/// numbers (Keinert et al. 2015). Here the corners of the grid cell around a
 /// place only start a descent over the steps that are short at that latitude, so that the answer is
 /// exact at the poles as well and does not hang on round-off of the inverse.
 class FibonacciSphere {
@@ -46,13 +46,14 @@ class FibonacciSphere {
     std::int32_t first, second;  // consecutive Fibonacci numbers
     double longitude_1, z_1;     // of the step `first`
     double longitude_2, z_2;     // of the step `second`
+    double least_s2;             // 1 - z^2 from which on it holds
     std::array<std::int32_t, 5> steps;
   };
   [[nodiscard]] int zone(double z) const;
   [[nodiscard]] std::int32_t nearest_by_descent(const Vector3& unit, std::int32_t start) const;
   [[nodiscard]] std::int32_t nearest_polar(const Vector3& unit) const;
 
-  double area_sr_, spacing_;
+  double area_sr_, spacing_, inner2_;
   std::vector<Vector3> position_;
   std::vector<Zone> zones_;
   double cap_z_;  // |z| from which the nearest sample is among the polar ones

@@ -14,7 +14,7 @@ namespace geo {
 /// The neighbours of a point are found among the few that the lattice offers at its latitude: its
 /// star is wound anticlockwise about it (gift wrapping), each triangle the one whose circumcircle
 /// is empty. Points are independent of each other, so the work is linear and parallel, where a
-/// general convex hull (Renka 1997; Barber et al. 1996) sorts and inserts. Whether a fourth point
+/// general convex hull sorts and inserts. Whether a fourth point
 /// lies in a circle is asked with the points in order of their index, so that all of them hear the
 /// same answer and their stars fit together.
 ///

@@ -92,6 +92,8 @@ class SphereTectonics {
   void advance();
   /// Reads the crust anew at the places of the lattice and fills gaps with new floor.
   void resample();
+  /// Resamples unless the last step has; the budget is that of this alone.
+  void finish();
   /// Splits a plate by the nearest of some places, warped; the fragments part at the speed.
   void rift(int plate, std::span<const Vector3> places, double speed_mm_yr);
 

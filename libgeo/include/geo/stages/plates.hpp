@@ -7,6 +7,8 @@
 #include "geo/core/stage.hpp"
 #include "geo/kernels/continents.hpp"
 #include "geo/kernels/plate_growth.hpp"
+#include "geo/kernels/sphere_start.hpp"
+#include "geo/kernels/sphere_tectonics.hpp"
 
 namespace geo {
 
@@ -29,6 +31,14 @@ struct PlatesParameters {
   double oldest_floor_myr = 150.0;
   double plumes = 12.0;
   double orogeny_reach_km = 700.0;
+
+  // Of the model "sphere".
+  std::int64_t samples = 500'000;
+  double time_myr = 250.0;
+  std::string uplift_profile = "piecewise";
+  std::string ocean_floor = "damping";
+  SphereSettings sphere;
+  SphereStart start;
 
   [[nodiscard]] std::vector<Parameter> declarations();
 };

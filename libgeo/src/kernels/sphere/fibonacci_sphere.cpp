@@ -20,6 +20,19 @@ double turn_of(double n) {
   return turns - std::floor(turns + 0.5);
 }
 
+/// atan2 to 1e-5, which is far less than what parts samples.
+double rough_angle(double y, double x) {
+  const double ax = std::abs(x), ay = std::abs(y);
+  const double most = std::max(ax, ay);
+  if (most == 0.0) return 0.0;
+  const double a = std::min(ax, ay) / most, s = a * a;
+  double r =
+      a * (0.9998660 + s * (-0.3302995 + s * (0.1801410 + s * (-0.0851330 + s * 0.0208351))));
+  if (ay > ax) r = 0.5 * kPi - r;
+  if (x < 0.0) r = kPi - r;
+  return y < 0.0 ? -r : r;
+}
+
 double square_distance(const Vector3& a, const Vector3& b) {
   const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
   return x * x + y * y + z * z;
@@ -55,6 +68,10 @@ FibonacciSphere::FibonacciSphere(std::int32_t samples) {
     zone.longitude_2 = 2.0 * kPi * turn_of(zone.second);
     zone.z_1 = -2.0 * zone.first / n;
     zone.z_2 = -2.0 * zone.second / n;
+    // The step of the Fibonacci number F is as long along the parallel as along the meridian where
+    // F^2 is about n pi sqrt(5) (1 - z^2) / 5.
+    zone.least_s2 =
+        std::pow(kGolden, 2.0 * static_cast<double>(k + 2)) / (n * kPi * std::sqrt(5.0));
     for (int s = 0; s < 5; ++s) {
       const auto at = static_cast<std::ptrdiff_t>(k) + s - 1;
       const auto last = static_cast<std::ptrdiff_t>(fibonacci.size()) - 1;
@@ -62,16 +79,16 @@ FibonacciSphere::FibonacciSphere(std::int32_t samples) {
     }
     zones_.push_back(zone);
   }
+  // Half of the least distance between samples, 3.09 / sqrt(n): nobody else is nearer within.
+  inner2_ = 1.54 * 1.54 / n;
   cap_z_ = samples > 2 * kPolar ? position_[kCap / 2][2] : -1.0;
 }
 
 int FibonacciSphere::zone(double z) const {
-  // The step of the Fibonacci number F is as long along the parallel as along the meridian where
-  // F^2 is about n pi sqrt(5) (1 - z^2) / 5.
-  constexpr double kPerOctave = 0.5 / 0.48121182505960347;  // 1 / ln(golden^2)
-  const double across = size() * kPi * std::sqrt(5.0) * std::max(1.0 - z * z, 1e-12);
-  const int k = static_cast<int>(std::floor(kPerOctave * std::log(across))) - 2;
-  return std::clamp(k, 0, static_cast<int>(zones_.size()) - 1);
+  const double s2 = 1.0 - z * z;
+  int k = static_cast<int>(zones_.size()) - 1;
+  while (k > 0 && s2 < zones_[k].least_s2) --k;
+  return k;
 }
 
 std::span<const std::int32_t> FibonacciSphere::steps(std::int32_t sample) const {
@@ -99,7 +116,7 @@ std::int32_t FibonacciSphere::nearest(const Vector3& unit) const {
   if (std::abs(unit[2]) >= cap_z_) return nearest_polar(unit);
   const Zone& lattice = zones_[zone(unit[2])];
   // Position within the lattice: unit = i * first + j * second from sample 0.
-  const double longitude = std::atan2(unit[1], unit[0]);
+  const double longitude = rough_angle(unit[1], unit[0]);
   const double z = unit[2] - (1.0 - 1.0 / size());
   const double determinant = lattice.longitude_1 * lattice.z_2 - lattice.longitude_2 * lattice.z_1;
   const double a = (longitude * lattice.z_2 - z * lattice.longitude_2) / determinant;
@@ -112,6 +129,7 @@ std::int32_t FibonacciSphere::nearest(const Vector3& unit) const {
 std::int32_t FibonacciSphere::nearest_by_descent(const Vector3& unit, std::int32_t start) const {
   std::int32_t best = start;
   double least = square_distance(position_[best], unit);
+  if (least < inner2_) return best;
   const Zone* lattice = &zones_[zone(position_[best][2])];
   for (bool nearer = true; nearer;) {
     nearer = false;

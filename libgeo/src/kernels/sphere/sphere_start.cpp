@@ -7,6 +7,7 @@
 #include "geo/core/random.hpp"
 #include "geo/kernels/noise.hpp"
 #include "geo/kernels/ocean_depth.hpp"
+#include "geo/kernels/sphere_boundaries.hpp"
 
 namespace geo {
 namespace {
@@ -145,37 +146,21 @@ class Beginning {
   [[nodiscard]] std::vector<float> distance_to_boundary_km() const {
     const FibonacciSphere& samples = mesh_.samples();
     const auto& plate = state_.crust.plate;
-    std::vector<std::int32_t> source(mesh_.size(), -1), queue, next;
-    std::vector<float> chord2(mesh_.size(), 9.0F);
+    std::vector<std::int32_t> edge;
     for (std::int32_t i = 0; i < mesh_.size(); ++i) {
       for (const std::int32_t j : mesh_.neighbours(i)) {
         if (plate[j] == plate[i]) continue;
-        source[i] = i;
-        chord2[i] = 0.0F;
-        queue.push_back(i);
+        edge.push_back(i);
         break;
       }
     }
-    while (!queue.empty()) {
-      next.clear();
-      for (const std::int32_t i : queue) {
-        for (const std::int32_t j : mesh_.neighbours(i)) {
-          if (source[j] == source[i]) continue;
-          const Vector3 way = add(samples.position(j), samples.position(source[i]), -1.0);
-          const auto far2 = static_cast<float>(dot(way, way));
-          if (far2 >= chord2[j]) continue;
-          chord2[j] = far2;
-          source[j] = source[i];
-          next.push_back(j);
-        }
-      }
-      queue.swap(next);
-    }
+    const auto nearest = nearest_samples(mesh_, edge, 4.0);
     std::vector<float> distance(mesh_.size(), 20000.0F);
     for (std::int32_t i = 0; i < mesh_.size(); ++i) {
-      if (source[i] < 0) continue;
+      if (nearest[i] < 0) continue;
       distance[i] = static_cast<float>(
-          settings_.radius_km * angle_between(samples.position(i), samples.position(source[i])));
+          settings_.radius_km *
+          angle_between(samples.position(i), samples.position(edge[nearest[i]])));
     }
     return distance;
   }

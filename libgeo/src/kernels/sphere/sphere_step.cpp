@@ -176,6 +176,16 @@ void SphereTectonics::measure_volume() {
   budget_.area_error = samples / mesh_->size() - 1.0;
 }
 
+void SphereTectonics::finish() {
+  budget_ = {};
+  budget_.time_myr = state_.time_myr;
+  if (state_.resampled_myr < state_.time_myr) {
+    resample();
+  } else {
+    measure_volume();
+  }
+}
+
 void SphereTectonics::advance() {
   budget_ = {};
   move();

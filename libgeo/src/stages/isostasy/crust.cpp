@@ -1,6 +1,22 @@
 #include "crust.hpp"
 
+#include "geo/core/error.hpp"
+
 namespace geo {
+namespace {
+
+std::span<const float> made_by_plates(const StageIo& io) {
+  const auto elevation_m = io.read_optional(field::crust_elevation);
+  const auto thickness_m = io.read_optional(field::crust_thickness);
+  if (elevation_m.empty() || thickness_m.empty()) {
+    throw InputError(
+        "isostasy: crust = \"simulated\" needs crust_elevation and crust_thickness, which "
+        "plates.model = \"sphere\" writes");
+  }
+  return elevation_m;
+}
+
+}  // namespace
 
 Crust::Crust(const IsostasyParameters& settings, StageIo& io, const Context& context)
     : parameters(settings),
@@ -16,6 +32,8 @@ Crust::Crust(const IsostasyParameters& settings, StageIo& io, const Context& con
       heat(io.read(field::heat_anomaly)),
       velocity_east(io.read(field::plate_velocity_east)),
       velocity_north(io.read(field::plate_velocity_north)),
+      made_elevation_m(settings.crust == "simulated" ? made_by_plates(io)
+                                                     : std::span<const float>{}),
       fraction(io.write(field::continental_fraction)),
       convergent(io.write(field::convergent_deformation)),
       divergent(io.write(field::divergent_deformation)),

@@ -23,6 +23,9 @@ struct Crust {
   std::span<const std::int8_t> boundary_type;
   std::span<const float> boundary_strength, age_myr, heat, velocity_east, velocity_north;
 
+  /// What the plates' history has made; empty unless crust = "simulated".
+  std::span<const float> made_elevation_m;
+
   std::span<float> fraction, convergent, divergent, transform, weakness, thickness_m, density;
   std::span<std::int8_t> rock;
   std::span<float> erodibility, elevation_m;

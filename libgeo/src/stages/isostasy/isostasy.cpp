@@ -37,7 +37,7 @@ void float_crust(const Crust& crust, const Context& context) {
 double fill_sea(const Crust& crust) {
   const IsostasyParameters& p = crust.parameters;
   const auto level = static_cast<float>(sea_level_m(crust.grid, crust.elevation_m, crust.planet));
-  const bool shelves = p.crust == "margins" && p.shelf_depth_m > 0.0;
+  const bool shelves = p.crust != "blueprint" && p.shelf_depth_m > 0.0;
 #pragma omp parallel for schedule(static)
   for (Index cell = 0; cell < crust.grid.size(); ++cell) {
     float& z = crust.elevation_m[cell];
@@ -81,7 +81,7 @@ class IsostasyStage final : public Stage {
         {&field::plate_id, &field::continental_fraction, &field::boundary_type,
          &field::boundary_strength, &field::crust_age, &field::heat_anomaly,
          &field::plate_velocity_east, &field::plate_velocity_north},
-        {},
+        {&field::crust_elevation, &field::crust_thickness},
         {&field::convergent_deformation, &field::divergent_deformation,
          &field::transform_deformation, &field::lithospheric_weakness, &field::continental_fraction,
          &field::crust_thickness, &field::crust_density, &field::rock_type, &field::erodibility,

@@ -4,9 +4,9 @@ namespace geo {
 
 std::vector<Parameter> IsostasyParameters::declarations() {
   return {
-      choice("isostasy.crust", crust, {"margins", "blueprint"},
-             "crust from cross sections of margins and belts, or by the formulas of the Tectonica "
-             "blueprint",
+      choice("isostasy.crust", crust, {"margins", "blueprint", "simulated"},
+             "crust from cross sections of margins and belts, by the formulas of the Tectonica "
+             "blueprint, or as the plates' history has made it (plates.model = sphere)",
              "tectonica2026"),
       choice("isostasy.compensation", compensation, {"flexural", "airy", "airy-dry"},
              "what carries the relief: an elastic plate, every column by itself with the sea as a "

@@ -96,6 +96,11 @@ class Columns {
     const double rough = is_rough(share, island) ? along.land[i] : 0.0;
     Continent land{p_.continental_km, 0.0};
     if (share > 0.0) land = continent(i, along, belt, hot, rough);
+    const bool made = !crust_.made_elevation_m.empty();
+    if (made) {
+      draw_made(i, cell, along, {share, belt, island, hot, rough});
+      return;
+    }
     double floor_m = 0.0;
     if (share < 1.0) {
       floor_m = sea_floor_m(i, along, crust_.age_myr[cell], island, rough) +
@@ -111,6 +116,30 @@ class Columns {
     const double trench_m = share > 0.0 ? row.trench_m[i] * 0.5 * share : 0.0;
     crust_.elevation_m[cell] = static_cast<float>(floor_m + (land.elevation_m - floor_m) * share +
                                                   trench_m + row.flexure_m[i]);
+  }
+
+  /// A column whose height and thickness plates have made: on top come what is finer than their
+  /// samples, sediment, trenches and warped margins.
+  struct Setting {
+    double share, belt, island, hot, rough;
+  };
+  void draw_made(int i, Index cell, const Row& along, const Setting& at) const {
+    const Tectonics& row = along.from_afar;
+    const double land_m = 0.6 * row.swell_m[i];
+    const double tilt_m = p_.margin_tilt_m * std::exp(-row.inland_km[i] / p_.margin_tilt_km);
+    const double relief_m =
+        p_.land_roughness_m * (1.0 + 3.0 * at.belt + 1.5 * row.relict[i]) * at.rough;
+    const double on_land_m = land_m - tilt_m + relief_m + 0.6 * at.hot;
+    const double at_sea_m =
+        at.share < 1.0 ? floor_cover_m(i, along, crust_.age_myr[cell]) + at.hot - 0.25 * p_.heat_m
+                       : 0.0;
+    crust_.density[cell] =
+        static_cast<float>(p_.density.oceanic_crust +
+                           (p_.density.continental_crust - p_.density.oceanic_crust) * at.share);
+    crust_.thickness_m[cell] = std::clamp(crust_.thickness_m[cell], 3000.0F, 80000.0F);
+    crust_.elevation_m[cell] =
+        static_cast<float>(crust_.made_elevation_m[cell] + on_land_m * at.share +
+                           at_sea_m * (1.0 - at.share) + row.trench_m[i] * (1.0 - 0.5 * at.share));
   }
 
   [[nodiscard]] Continent continent(int i, const Row& along, double belt, double hot,
@@ -139,16 +168,19 @@ class Columns {
   [[nodiscard]] double sea_floor_m(int i, const Row& along, double age_myr, double island,
                                    double rough) const {
     const Tectonics& row = along.from_afar;
+    return -ocean_depth_m(std::min(age_myr, 200.0)) + floor_cover_m(i, along, age_myr) +
+           island * (2600.0 + 1500.0 * rough) + row.trench_m[i];
+  }
+  /// Sediment, swells, hills and seamounts on a floor.
+  [[nodiscard]] double floor_cover_m(int i, const Row& along, double age_myr) const {
+    const Tectonics& row = along.from_afar;
     const double in_trench = std::clamp(-row.trench_m[i] / 1500.0, 0.0, 1.0);
     const double sediment_m =
         deep_sediment_m(p_.sediment, age_myr, row.offshore_km[i]) * (1.0 - 0.6 * in_trench);
     const double buried = 1.0 / (1.0 + sediment_m / 700.0);
     const double mount = std::max(0.0, along.mounts[i] - 1.9);
-    return -ocean_depth_m(std::min(age_myr, 200.0)) +
-           crust_.datum.rise_per_sediment() * sediment_m + p_.ocean_swell_m * row.ocean_swell[i] +
-           p_.seafloor_roughness_m * buried * along.hills[i] +
-           p_.seamount_m * std::min(1.5, mount) + island * (2600.0 + 1500.0 * rough) +
-           row.trench_m[i];
+    return crust_.datum.rise_per_sediment() * sediment_m + p_.ocean_swell_m * row.ocean_swell[i] +
+           p_.seafloor_roughness_m * buried * along.hills[i] + p_.seamount_m * std::min(1.5, mount);
   }
 
   /// A dry column under the sea, whose water loads it unless the compensation is dry.

@@ -1,12 +1,16 @@
 #include "geo/stages/plates.hpp"
 
 #include "growth.hpp"
+#include "sphere.hpp"
 
 namespace geo {
 
 std::vector<Parameter> PlatesParameters::declarations() {
   return {
-      choice("plates.model", model, {"growth"}, "how plates come about", "tectonica2026"),
+      choice("plates.model", model, {"growth", "sphere"},
+             "how plates come about: they grow as they stand today, or drift, go below each other, "
+             "collide and break on a sphere through time",
+             "cortial2019"),
       integer("plates.count", growth.count, "1", 2, 100, "number of plates", "tectonica2026"),
       real("plates.speed_cm_yr", growth.speed_cm_yr, "cm yr-1", 0.1, 50.0,
            "middle of the plates' speeds", "tectonica2026"),
@@ -62,6 +66,85 @@ std::vector<Parameter> PlatesParameters::declarations() {
       real("plates.orogeny_reach_km", orogeny_reach_km, "km", 0.0, 5000.0,
            "distance from a convergent boundary within which a continent belongs to its orogen",
            "england1982"),
+      integer("plates.samples", samples, "1", 500, 8'000'000,
+              "sphere: samples of crust on the whole planet", "cortial2019"),
+      real("plates.time_myr", time_myr, "Myr", 0.0, 5000.0, "sphere: how long plates drift",
+           "cortial2019"),
+      real("plates.time_step_myr", sphere.law.step_myr, "Myr", 0.01, 50.0, "sphere: time step",
+           "cortial2019"),
+      real("plates.warp_km", start.warp_km, "km", 0.0, 5000.0,
+           "sphere: how far the borders of the first plates are warped", "cortial2019"),
+      real("plates.continent_km", start.continent_km, "km", 500.0, 40000.0,
+           "sphere: wavelength of the first continents, unless they are whole plates", "design"),
+      real("plates.first_crust_km", start.continental_km, "km", 5.0, 80.0,
+           "sphere: thickness of the first continents", "laske2013"),
+      real("plates.fastest_mm_yr", sphere.law.speed_mm_yr, "mm yr-1", 1.0, 1000.0,
+           "sphere: speed of the fastest plate", "cortial2019"),
+      real("plates.ridge_elevation_km", sphere.law.ridge_km, "km", -20.0, 0.0,
+           "sphere: highest oceanic ridge", "cortial2019"),
+      real("plates.abyss_elevation_km", sphere.law.abyss_km, "km", -20.0, 0.0,
+           "sphere: abyssal plains", "cortial2019"),
+      real("plates.trench_elevation_km", sphere.law.trench_km, "km", -30.0, -0.1,
+           "sphere: deepest trench", "cortial2019"),
+      real("plates.summit_elevation_km", sphere.law.summit_km, "km", 0.1, 30.0,
+           "sphere: highest continent", "cortial2019"),
+      real("plates.subduction_distance_km", sphere.law.subduction_distance_km, "km", 10.0, 10000.0,
+           "sphere: how far from its front subduction raises the upper plate", "cortial2019"),
+      real("plates.subduction_uplift_mm_yr", sphere.law.uplift_mm_yr, "mm yr-1", 0.0, 100.0,
+           "sphere: uplift above subduction, before the factors of distance, speed and elevation",
+           "cortial2019"),
+      choice(
+          "plates.uplift_profile", uplift_profile, {"piecewise", "driftworld"},
+          "sphere: uplift over the distance from the front, by two cubics or by Driftworld's one",
+          "cortial2019"),
+      real("plates.uplift_control_km", sphere.uplift_control_km, "km", 1.0, 5000.0,
+           "sphere: distance from the front where subduction raises most", "cortial2019"),
+      real("plates.fold_turning_km", sphere.fold_per_km, "km-1", 0.0, 1.0,
+           "sphere: weight of the relative motion in the direction of folds, per kilometre",
+           "cortial2019"),
+      real("plates.slab_pull_myr", sphere.slab_pull, "Myr-1", 0.0, 1.0,
+           "sphere: turning of a plate's axis by each 1000 km of its subduction fronts",
+           "cortial2019"),
+      real("plates.penetration_km", sphere.penetration_km, "km", 0.0, 5000.0,
+           "sphere: how far continents go below each other before they collide", "cortial2019"),
+      real("plates.collision_distance_km", sphere.law.collision_distance_km, "km", 0.0, 20000.0,
+           "sphere: farthest reach of a collision", "cortial2019"),
+      real("plates.collision_coefficient_km", sphere.law.collision_per_km, "km-1", 0.0, 1.0,
+           "sphere: height of a collision's surge per area of the terrane", "cortial2019"),
+      real("plates.surge_km", sphere.surge_km, "km", 0.0, 20.0,
+           "sphere: most that one collision lifts", "christensen1995"),
+      choice("plates.ocean_floor", ocean_floor, {"damping", "age"},
+             "sphere: sea floor that sinks by damping, or as deep as its age", "stein1992"),
+      real("plates.ridge_falloff", sphere.ridge_falloff, "1", 0.001, 1.0,
+           "sphere: distance over which a ridge's profile halves, in radii of the planet",
+           "cortial2019"),
+      real("plates.ocean_damping_mm_yr", sphere.law.damping_mm_yr, "mm yr-1", 0.0, 10.0,
+           "sphere: sinking of the sea floor, with damping", "cortial2019"),
+      real("plates.continental_erosion_mm_yr", sphere.law.erosion_mm_yr, "mm yr-1", 0.0, 10.0,
+           "sphere: erosion of the highest continents", "cortial2019"),
+      real("plates.sediment_accretion_mm_yr", sphere.law.accretion_mm_yr, "mm yr-1", 0.0, 10.0,
+           "sphere: growth of the wedge of sediment at trenches", "cortial2019"),
+      real("plates.accretion_top_km", sphere.accretion_top_km, "km", -10.0, 0.0,
+           "sphere: height up to which that wedge grows", "design"),
+      real("plates.accretion_width_km", sphere.accretion_width_km, "km", 0.0, 1000.0,
+           "sphere: width of that wedge", "design"),
+      real("plates.arc_km", sphere.arc_km, "km", 5.0, 80.0,
+           "sphere: thickness of an island arc's crust when it emerges", "christensen1995"),
+      real("plates.rifts_myr", sphere.rift_per_myr, "Myr-1", 0.0, 1.0,
+           "sphere: rate at which a wholly continental plate of mean size rifts", "cortial2019"),
+      real("plates.rift_smallest", sphere.rift_smallest, "1", 0.0, 100.0,
+           "sphere: plates smaller than this, in mean areas, do not rift", "design"),
+      real("plates.rift_speed_mm_yr", sphere.rift_speed_mm_yr, "mm yr-1", 0.0, 1000.0,
+           "sphere: speed at which fragments leave the middle of their plate", "design"),
+      real("plates.rift_warp_km", sphere.rift_warp_km, "km", 0.0, 5000.0,
+           "sphere: how far the borders of fragments are warped", "cortial2019"),
+      real("plates.smallest_piece_km2", sphere.smallest_piece_km2, "km2", 0.0, 1e8,
+           "sphere: smaller detached pieces of a plate join a neighbour", "design"),
+      integer("plates.resampling_least", sphere.least_steps, "1", 1, 1000,
+              "sphere: steps between resamplings, when a plate is as fast as any may be",
+              "cortial2019"),
+      integer("plates.resampling_most", sphere.most_steps, "1", 1, 1000,
+              "sphere: most steps between resamplings", "cortial2019"),
   };
 }
 
@@ -72,21 +155,34 @@ class PlatesStage final : public Stage {
   explicit PlatesStage(PlatesParameters parameters) : parameters_(std::move(parameters)) {}
 
   [[nodiscard]] const StageInfo& info() const override {
-    static const StageInfo kInfo{
-        "plates",
-        "tectonic plates, their motion, boundaries, sea floor and continents",
-        {},
-        {},
-        {&field::plate_id, &field::continental_fraction, &field::plate_velocity_east,
-         &field::plate_velocity_north, &field::boundary_type, &field::boundary_strength,
-         &field::crust_age, &field::orogeny_type, &field::heat_anomaly}};
-    return kInfo;
+    static const StageInfo kSeen = described({});
+    static const StageInfo kWithCrust =
+        described({&field::crust_elevation, &field::crust_thickness, &field::orogeny_age,
+                   &field::fold_direction_east, &field::fold_direction_north,
+                   &field::ridge_direction_east, &field::ridge_direction_north});
+    return parameters_.model == "sphere" ? kWithCrust : kSeen;
   }
   [[nodiscard]] std::vector<Parameter> parameters() override { return parameters_.declarations(); }
 
-  void run(StageIo& io, Context& context) const override { grow(parameters_, io, context); }
+  void run(StageIo& io, Context& context) const override {
+    parameters_.model == "sphere" ? drift(parameters_, io, context)
+                                  : grow(parameters_, io, context);
+  }
 
  private:
+  /// Models with a history also write the crust that it made.
+  static StageInfo described(std::initializer_list<const FieldSpec*> crust) {
+    StageInfo info{"plates",
+                   "tectonic plates, their motion, boundaries, sea floor and continents",
+                   {},
+                   {},
+                   {&field::plate_id, &field::continental_fraction, &field::plate_velocity_east,
+                    &field::plate_velocity_north, &field::boundary_type, &field::boundary_strength,
+                    &field::crust_age, &field::orogeny_type, &field::heat_anomaly}};
+    info.writes.insert(info.writes.end(), crust);
+    return info;
+  }
+
   PlatesParameters parameters_;
 };
 

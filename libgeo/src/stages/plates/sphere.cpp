@@ -1,0 +1,110 @@
+#include "sphere.hpp"
+
+#include <cmath>
+
+#include "geo/core/error.hpp"
+#include "geo/kernels/sphere_start.hpp"
+#include "sphere_on_grid.hpp"
+
+namespace geo {
+namespace {
+
+SphereSettings settings_of(const PlatesParameters& p, double radius_km) {
+  SphereSettings settings = p.sphere;
+  settings.radius_km = radius_km;
+  settings.driftworld_uplift = p.uplift_profile == "driftworld";
+  settings.floor_by_age = p.ocean_floor == "age";
+  settings.no_net_rotation = p.no_net_rotation;
+  settings.mean_area_km2 =
+      4.0 * std::acos(-1.0) * radius_km * radius_km / static_cast<double>(p.growth.count);
+  return settings;
+}
+
+SphereStart start_of(const PlatesParameters& p) {
+  SphereStart start = p.start;
+  start.plates = p.growth.count;
+  start.continental_share = p.cratons.share;
+  start.whole_plates = p.continents == "plates";
+  start.oldest_floor_myr = p.oldest_floor_myr;
+  return start;
+}
+
+/// Sums over the whole drift.
+class Books {
+ public:
+  void enter(const SphereBudget& step) {
+    created_ += step.created_km2;
+    consumed_ += step.consumed_km2;
+    buried_ += step.buried_km2;
+    emerged_ += step.emerged_km2;
+    raised_ += step.raised_km3;
+    eroded_ += step.eroded_km3;
+    emerged_km3_ += step.emerged_km3;
+    lost_ += step.lost_km3;
+    resampling_ += step.resampling_km3;
+    collisions_ += step.collisions;
+    rifts_ += step.rifts;
+    if (first_km3_ < 0.0) first_km3_ = step.continental_km3 - change(step);
+    last_ = step;
+  }
+  void close(Budget& budget) const {
+    budget["plates"] = last_.plates;
+    budget["plates_area_error"] = last_.area_error;
+    budget["crust_created_km2"] = created_;
+    budget["crust_consumed_km2"] = consumed_;
+    budget["crust_buried_km2"] = buried_;
+    budget["crust_emerged_km2"] = emerged_;
+    budget["collisions"] = collisions_;
+    budget["rifts"] = rifts_;
+    budget["continental_start_km3"] = first_km3_;
+    budget["continental_end_km3"] = last_.continental_km3;
+    budget["continental_raised_km3"] = raised_;
+    budget["continental_eroded_km3"] = eroded_;
+    budget["continental_emerged_km3"] = emerged_km3_;
+    budget["continental_lost_km3"] = lost_;
+    budget["continental_resampling_km3"] = resampling_;
+    budget["continental_closing_error"] = (last_.continental_km3 - first_km3_ - raised_ + eroded_ -
+                                           emerged_km3_ + lost_ - resampling_) /
+                                          std::max(1.0, last_.continental_km3);
+  }
+
+ private:
+  static double change(const SphereBudget& step) {
+    return step.raised_km3 - step.eroded_km3 + step.emerged_km3 - step.lost_km3 +
+           step.resampling_km3;
+  }
+  double created_ = 0.0, consumed_ = 0.0, buried_ = 0.0, emerged_ = 0.0;
+  double raised_ = 0.0, eroded_ = 0.0, emerged_km3_ = 0.0, lost_ = 0.0, resampling_ = 0.0;
+  double first_km3_ = -1.0;
+  int collisions_ = 0, rifts_ = 0;
+  SphereBudget last_;
+};
+
+}  // namespace
+
+void drift(const PlatesParameters& parameters, StageIo& io, Context& context) {
+  if (io.grid().topology() != Topology::sphere) {
+    throw InputError("plates: the grid must be a whole sphere");
+  }
+  const SphereSettings settings = settings_of(parameters, 1e-3 * io.grid().figure().radius_m);
+  const FibonacciSphere samples(static_cast<std::int32_t>(parameters.samples));
+  const SphereMesh mesh(samples);
+  SphereTectonics model(mesh, settings,
+                        start_sphere(mesh, start_of(parameters), settings, context.seed),
+                        context.seed);
+  Books books;
+  const auto steps = std::lround(parameters.time_myr / settings.law.step_myr);
+  for (long k = 0; k < steps; ++k) {
+    context.advance(0.9 * static_cast<double>(k) / static_cast<double>(steps));
+    model.advance();
+    books.enter(model.budget());
+  }
+  context.advance(0.9);
+  model.finish();
+  books.enter(model.budget());
+  books.close(context.budget);
+  const SphereOnGrid on_grid(parameters, model, io, context);
+  on_grid.draw(io);
+}
+
+}  // namespace geo

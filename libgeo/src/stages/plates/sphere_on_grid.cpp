@@ -1,0 +1,229 @@
+#include "sphere_on_grid.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "geo/core/random.hpp"
+#include "geo/kernels/noise_row.hpp"
+#include "geo/kernels/plate_motion.hpp"
+
+namespace geo {
+
+struct SphereOnGrid::Outputs {
+  explicit Outputs(StageIo& io)
+      : plate(io.write(field::plate_id)),
+        fraction(io.write(field::continental_fraction)),
+        east(io.write(field::plate_velocity_east)),
+        north(io.write(field::plate_velocity_north)),
+        type(io.write(field::boundary_type)),
+        strength(io.write(field::boundary_strength)),
+        age(io.write(field::crust_age)),
+        orogeny(io.write(field::orogeny_type)),
+        heat(io.write(field::heat_anomaly)),
+        elevation(io.write(field::crust_elevation)),
+        thickness(io.write(field::crust_thickness)),
+        orogeny_age(io.write(field::orogeny_age)),
+        fold_east(io.write(field::fold_direction_east)),
+        fold_north(io.write(field::fold_direction_north)),
+        ridge_east(io.write(field::ridge_direction_east)),
+        ridge_north(io.write(field::ridge_direction_north)) {}
+
+  std::span<std::int16_t> plate;
+  std::span<float> fraction, east, north;
+  std::span<std::int8_t> type;
+  std::span<float> strength, age;
+  std::span<std::int8_t> orogeny;
+  std::span<float> heat, elevation, thickness, orogeny_age;
+  std::span<float> fold_east, fold_north, ridge_east, ridge_north;
+};
+
+/// Places on the lattice for cells along a row: near plate boundaries and coasts, outlines bend at
+/// scales below the lattice's.
+class SphereOnGrid::Bends {
+ public:
+  explicit Bends(const SphereOnGrid& on)
+      : on_(on),
+        noise_{Noise(on.seed_, "plates.bend_x"), Noise(on.seed_, "plates.bend_y"),
+               Noise(on.seed_, "plates.bend_z")},
+        row_(on.grid_),
+        sample_(on.grid_.nx()) {
+    for (auto& along : along_) along.resize(on.grid_.nx());
+  }
+  void read(int row) {
+    const FibonacciSphere& samples = on_.mesh_.samples();
+    for (int i = 0; i < on_.grid_.nx(); ++i) {
+      sample_[i] = samples.nearest(on_.grid_.unit_vector(i, row));
+    }
+    row_.choose(row, [&](int i) { return is_bent(i); });
+    constexpr double kWavelength = 9.0;  // spacings of the lattice
+    for (int c = 0; c < 3; ++c) {
+      row_.fbm(noise_[c], 1.0 / (kWavelength * samples.spacing()), 6, 0.55, along_[c]);
+    }
+  }
+  [[nodiscard]] bool is_bent(int column) const { return on_.is_edge_[sample_[column]] != 0; }
+  [[nodiscard]] std::int32_t sample(int column) const { return sample_[column]; }
+  [[nodiscard]] Vector3 bent(int column, const Vector3& at) const {
+    constexpr double kMost = 2.2;  // spacings, at the noise's rare extremes
+    const double most = kMost * on_.mesh_.samples().spacing();
+    return normalised({at[0] + most * along_[0][column], at[1] + most * along_[1][column],
+                       at[2] + most * along_[2][column]});
+  }
+
+ private:
+  const SphereOnGrid& on_;
+  std::array<Noise, 3> noise_;
+  NoiseRow row_;
+  std::vector<std::int32_t> sample_;
+  std::array<std::vector<float>, 3> along_;
+};
+
+SphereOnGrid::SphereOnGrid(const PlatesParameters& parameters, const SphereTectonics& model,
+                           StageIo& io, const Context& context)
+    : p_(parameters),
+      model_(model),
+      mesh_(model.mesh()),
+      grid_(io.grid()),
+      radius_km_(1e-3 * io.grid().figure().radius_m),
+      seed_(context.seed) {
+  const SphereCrust& crust = model.state().crust;
+  boundaries_ = find_sphere_boundaries(mesh_, crust.plate, model.rotations(), p_.growth.speed_cm_yr,
+                                       p_.boundary_smoothing_km, radius_km_);
+  std::vector<std::int32_t> samples;
+  for (const SphereBoundary& point : boundaries_) samples.push_back(point.sample);
+  nearest_boundary_ = nearest_samples(
+      mesh_, samples, 3.0 * mesh_.samples().spacing() + p_.boundary_width_km / radius_km_);
+
+  std::vector<std::int32_t> size(model.state().plates.size(), 0), order(size.size());
+  for (const std::int16_t plate : crust.plate) ++size[plate];
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::int32_t a, std::int32_t b) { return size[a] > size[b]; });
+  number_.assign(size.size(), 0);
+  for (std::size_t k = 0; k < order.size(); ++k) number_[order[k]] = static_cast<std::int16_t>(k);
+
+  std::vector<std::uint8_t> edge(mesh_.size(), 0);
+#pragma omp parallel for schedule(static)
+  for (std::int32_t i = 0; i < mesh_.size(); ++i) {
+    for (const std::int32_t j : mesh_.neighbours(i)) {
+      if (crust.plate[j] != crust.plate[i] || crust.continental[j] != crust.continental[i]) {
+        edge[i] = 1;
+      }
+    }
+  }
+  // One ring more, so that what bends reaches nobody who does not.
+  is_edge_ = edge;
+  for (int ring = 0; ring < 2; ++ring) {
+    const std::vector<std::uint8_t> inner = is_edge_;
+#pragma omp parallel for schedule(static)
+    for (std::int32_t i = 0; i < mesh_.size(); ++i) {
+      for (const std::int32_t j : mesh_.neighbours(i)) is_edge_[i] |= inner[j];
+    }
+  }
+  const RandomStream random(seed_, "plates.plumes");
+  plumes_.resize(static_cast<std::size_t>(std::lround(p_.plumes)));
+  for (std::size_t k = 0; k < plumes_.size(); ++k) plumes_[k] = random.direction(k);
+}
+
+void SphereOnGrid::draw(StageIo& io) const {
+  const Outputs out(io);
+#pragma omp parallel
+  {
+    Bends bends(*this);
+#pragma omp for schedule(dynamic, 4)
+    for (int j = 0; j < grid_.ny(); ++j) {
+      bends.read(j);
+      for (int i = 0; i < grid_.nx(); ++i) {
+        const Index cell = grid_.cell(i, j);
+        const Vector3 unit = grid_.unit_vector(i, j);
+        const Vector3 place = bends.is_bent(i) ? bends.bent(i, unit) : unit;
+        const std::int32_t nearest =
+            bends.is_bent(i) ? mesh_.samples().nearest(place) : bends.sample(i);
+        const Cell at{mesh_.locate(place, nearest), nearest};
+        draw_crust(at, cell, unit, out);
+        draw_boundary(at, cell, place, out);
+      }
+    }
+  }
+}
+
+void SphereOnGrid::draw_crust(const Cell& at, Index cell, const Vector3& unit,
+                              const Outputs& out) const {
+  const SphereCrust& crust = model_.state().crust;
+  const std::int16_t plate = crust.plate[at.nearest];
+  out.plate[cell] = number_[plate];
+  const Vector3 up = grid_.to_axis(unit);
+  const auto velocity =
+      east_north(grid_.to_axis(velocity_mm_yr(model_.rotations()[plate], unit, radius_km_)), up);
+  out.east[cell] = static_cast<float>(velocity.east);
+  out.north[cell] = static_cast<float>(velocity.north);
+  double fraction = 0.0, elevation = 0.0, thickness = 0.0, age = 0.0, ages = 0.0;
+  Vector3 fold{}, ridge{};
+  for (int k = 0; k < 3; ++k) {
+    const std::int32_t i = at.place.corner[k];
+    const double weight = at.place.weight[k];
+    fraction += weight * crust.continental[i];
+    elevation += weight * crust.elevation_m[i];
+    thickness += weight * crust.thickness_m[i];
+    for (int c = 0; c < 3; ++c) {
+      fold[c] += weight * crust.fold[i][c];
+      ridge[c] += weight * crust.ridge[i][c];
+    }
+    // Ages jump where plates meet and crust changes.
+    if (crust.plate[i] != plate || crust.continental[i] != crust.continental[at.nearest]) continue;
+    age += weight * (crust.continental[i] != 0 ? crust.orogeny_age_myr[i] : crust.age_myr[i]);
+    ages += weight;
+  }
+  const bool land = crust.continental[at.nearest] != 0;
+  const double own_age =
+      ages > 0.0 ? age / ages
+                 : (land ? crust.orogeny_age_myr[at.nearest] : crust.age_myr[at.nearest]);
+  out.fraction[cell] = static_cast<float>(std::clamp(fraction, 0.0, 1.0));
+  out.elevation[cell] = static_cast<float>(elevation);
+  out.thickness[cell] = static_cast<float>(thickness);
+  out.age[cell] = static_cast<float>(own_age);
+  out.orogeny_age[cell] = land ? static_cast<float>(own_age) : 0.0F;
+  out.orogeny[cell] = crust.orogeny[at.nearest];
+  out.heat[cell] = heat(unit);
+  const auto folds = east_north(grid_.to_axis(fold), up);
+  const auto ridges = east_north(grid_.to_axis(ridge), up);
+  out.fold_east[cell] = static_cast<float>(folds.east);
+  out.fold_north[cell] = static_cast<float>(folds.north);
+  out.ridge_east[cell] = static_cast<float>(ridges.east);
+  out.ridge_north[cell] = static_cast<float>(ridges.north);
+}
+
+void SphereOnGrid::draw_boundary(const Cell& at, Index cell, const Vector3& bent,
+                                 const Outputs& out) const {
+  out.type[cell] = static_cast<std::int8_t>(BoundaryType::interior);
+  out.strength[cell] = 0.0F;
+  const double half_width_km =
+      std::max(0.5 * p_.boundary_width_km, 0.6e-3 * grid_.spacing_north_m(0));
+  const double half = 0.5 * mesh_.samples().spacing();
+  const std::int16_t own = model_.state().crust.plate[at.nearest];
+  double least_km = half_width_km;
+  for (const std::int32_t corner : at.place.corner) {
+    if (nearest_boundary_[corner] < 0) continue;
+    const SphereBoundary& point = boundaries_[nearest_boundary_[corner]];
+    const double far = length(add(mesh_.samples().position(point.sample), bent, -1.0));
+    const double far_km = radius_km_ * std::max(0.0, far + (point.plate == own ? half : -half));
+    if (far_km > least_km) continue;
+    least_km = far_km;
+    out.type[cell] = static_cast<std::int8_t>(point.type);
+    out.strength[cell] = static_cast<float>(point.strength);
+  }
+}
+
+/// Warmth of the mantle: plumes on an even background.
+float SphereOnGrid::heat(const Vector3& unit) const {
+  constexpr double kPlume_km = 260.0, kPlumeHeat = 0.5, kBackground = 0.2;
+  double value = kBackground;
+  for (const Vector3& plume : plumes_) {
+    const double far = radius_km_ * length(add(plume, unit, -1.0)) / kPlume_km;
+    if (far < 5.0) value += kPlumeHeat * std::exp(-0.5 * far * far);
+  }
+  return static_cast<float>(std::min(value, 1.0));
+}
+
+}  // namespace geo

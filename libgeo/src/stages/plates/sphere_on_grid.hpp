@@ -1,0 +1,44 @@
+#pragma once
+
+#include <vector>
+
+#include "geo/kernels/sphere_boundaries.hpp"
+#include "geo/kernels/sphere_tectonics.hpp"
+#include "geo/stages/plates.hpp"
+
+namespace geo {
+
+/// Plates and crust of a lattice as the cells of a grid see them. The crust must have just been
+/// resampled.
+class SphereOnGrid {
+ public:
+  SphereOnGrid(const PlatesParameters& parameters, const SphereTectonics& model, StageIo& io,
+               const Context& context);
+  void draw(StageIo& io) const;
+  [[nodiscard]] std::span<const SphereBoundary> boundaries() const { return boundaries_; }
+
+ private:
+  struct Outputs;
+  class Bends;
+  struct Cell {
+    SphereMesh::Place place;
+    std::int32_t nearest;
+  };
+  void draw_crust(const Cell& at, Index cell, const Vector3& unit, const Outputs& out) const;
+  void draw_boundary(const Cell& at, Index cell, const Vector3& bent, const Outputs& out) const;
+  [[nodiscard]] float heat(const Vector3& unit) const;
+
+  const PlatesParameters& p_;
+  const SphereTectonics& model_;
+  const SphereMesh& mesh_;
+  const Grid& grid_;
+  double radius_km_;
+  std::uint64_t seed_;
+  std::vector<SphereBoundary> boundaries_;
+  std::vector<std::int32_t> nearest_boundary_;  // of each sample, -1 far from any
+  std::vector<std::int16_t> number_;            // of each plate in files, the largest first
+  std::vector<std::uint8_t> is_edge_;           // samples beside another plate or crust type
+  std::vector<Vector3> plumes_;
+};
+
+}  // namespace geo

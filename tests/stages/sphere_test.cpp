@@ -1,0 +1,173 @@
+// Planets whose plates have drifted.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "geo/core/error.hpp"
+#include "geo/stages/isostasy.hpp"
+#include "geo/stages/plates.hpp"
+
+namespace geo {
+namespace {
+
+struct Drifted {
+  State state;
+  Budget budget;
+};
+
+PlatesParameters quick() {
+  PlatesParameters p;
+  p.model = "sphere";
+  p.growth.count = 30;
+  p.samples = 12000;
+  p.time_myr = 120.0;
+  p.ocean_floor = "age";
+  return p;
+}
+
+Drifted drifted(int nx, std::uint64_t seed, const PlatesParameters& parameters) {
+  Drifted out{State(std::make_shared<Grid>(Grid::sphere(nx, nx / 2))), {}};
+  const auto stage = make_plates_stage(parameters);
+  StageIo io(out.state, stage->info());
+  Context context;
+  context.seed = seed;
+  stage->run(io, context);
+  out.budget = context.budget;
+  return out;
+}
+
+const Drifted& one_planet() {
+  static const Drifted kPlanet = drifted(192, 4, quick());
+  return kPlanet;
+}
+
+double share_where(const State& state, const std::function<bool(Index)>& holds) {
+  const Grid& grid = state.grid();
+  double area = 0.0;
+  for (Index cell = 0; cell < grid.size(); ++cell) {
+    if (holds(cell)) area += grid.area_m2(grid.row(cell));
+  }
+  return area / grid.total_area_m2();
+}
+
+TEST(DriftedPlates, WriteAllThatTheyDeclareAndItIsFinite) {
+  const State& state = one_planet().state;
+  const auto stage = make_plates_stage(quick());
+  for (const FieldSpec* spec : stage->info().writes) {
+    ASSERT_TRUE(state.has(*spec)) << spec->name;
+    std::visit(
+        [&](const auto& values) {
+          for (const auto value : values) ASSERT_TRUE(std::isfinite(static_cast<double>(value)));
+        },
+        *state.values(*spec));
+  }
+}
+
+TEST(DriftedPlates, HaveContinentsAboveAndOceansBelow) {
+  const State& state = one_planet().state;
+  const auto z = state.read(field::crust_elevation);
+  const auto fraction = state.read(field::continental_fraction);
+  const double land = share_where(state, [&](Index c) { return z[c] > 0.0F; });
+  EXPECT_GT(land, 0.15);
+  EXPECT_LT(land, 0.6);
+  // Two modes with little between them.
+  const double between =
+      share_where(state, [&](Index c) { return z[c] > -2000.0F && z[c] < -200.0F; });
+  EXPECT_LT(between, 0.1);
+  const double wrong = share_where(state, [&](Index c) {
+    return (fraction[c] > 0.999F && z[c] < -1000.0F) || (fraction[c] < 0.001F && z[c] > 500.0F);
+  });
+  EXPECT_LT(wrong, 0.005);
+}
+
+TEST(DriftedPlates, FloorIsYoungWherePlatesPartAndOldAwayFromThere) {
+  const State& state = one_planet().state;
+  const auto age = state.read(field::crust_age);
+  const auto fraction = state.read(field::continental_fraction);
+  const auto type = state.read(field::boundary_type);
+  const auto mean = [&](const std::function<bool(Index)>& holds) {
+    double sum = 0.0, area = 0.0;
+    for (Index c = 0; c < state.grid().size(); ++c) {
+      if (fraction[c] > 0.0F || !holds(c)) continue;
+      const double weight = state.grid().area_m2(state.grid().row(c));
+      sum += weight * age[c];
+      area += weight;
+    }
+    return sum / area;
+  };
+  const double ridges =
+      mean([&](Index c) { return type[c] == static_cast<std::int8_t>(BoundaryType::divergent); });
+  const double all = mean([](Index) { return true; });
+  EXPECT_LT(ridges, 0.4 * all);
+  EXPECT_GT(all, 25.0);
+  EXPECT_LT(all, 110.0);
+}
+
+TEST(DriftedPlates, CloseTheirBooks) {
+  const Budget& budget = one_planet().budget;
+  EXPECT_NEAR(budget.at("plates_area_error"), 0.0, 1e-12);
+  EXPECT_NEAR(budget.at("continental_closing_error"), 0.0, 1e-6);
+  EXPECT_GT(budget.at("crust_created_km2"), 1e8);
+  EXPECT_NEAR(budget.at("crust_created_km2"),
+              budget.at("crust_consumed_km2") + budget.at("crust_buried_km2"),
+              0.1 * budget.at("crust_created_km2"));
+}
+
+TEST(DriftedPlates, AreTheSamePlanetOnEveryGrid) {
+  // Cells of the coarse grid hold the middle of three cells of the fine one.
+  const State& fine = one_planet().state;
+  const State coarse = drifted(64, 4, quick()).state;
+  int same = 0;
+  for (Index c = 0; c < coarse.grid().size(); ++c) {
+    const Index f = fine.grid().cell(3 * coarse.grid().column(c) + 1, 3 * coarse.grid().row(c) + 1);
+    same += coarse.read(field::plate_id)[c] == fine.read(field::plate_id)[f] &&
+            std::abs(coarse.read(field::crust_elevation)[c] -
+                     fine.read(field::crust_elevation)[f]) < 1.0F;
+  }
+  EXPECT_GT(same, 0.99 * coarse.grid().size());
+}
+
+TEST(DriftedPlates, BecomeAPlanetWithLandAndSea) {
+  Drifted planet = drifted(128, 4, quick());
+  IsostasyParameters parameters;
+  parameters.crust = "simulated";
+  const auto stage = make_isostasy_stage(parameters);
+  StageIo io(planet.state, stage->info());
+  Context context;
+  context.seed = 4;
+  stage->run(io, context);
+  const auto z = planet.state.read(field::elevation);
+  EXPECT_NEAR(share_where(planet.state, [&](Index c) { return z[c] >= 0.0F; }), 0.29, 0.01);
+  const auto made = planet.state.read(field::crust_elevation);
+  double sum_x = 0, sum_y = 0, sum_xx = 0, sum_yy = 0, sum_xy = 0;
+  const double n = planet.state.grid().size();
+  for (Index c = 0; c < planet.state.grid().size(); ++c) {
+    sum_x += made[c];
+    sum_y += z[c];
+    sum_xx += made[c] * made[c];
+    sum_yy += z[c] * z[c];
+    sum_xy += made[c] * z[c];
+  }
+  const double correlation =
+      (sum_xy / n - sum_x / n * sum_y / n) /
+      std::sqrt((sum_xx / n - sum_x / n * sum_x / n) * (sum_yy / n - sum_y / n * sum_y / n));
+  EXPECT_GT(correlation, 0.9);
+}
+
+TEST(DriftedPlates, AreMissedWhereSimulatedCrustIsAskedFor) {
+  PlatesParameters grown;
+  State state(std::make_shared<Grid>(Grid::sphere(32, 16)));
+  Context context;
+  const auto plates = make_plates_stage(grown);
+  StageIo first(state, plates->info());
+  plates->run(first, context);
+  IsostasyParameters parameters;
+  parameters.crust = "simulated";
+  const auto stage = make_isostasy_stage(parameters);
+  StageIo io(state, stage->info());
+  EXPECT_THROW(stage->run(io, context), InputError);
+}
+
+}  // namespace
+}  // namespace geo
