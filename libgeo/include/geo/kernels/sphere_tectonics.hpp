@@ -19,6 +19,7 @@ struct SphereSettings {
   double radius_km = 6370.0;
   bool driftworld_uplift = false;     ///< Driftworld's f instead of the piecewise one
   double uplift_control_km = 200.0;   ///< where subduction raises most
+  double elevation_weight = 1.0;      ///< power of the factor h in the uplift
   double fold_per_km = 0.002;         ///< beta of the fold direction, per km of relative motion
   double slab_pull = 1e-3;            ///< epsilon, per Myr and 1000 km of front
   double penetration_km = 300.0;      ///< of continents, before they collide
@@ -29,6 +30,9 @@ struct SphereSettings {
   bool floor_by_age = false;          ///< depth by GDH1 instead of damping
   double accretion_top_km = -3.0;     ///< up to which a trench's sediment piles
   double accretion_width_km = 100.0;  ///< of the wedge
+  double margin_km = 120.0;           ///< width of stretched crust where a continent breaks
+  double margin_source_km = 400.0;    ///< from which inland it flows there
+  double margin_thinning = 0.12;      ///< most that the inland thins for it
   double rift_per_myr = 0.004;        ///< lambda_0
   double rift_smallest = 0.5;         ///< smaller plates, in mean areas, do not rift
   double rift_speed_mm_yr = 30.0;     ///< at which fragments part
@@ -57,6 +61,7 @@ struct SphereBudget {
   double raised_km3 = 0.0;        ///< added by subduction: magma and accretion
   double eroded_km3 = 0.0;
   double emerged_km3 = 0.0;     ///< of arcs when they became continental
+  double stretched_km2 = 0.0;   ///< margins that broken continents grew
   double swallowed_km3 = 0.0;   ///< taken by collisions from below and given back as mountains
   double lost_km3 = 0.0;        ///< gone below oceanic crust or beyond the highest summit
   double resampling_km3 = 0.0;  ///< what interpolation added or took
@@ -140,6 +145,8 @@ class SphereTectonics {
   void rift_by_chance();
   void subtract_net_rotation();
   void fill_gaps(SphereCrust& now, std::vector<std::int16_t>& owner);
+  void stretch_margins(std::span<const std::int32_t> gaps, std::span<const std::int32_t> nearest,
+                       SphereCrust& now, std::span<const std::int16_t> owner);
   void tidy_pieces();
   void measure_volume();
   [[nodiscard]] bool is_on_top(std::int32_t sample, std::int32_t other) const;

@@ -31,6 +31,13 @@ void SphereTectonics::raise() {
     relative[k] = scaled(back(frame_[own], add(rotation_[fronts_[k].lower], rotation_[own], -1.0)),
                          s.radius_km);
   }
+  // How much the height of what goes down counts.
+  std::vector<double> lift(fronts_.size());
+  for (std::size_t k = 0; k < fronts_.size(); ++k) {
+    lift[k] = std::pow(
+        uplift_by_elevation(1e-3 * fronts_[k].lower_elevation_m, law.trench_km, law.summit_km),
+        s.elevation_weight);
+  }
   enum { kRaised, kEroded, kEmerged, kEmergedArea, kSums };
   constexpr std::int32_t kBlock = 4096;
   const std::int32_t n = crust.size(), blocks = (n + kBlock - 1) / kBlock;
@@ -52,8 +59,7 @@ void SphereTectonics::raise() {
                                                               law.subduction_distance_km))
                 : uplift_by_distance(d_km, s.uplift_control_km, law.subduction_distance_km);
         const double rate =
-            law.uplift_mm_yr * f * uplift_by_speed(length(speed), law.speed_mm_yr) *
-            uplift_by_elevation(1e-3 * front.lower_elevation_m, law.trench_km, law.summit_km);
+            law.uplift_mm_yr * f * uplift_by_speed(length(speed), law.speed_mm_yr) * lift[k];
         raised_km = std::max(0.0, std::min(rate * law.step_myr, law.summit_km - z_km));
         wedge = d_km < s.accretion_width_km;
         if (f > kFolding) {

@@ -241,6 +241,9 @@ void SphereTectonics::fill_gaps(SphereCrust& now, std::vector<std::int16_t>& own
     const Vector3 ridge = normalised(cross(from_ridge, p));
     for (int c = 0; c < 3; ++c) now.ridge[i][c] = static_cast<float>(ridge[c]);
   }
+  std::vector<std::int32_t> nearest(gaps.size());
+  for (std::int32_t k = 0; k < gap_count; ++k) nearest[k] = sides[k].source[0];
+  stretch_margins(gaps, nearest, now, owner);
   for (std::int32_t k = 0; k < gap_count; ++k) owner[gaps[k]] = nearest_plate[k];
 }
 

@@ -10,6 +10,17 @@
 #include "geo/kernels/plate_motion.hpp"
 
 namespace geo {
+namespace {
+
+/// Stretched crust is less of a continent the thinner it is.
+double continental_share(const SphereCrust& crust, std::int32_t sample) {
+  constexpr double kOceanic_m = 8e3, kContinental_m = 22e3;
+  if (crust.continental[sample] == 0) return 0.0;
+  return std::clamp((crust.thickness_m[sample] - kOceanic_m) / (kContinental_m - kOceanic_m), 0.1,
+                    1.0);
+}
+
+}  // namespace
 
 struct SphereOnGrid::Outputs {
   explicit Outputs(StageIo& io)
@@ -163,7 +174,7 @@ void SphereOnGrid::draw_crust(const Cell& at, Index cell, const Vector3& unit,
   for (int k = 0; k < 3; ++k) {
     const std::int32_t i = at.place.corner[k];
     const double weight = at.place.weight[k];
-    fraction += weight * crust.continental[i];
+    fraction += weight * continental_share(crust, i);
     elevation += weight * crust.elevation_m[i];
     thickness += weight * crust.thickness_m[i];
     for (int c = 0; c < 3; ++c) {
