@@ -19,6 +19,7 @@ struct SphereSettings {
   double radius_km = 6370.0;
   bool driftworld_uplift = false;     ///< Driftworld's f instead of the piecewise one
   double uplift_control_km = 200.0;   ///< where subduction raises most
+  double arc_reach_km = 1800.0;       ///< of the uplift where the overriding crust is oceanic
   double elevation_weight = 1.0;      ///< power of the factor h in the uplift
   double fold_per_km = 0.002;         ///< beta of the fold direction, per km of relative motion
   double slab_pull = 1e-3;            ///< epsilon, per Myr and 1000 km of front

@@ -53,11 +53,12 @@ void SphereTectonics::raise() {
         const Front& front = fronts_[k];
         const double d_km = distance_km(i, front.sample);
         const Vector3 speed = cross(relative[k], samples.position(i));
+        const double reach_km =
+            crust.continental[i] != 0 ? law.subduction_distance_km : s.arc_reach_km;
         const double f =
             s.driftworld_uplift
-                ? std::max(0.0, uplift_by_distance_driftworld(d_km, s.uplift_control_km,
-                                                              law.subduction_distance_km))
-                : uplift_by_distance(d_km, s.uplift_control_km, law.subduction_distance_km);
+                ? std::max(0.0, uplift_by_distance_driftworld(d_km, s.uplift_control_km, reach_km))
+                : uplift_by_distance(d_km, s.uplift_control_km, reach_km);
         const double rate =
             law.uplift_mm_yr * f * uplift_by_speed(length(speed), law.speed_mm_yr) * lift[k];
         raised_km = std::max(0.0, std::min(rate * law.step_myr, law.summit_km - z_km));

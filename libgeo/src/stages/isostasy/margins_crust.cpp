@@ -136,7 +136,10 @@ class Columns {
     crust_.density[cell] =
         static_cast<float>(p_.density.oceanic_crust +
                            (p_.density.continental_crust - p_.density.oceanic_crust) * at.share);
-    crust_.thickness_m[cell] = std::clamp(crust_.thickness_m[cell], 3000.0F, 80000.0F);
+    // Roots of cratons that their lithosphere weighs down: they do not show in the relief.
+    const double root_m = 1e3 * p_.craton_compensation * row.thickness_noise_km[i] * at.share;
+    crust_.thickness_m[cell] =
+        std::clamp(crust_.thickness_m[cell] + static_cast<float>(root_m), 3000.0F, 80000.0F);
     crust_.elevation_m[cell] =
         static_cast<float>(crust_.made_elevation_m[cell] + on_land_m * at.share +
                            at_sea_m * (1.0 - at.share) + row.trench_m[i] * (1.0 - 0.5 * at.share));

@@ -99,6 +99,9 @@ std::vector<Parameter> PlatesParameters::declarations() {
           "cortial2019"),
       real("plates.uplift_control_km", sphere.uplift_control_km, "km", 1.0, 5000.0,
            "sphere: distance from the front where subduction raises most", "cortial2019"),
+      real("plates.arc_reach_km", sphere.arc_reach_km, "km", 10.0, 10000.0,
+           "sphere: how far from its front subduction raises an upper plate of ocean floor",
+           "cortial2019"),
       real("plates.elevation_weight", sphere.elevation_weight, "1", 0.0, 4.0,
            "sphere: power of the factor by which the height of what goes down raises the upper "
            "plate",
