@@ -134,7 +134,6 @@ class Leaks {
 std::vector<Index> lower_courses(const Grid& fine, std::span<const std::uint8_t> outlets,
                                  RiverCourses& courses, std::span<float> z) {
   constexpr float kFall_m = 2e-3F;  // seen by floats at any height
-  constexpr float kHollow = 0.5F;   // of the height above the sea is the lowest that a sill sinks
   std::vector<float>& level_m = courses.level_m;
   const auto n = static_cast<std::int32_t>(courses.cell.size());
   for (std::int32_t k = 0; k < n; ++k) {
@@ -155,7 +154,7 @@ std::vector<Index> lower_courses(const Grid& fine, std::span<const std::uint8_t>
     }
     if (const std::int32_t next = courses.next[k]; next != kCourseEnds) {
       float most_m = level_m[k];
-      if (courses.lake[next] == 0) most_m = std::clamp(z[c], kHollow * most_m, most_m);
+      most_m = std::clamp(z[c], std::min(most_m, courses.least_m[next]), most_m);
       level_m[next] = std::min(level_m[next], std::max(0.0F, most_m - kFall_m));
     }
   }

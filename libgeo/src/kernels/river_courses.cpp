@@ -268,7 +268,7 @@ RiverCourses trace_river_courses(const PlanetCells& cells, const PlanetWater& wa
 
   // For each place of the courses, the planet cell that its step goes to.
   std::vector<Index> goal_of;
-  std::vector<std::uint8_t> lake;
+  std::vector<float> sinks;  // to this share of its level
   for (const Index from : river_steps(cells, water, beds)) {
     const Index to = water.receiver[from];
     const bool starts_inside = beds.inside(from), ends_inside = beds.inside(to);
@@ -288,10 +288,11 @@ RiverCourses trace_river_courses(const PlanetCells& cells, const PlanetWater& wa
       network.connect(source, goal, margin, joins, true);
     }
     goal_of.resize(network.size(), to);
-    lake.resize(network.size(), beds.on_lake(from) && beds.on_lake(to) ? 1 : 0);
+    sinks.resize(network.size(), beds.on_lake(from) && beds.on_lake(to) ? 1.0F : 0.25F);
   }
   RiverCourses courses = network.take();
-  courses.lake = std::move(lake);
+  courses.least_m = std::move(sinks);
+  for (std::size_t k = 0; k < courses.cell.size(); ++k) courses.least_m[k] *= courses.level_m[k];
   return courses;
 }
 

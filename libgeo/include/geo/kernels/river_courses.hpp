@@ -14,7 +14,7 @@ struct RiverCourses {
   std::vector<Index> cell;         ///< downstream first
   std::vector<std::int32_t> next;  ///< place of the next cell downstream; kCourseEnds at the end
   std::vector<float> level_m;      ///< highest level of the water there
-  std::vector<std::uint8_t> lake;  ///< 1 where the planet has a lake
+  std::vector<float> least_m;      ///< how far that may sink for the sake of hollows upstream
 };
 inline constexpr std::int32_t kCourseEnds = -1;
 
@@ -26,7 +26,8 @@ inline constexpr std::int32_t kCourseEnds = -1;
 ///   integral of exp(0.8 n) (1 + max(0, z - b) / 20 m) ds,   b = level - min(level / 2, 100 m),
 /// level = the planet's, linear between, n = noise of unit variance, over the fine relief. It keeps
 /// clear of other courses and of the sea where it can. Courses end at the sea, at the edge or at
-/// the bottom of an endorheic basin. On lakes the level is that of their outlet. `elevation_m`: one
+/// the bottom of an endorheic basin. On lakes the level is that of their outlet, and does not sink;
+/// elsewhere it may sink to a quarter of the planet's. `elevation_m`: one
 /// value per fine cell. Cost: n log n in the fine cells that each step passes. The same bits for
 /// any number of threads.
 RiverCourses trace_river_courses(const PlanetCells& cells, const PlanetWater& water,
@@ -38,9 +39,9 @@ RiverCourses trace_river_courses(const PlanetCells& cells, const PlanetWater& wa
 /// A planet's valley is one cell wide and often runs diagonally: interpolation, and detail on top,
 /// dam it, or let the river out over a lower place at its side. So the water's level on a course is
 /// at most `level_m`, falls downstream, and stays below every pass over which the water that stands
-/// there would run out of the grid (`outlets`), into the sea, or into another course. Except on the
-/// planet's lakes it also sinks to the ground of the course upstream, by no more than half of its
-/// height above the sea, so that hollows of the detail become valleys instead of lakes. What rises
+/// there would run out of the grid (`outlets`), into the sea, or into another course. It also sinks
+/// to the ground of the course upstream, though not below `least_m`, so that hollows of the detail
+/// become valleys instead of lakes. What rises
 /// above that level on the course is cut, with sides of a slope of at most 0.15; what lies below it
 /// stays. Nothing rises, nothing is cut below the level of the sea, and of the edge only cells on a
 /// course sink. `level_m` of the courses becomes the level found. Cost: n log n in the cells of
