@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "geo/kernels/shapes.hpp"
 #include "geo/kernels/smoothing.hpp"
@@ -28,6 +29,20 @@ void cut_section(Index cell, double along, double shift, Tectonics& t) {
       break;
     default:
       break;
+  }
+}
+
+/// Where two stretches of boundary are equally near, sections meet in a straight line. Far from the
+/// boundary plateaus pass into each other, and end, over a broader slope than belts have near it.
+void soften_far_edges(const Grid& grid, double length_m, Tectonics& t) {
+  constexpr double kBroader = 3.5, kNear_km = 250.0, kFar_km = 700.0;
+  std::vector<float> broad = t.thickening;
+  smooth(grid, t.thickening, length_m);
+  smooth(grid, broad, kBroader * length_m);
+#pragma omp parallel for schedule(static)
+  for (Index cell = 0; cell < grid.size(); ++cell) {
+    const double far = smooth_step(kNear_km, kFar_km, std::abs(t.margins.across_km[cell]));
+    t.thickening[cell] += static_cast<float>(far) * (broad[cell] - t.thickening[cell]);
   }
 }
 
@@ -80,7 +95,7 @@ void cut_sections(const Crust& crust, const CoarseGrid& coarse, Tectonics& t) {
       }
     }
   }
-  smooth(grid, t.thickening, 2e3 * p.deformation_smoothing_km);
+  soften_far_edges(grid, 2e3 * p.deformation_smoothing_km, t);
   smooth(grid, t.arc, 0.7e3 * p.deformation_smoothing_km);
   smooth(grid, t.trench_m, 0.6e3 * p.deformation_smoothing_km);
   t.convergent = t.thickening;
