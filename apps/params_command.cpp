@@ -102,7 +102,10 @@ void print_markdown(const Rows& rows, std::string_view heading = {}) {
 std::vector<geo::Event> events_of_all_kinds() {
   return {{.name = "", .what = geo::Impact{}},
           {.name = "", .what = geo::Rift{.path = {{10.0, 35.0}, {-5.0, 30.0}}}},
-          {.name = "", .what = geo::OceanShift{}}};
+          {.name = "", .what = geo::OceanShift{}},
+          {.name = "", .what = geo::PlateMotion{}},
+          {.name = "", .what = geo::PlateRift{}},
+          {.name = "", .what = geo::CrustChange{}}};
 }
 
 void print_events(const std::string& format) {

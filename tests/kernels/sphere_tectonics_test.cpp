@@ -238,6 +238,32 @@ TEST(SphereTectonics, SlabPullBringsAPlateToItsFront) {
   EXPECT_EQ(model.state().plates[0].axis, (Vector3{0.0, 0.0, -1.0}));
 }
 
+TEST(SphereTectonics, APlumeLeavesAChainOfVolcanoes) {
+  const World world(40000);
+  SphereSettings settings = quiet();
+  settings.law.damping_mm_yr = 0.0;
+  settings.plumes = {place(10.0, 60.0)};
+  settings.plume_mm_yr = 1.0;
+  settings.plume_km = 120.0;
+  settings.least_steps = 60;
+  // Plate 1 turns eastwards at 50 mm/yr: 24 Myr later its first volcano is 1200 km east.
+  SphereTectonics model(world.mesh, settings, hemispheres(world, 100.0), 1);
+  for (int k = 0; k < 12; ++k) model.advance();
+  const Matrix3 frame = model.state().plates[1].turn.matrix();
+  double west = 400.0, east = -400.0;
+  for (std::int32_t i = 0; i < world.mesh.size(); ++i) {
+    if (model.state().crust.plate[i] != 1 || model.state().crust.elevation_m[i] < -4800.0F)
+      continue;
+    const Vector3 at = times(frame, world.samples.position(i));
+    if (std::abs(longitude_deg(at) - 60.0) > 40.0) continue;
+    EXPECT_NEAR(latitude_deg(at), 10.0, 3.5);
+    west = std::min(west, longitude_deg(at));
+    east = std::max(east, longitude_deg(at));
+  }
+  EXPECT_NEAR(west, 60.0, 3.5);
+  EXPECT_NEAR(east, 60.0 + 1200.0 / kKmPerDegree, 4.0);
+}
+
 TEST(SphereTectonics, TakesTheNetRotationAway) {
   const World world(5000);
   SphereSettings settings;

@@ -1,8 +1,10 @@
 // Planets whose plates have drifted.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 
 #include "geo/core/error.hpp"
 #include "geo/stages/isostasy.hpp"
@@ -153,6 +155,127 @@ TEST(DriftedPlates, BecomeAPlanetWithLandAndSea) {
       (sum_xy / n - sum_x / n * sum_y / n) /
       std::sqrt((sum_xx / n - sum_x / n * sum_x / n) * (sum_yy / n - sum_y / n * sum_y / n));
   EXPECT_GT(correlation, 0.9);
+}
+
+/// Runs the stage with frames every 20 Myr, from the beginning or from a checkpoint.
+std::vector<Frame> frames_of(const PlatesParameters& parameters, State& state,
+                             std::shared_ptr<const Checkpoint> from, std::vector<Event> events = {},
+                             Context* told = nullptr) {
+  std::vector<Frame> frames;
+  const auto stage = make_plates_stage(parameters);
+  StageIo io(state, stage->info());
+  Context context;
+  context.seed = 6;
+  context.events = std::move(events);
+  context.checkpoint = std::move(from);
+  context.on_frame = [&](Frame frame) { frames.push_back(std::move(frame)); };
+  stage->run(io, context);
+  if (told != nullptr) *told = context;
+  return frames;
+}
+
+PlatesParameters with_frames() {
+  PlatesParameters p = quick();
+  p.samples = 6000;
+  p.time_myr = 100.0;
+  p.frames_myr = 20.0;
+  p.sphere.rift_per_myr = 0.02;
+  return p;
+}
+
+bool same_values(const State& a, const State& b) {
+  bool same = a.present() == b.present();
+  for (const FieldSpec* spec : a.present()) same = same && *a.values(*spec) == *b.values(*spec);
+  return same;
+}
+
+TEST(DriftedPlates, GoOnFromAnyFrameBitForBit) {
+  State whole(std::make_shared<Grid>(Grid::sphere(32, 16)));
+  const auto frames = frames_of(with_frames(), whole, nullptr);
+  ASSERT_EQ(frames.size(), 6U);
+  for (const std::size_t k : {1U, 3U}) {
+    EXPECT_EQ(frames[k].checkpoint.time_myr, 20.0 * static_cast<double>(k));
+    State rest(std::make_shared<Grid>(Grid::sphere(32, 16)));
+    const auto later =
+        frames_of(with_frames(), rest, std::make_shared<const Checkpoint>(frames[k].checkpoint));
+    ASSERT_EQ(later.size(), 5U - k);
+    EXPECT_TRUE(same_values(whole, rest)) << k;
+    for (std::size_t m = 0; m < later.size(); ++m) {
+      EXPECT_TRUE(later[m].checkpoint.arrays == frames[k + 1 + m].checkpoint.arrays);
+      EXPECT_TRUE(same_values(later[m].fields, frames[k + 1 + m].fields));
+    }
+  }
+}
+
+TEST(DriftedPlates, AreTheSameWithAndWithoutFrames) {
+  State with(std::make_shared<Grid>(Grid::sphere(32, 16)));
+  (void)frames_of(with_frames(), with, nullptr);
+  PlatesParameters parameters = with_frames();
+  parameters.frames_myr = 0.0;
+  State without(std::make_shared<Grid>(Grid::sphere(32, 16)));
+  EXPECT_TRUE(frames_of(parameters, without, nullptr).empty());
+  EXPECT_TRUE(same_values(with, without));
+}
+
+TEST(DriftedPlates, RefuseFramesThatDoNotFit) {
+  State state(std::make_shared<Grid>(Grid::sphere(32, 16)));
+  const auto frames = frames_of(with_frames(), state, nullptr);
+  PlatesParameters other = with_frames();
+  other.samples = 7000;
+  State again(std::make_shared<Grid>(Grid::sphere(32, 16)));
+  EXPECT_THROW(
+      (void)frames_of(other, again, std::make_shared<const Checkpoint>(frames[2].checkpoint)),
+      InputError);
+  Checkpoint damaged = frames[2].checkpoint;
+  damaged.arrays.erase("plate_alive");
+  EXPECT_THROW(
+      (void)frames_of(with_frames(), again, std::make_shared<const Checkpoint>(std::move(damaged))),
+      InputError);
+}
+
+TEST(DriftedPlates, FollowTheTimeline) {
+  PlatesParameters parameters = with_frames();
+  parameters.sphere.rift_per_myr = 0.0;
+  parameters.sphere.slab_pull = 0.0;
+  parameters.no_net_rotation = false;
+  parameters.time_myr = 30.0;
+  parameters.frames_myr = 10.0;
+  const std::vector<Event> events{
+      {.name = "",
+       .what = PlateMotion{.time_myr = 10.0,
+                           .latitude_deg = 20.0,
+                           .longitude_deg = 50.0,
+                           .pole_latitude_deg = -90.0,
+                           .speed_mm_yr = 25.0}},
+      {.name = "",
+       .what =
+           CrustChange{
+               .time_myr = 10.0, .latitude_deg = 20.0, .longitude_deg = 50.0, .radius_km = 1200.0}},
+      {.name = "",
+       .what = PlateRift{
+           .time_myr = 20.0, .latitude_deg = -60.0, .longitude_deg = -100.0, .fragments = 3}}};
+  State state(std::make_shared<Grid>(Grid::sphere(128, 64)));
+  Context told;
+  const auto frames = frames_of(parameters, state, nullptr, events, &told);
+  ASSERT_GE(told.event_records.size(), 3U);  // what happens of itself comes behind
+  EXPECT_EQ(told.event_records[2].kind, PlateRift::kKind);
+  // 28 samples of 85 000 km2 within 1200 km, less what was continental already.
+  const double changed_km2 = figure_of(told.event_records[1], "area_km2", -1.0);
+  EXPECT_GT(changed_km2, 0.0);
+  EXPECT_LT(changed_km2, 5.0e6);
+  // Ten million years later the place has gone 250 km west, and the plate goes on so.
+  const Grid& grid = state.grid();
+  const Index cell = grid.cell(static_cast<int>((180.0 + 47.5) / 360.0 * 128),
+                               static_cast<int>((90.0 + 20.0) / 180.0 * 64));
+  EXPECT_NEAR(frames[2].fields.read(field::plate_velocity_east)[cell],
+              -25.0 * std::cos(20.0 * 3.14159 / 180.0), 1.0);
+  EXPECT_NEAR(frames[2].fields.read(field::plate_velocity_north)[cell], 0.0, 1e-3);
+  EXPECT_GT(frames[2].fields.read(field::continental_fraction)[cell], 0.9F);
+  const auto plates = [](const Frame& frame) {
+    const auto ids = frame.fields.read(field::plate_id);
+    return *std::max_element(ids.begin(), ids.end());
+  };
+  EXPECT_GT(plates(frames[3]), plates(frames[2]));
 }
 
 TEST(DriftedPlates, AreMissedWhereSimulatedCrustIsAskedFor) {

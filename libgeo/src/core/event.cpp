@@ -55,6 +55,59 @@ std::vector<Parameter> OceanShift::declarations() {
   };
 }
 
+namespace {
+
+Parameter time_of(double& time_myr) {
+  return real("event.time_myr", time_myr, "Myr", 0.0, 5000.0, "when, since the drift began",
+              "cortial2019");
+}
+Parameter latitude_of(double& latitude_deg, std::string_view doc) {
+  return real("event.latitude_deg", latitude_deg, "degrees_north", -90.0, 90.0, doc, "design");
+}
+Parameter longitude_of(double& longitude_deg, std::string_view doc) {
+  return real("event.longitude_deg", longitude_deg, "degrees_east", -180.0, 360.0, doc, "design");
+}
+
+}  // namespace
+
+std::vector<Parameter> PlateMotion::declarations() {
+  return {
+      time_of(time_myr),
+      latitude_of(latitude_deg, "a place on the plate at that time"),
+      longitude_of(longitude_deg, "a place on the plate at that time"),
+      real("event.pole_latitude_deg", pole_latitude_deg, "degrees_north", -90.0, 90.0,
+           "Euler pole about which it turns anticlockwise from then on", "cox1986"),
+      real("event.pole_longitude_deg", pole_longitude_deg, "degrees_east", -180.0, 360.0,
+           "Euler pole about which it turns anticlockwise from then on", "cox1986"),
+      real("event.speed_mm_yr", speed_mm_yr, "mm yr-1", 0.0, 1000.0,
+           "its speed at the equator of that pole", "cortial2019"),
+  };
+}
+
+std::vector<Parameter> PlateRift::declarations() {
+  return {
+      time_of(time_myr),
+      latitude_of(latitude_deg, "where the plate breaks"),
+      longitude_of(longitude_deg, "where the plate breaks"),
+      real("event.bearing_deg", bearing_deg, "degree", -360.0, 360.0,
+           "direction of the fracture, clockwise from north", "design"),
+      integer("event.fragments", fragments, "1", 2, 4, "number of fragments", "cortial2019"),
+      real("event.speed_mm_yr", speed_mm_yr, "mm yr-1", 0.0, 1000.0,
+           "speed at which they leave the middle of their plate", "design"),
+  };
+}
+
+std::vector<Parameter> CrustChange::declarations() {
+  return {
+      time_of(time_myr),
+      latitude_of(latitude_deg, "middle of the circle"),
+      longitude_of(longitude_deg, "middle of the circle"),
+      real("event.radius_km", radius_km, "km", 1.0, 20000.0, "its radius", "design"),
+      flag("event.continental", continental, "whether the crust becomes continental or oceanic",
+           "cortial2019"),
+  };
+}
+
 std::string_view Event::kind() const {
   return std::visit([](const auto& event) { return event.kKind; }, what);
 }

@@ -13,13 +13,18 @@
 namespace geo::io {
 namespace {
 
-constexpr std::array<std::string_view, 3> kKinds{Impact::kKind, Rift::kKind, OceanShift::kKind};
+constexpr std::array<std::string_view, 6> kKinds{Impact::kKind,     Rift::kKind,
+                                                 OceanShift::kKind, PlateMotion::kKind,
+                                                 PlateRift::kKind,  CrustChange::kKind};
 constexpr std::string_view kPathKey = "path_deg";
 
 Event event_of_kind(std::string_view kind) {
   Event event;
   if (kind == Rift::kKind) event.what = Rift{};
   if (kind == OceanShift::kKind) event.what = OceanShift{};
+  if (kind == PlateMotion::kKind) event.what = PlateMotion{};
+  if (kind == PlateRift::kKind) event.what = PlateRift{};
+  if (kind == CrustChange::kKind) event.what = CrustChange{};
   return event;
 }
 
@@ -100,6 +105,8 @@ void check_whole(const Event& event, const toml::table& table, const std::string
     for (const auto* key : {"latitude_deg", "longitude_deg", "diameter_km"}) needs(key);
   } else if (std::holds_alternative<Rift>(event.what)) {
     needs(kPathKey);
+  } else if (event.is_of_plates()) {
+    for (const auto* key : {"time_myr", "latitude_deg", "longitude_deg"}) needs(key);
   } else {
     const auto& shift = std::get<OceanShift>(event.what);
     if ((shift.rise_m != 0.0) == (shift.water_km3 != 0.0)) {

@@ -57,6 +57,15 @@ std::string words_of(const EventRecord& event) {
                        name, rise_m < 0.0 ? "falls" : "rises", std::abs(rise_m),
                        std::abs(get(event, "water_km3")));
   }
+  if (has(event, "time_myr")) {
+    const char* what = event.kind == PlateMotion::kKind        ? "A plate takes a new course"
+                       : event.kind == "continental-collision" ? "Continents collide"
+                       : event.kind == CrustChange::kKind      ? "Crust changes its type"
+                                                               : "A plate breaks";
+    return fmt::format("{}{} after {:.4g} million years, at {} {}.", what, name,
+                       get(event, "time_myr"), degrees(get(event, "latitude_deg"), 'N', 'S'),
+                       degrees(get(event, "longitude_deg"), 'E', 'W'));
+  }
   std::string words = fmt::format("Impact{}", name);
   if (has(event, "latitude_deg")) {
     words += fmt::format(" at {} {}", degrees(get(event, "latitude_deg"), 'N', 'S'),

@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 
+#include "checkpoint_group.hpp"
 #include "chunk_writer.hpp"
 #include "geo/core/error.hpp"
 #include "geo/io/atomic_file.hpp"
@@ -74,8 +75,23 @@ void put_typed_attributes(const nc::File& file, int variable, const FieldSpec& s
   file.put(variable, "flag_meanings", meanings);
 }
 
+/// CF coordinates of a frame, as scalars: time since the drift began, in common years, of which
+/// UDUNITS makes a time axis, and the same in Myr.
+constexpr const char* kFrameCoordinates = "time drift_time";
+
+void define_time(const nc::File& file) {
+  const int time = file.define_variable("time", NC_DOUBLE, {});
+  file.put(time, "standard_name", "time");
+  file.put(time, "long_name", "time since plates began to drift");
+  file.put(time, "units", "common_years since 0001-01-01 00:00:00");
+  file.put(time, "calendar", "365_day");
+  const int drift = file.define_variable("drift_time", NC_DOUBLE, {});
+  file.put(drift, "long_name", "time since plates began to drift");
+  file.put(drift, "units", "Myr");
+}
+
 void define_field(const nc::File& file, const Grid& grid, const GridVariables& ids,
-                  const FieldSpec& spec, const Values& values) {
+                  const FieldSpec& spec, const Values& values, bool has_time) {
   const int variable = define_raster(file, grid, ids, spec.name, nc::type_of(spec.type));
   std::visit([&]<class T>(const std::vector<T>&) { put_typed_attributes<T>(file, variable, spec); },
              values);
@@ -86,6 +102,35 @@ void define_field(const nc::File& file, const Grid& grid, const GridVariables& i
   file.put(variable, "cell_measures", "area: cell_area");
   if (ids.has_mapping) file.put(variable, "grid_mapping", kMapping);
   if (ids.has_coordinates) file.put(variable, "coordinates", "lat lon");
+  if (has_time) file.put(variable, "coordinates", kFrameCoordinates);
+}
+
+/// Arrays to go on from, each with a dimension of its own length.
+void write_checkpoint(const nc::File& file, const Checkpoint& checkpoint) {
+  for (const auto& [name, value] : {std::pair{"time", 1e6 * checkpoint.time_myr},
+                                    std::pair{"drift_time", checkpoint.time_myr}}) {
+    nc::check(nc_put_var_double(file.id(), *file.find_variable(name), &value));
+  }
+  int group = 0;
+  nc::check(nc_redef(file.id()));
+  nc::check(nc_def_grp(file.id(), kCheckpointGroup, &group));
+  for (const auto& [name, values] : checkpoint.arrays) {
+    std::visit(
+        [&, &name = name]<class T>(const std::vector<T>& array) {
+          int dimension = 0, variable = 0;
+          nc::check(nc_def_dim(group, ("n_" + name).c_str(), array.size(), &dimension));
+          nc::check(
+              nc_def_var(group, name.c_str(), nc::type_of(type_of<T>()), 1, &dimension, &variable));
+          if (array.size() > 4096) {
+            nc::check(nc_def_var_deflate(group, variable, 1, 1, kDeflateLevel));
+          }
+          nc::check(nc_enddef(file.id()));
+          nc::check(nc_put_var(group, variable, array.data()));
+          nc::check(nc_redef(file.id()));
+        },
+        values);
+  }
+  nc::check(nc_enddef(file.id()));
 }
 
 void put_provenance(const nc::File& file, const Snapshot& snapshot, const Provenance& provenance) {
@@ -119,9 +164,14 @@ void write_frame(const std::filesystem::path& path, const Snapshot& snapshot,
   put_provenance(file, snapshot, provenance);
   const GridVariables ids = define_grid(file, grid);
   define_cell_area(file, grid, ids);
-  for (const auto& [spec, values] : snapshot.fields) define_field(file, grid, ids, *spec, *values);
+  const bool has_time = snapshot.checkpoint != nullptr;
+  if (has_time) define_time(file);
+  for (const auto& [spec, values] : snapshot.fields) {
+    define_field(file, grid, ids, *spec, *values, has_time);
+  }
   nc::check(nc_enddef(file.id()));
   write_coordinates(file, grid);
+  if (has_time) write_checkpoint(file, *snapshot.checkpoint);
   file.close();
 }
 

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <utility>
 
+#include "frame_files.hpp"
 #include "geo/core/error.hpp"
 #include "geo/io/atomic_file.hpp"
 #include "geo/io/background_writer.hpp"
@@ -157,12 +158,22 @@ void RunSession::compute(const RunEvents& events) {
   context.on_progress = events.progress;
   context.stop = events.stop;
 
+  if (!settings_.start_frame.empty()) {
+    context.checkpoint = std::make_shared<const Checkpoint>(read_checkpoint(settings_.start_frame));
+  }
+
+  FrameFiles frames(folder_.path(), settings_);
   BackgroundWriter writer;
+  int running = first_;
+  context.on_frame = [&](Frame frame) {
+    frames.write(writer, std::move(frame), provenance_of(running));
+  };
   Clock::time_point start;
   Pipeline::Observer observer;
   observer.before = [&](int position) {
     tell(events.stage_begins, name_of(position), static_cast<double>(grid().size()));
     context.warnings.clear();
+    running = position;
     start = Clock::now();
   };
   observer.after = [&](int position, const State& state, const Context& told) {

@@ -141,6 +141,7 @@ void RunSession::prepare() {
   leave_out_island();
   check_events(settings_.events, grid(), planet_);
   read_given_fields();
+  if (!settings_.start_frame.empty()) (void)read_checkpoint(settings_.start_frame);
   (void)read_hypsography(settings_.hypsography);  // refuses a bad one before anything is computed
   pipeline_.check(state_->present(), first_, last_);
   config_ = resolved_config();
@@ -361,7 +362,10 @@ void RunSession::leave_out_island() {
 
 /// Whether the run as a whole has the stage in which events change the relief.
 bool RunSession::events_are_felt() const {
-  if (settings_.events.empty()) return true;
+  const auto& events = settings_.events;
+  if (std::all_of(events.begin(), events.end(), [](const Event& e) { return e.is_of_plates(); })) {
+    return true;
+  }
   const auto& stages = pipeline_.stages();
   for (int at = begin_; at <= last_; ++at) {
     const StageInfo& info = stages[at]->info();

@@ -36,6 +36,8 @@ std::vector<Parameter> RunSettings::parameters() {
            "what erosion.hypsometry = rank aims at: earth, earth-statistical, or a CSV file with "
            "columns quantile,elevation_m",
            "design"),
+      text("fields.start_frame", start_frame,
+           "frame of an earlier run, from which drifting plates go on, bit for bit", "design"),
       flag("output.vtk", vtk, "write a VTK file beside each NetCDF file", "design"),
       flag("output.maps", maps, "draw the maps and the report", "design"),
       integer("output.map_width_px", map_width_px, "1", 300, 20000, "width of the maps in pixels",

@@ -128,7 +128,8 @@ void write_vti(const std::filesystem::path& path, const Snapshot& snapshot,
   whole.commit();
 }
 
-void write_pvd(const std::filesystem::path& path, const std::vector<std::filesystem::path>& files) {
+void write_pvd(const std::filesystem::path& path, const std::vector<std::filesystem::path>& files,
+               const std::vector<double>& times) {
   const vtkNew<vtkXMLDataElement> root;
   root->SetName("VTKFile");
   root->SetAttribute("type", "Collection");
@@ -140,7 +141,11 @@ void write_pvd(const std::filesystem::path& path, const std::vector<std::filesys
   for (std::size_t step = 0; step < files.size(); ++step) {
     const vtkNew<vtkXMLDataElement> entry;
     entry->SetName("DataSet");
-    entry->SetIntAttribute("timestep", static_cast<int>(step));
+    if (times.empty()) {
+      entry->SetIntAttribute("timestep", static_cast<int>(step));
+    } else {
+      entry->SetDoubleAttribute("timestep", times[step]);
+    }
     entry->SetIntAttribute("part", 0);
     const auto relative = std::filesystem::absolute(files[step]).lexically_relative(folder);
     entry->SetAttribute("file", relative.generic_string().c_str());

@@ -131,7 +131,7 @@ bool ReliefEvents::strike(std::int64_t step, std::span<float> elevation_m) {
   bool any = false;
   for (std::size_t i = 0; i < context_.events.size(); ++i) {
     const Event& event = context_.events[i];
-    if (step_of(age_of(event)) != step) continue;
+    if (event.is_of_plates() || step_of(age_of(event)) != step) continue;
     const std::string label = fmt::format("event {} ({}{}{})", i + 1, event.kind(),
                                           event.name.empty() ? "" : ", ", event.name);
     const double before_yr = static_cast<double>(steps_) * time_step_yr_;
@@ -143,7 +143,11 @@ bool ReliefEvents::strike(std::int64_t step, std::span<float> elevation_m) {
     }
     EventRecord record{
         .number = static_cast<int>(i) + 1, .kind = std::string(event.kind()), .name = event.name};
-    std::visit([&](const auto& what) { apply(what, label, record, elevation_m); }, event.what);
+    std::visit(
+        [&]<class What>(const What& what) {
+          if constexpr (!kIsOfPlates<What>) apply(what, label, record, elevation_m);
+        },
+        event.what);
     context_.event_records.push_back(std::move(record));
     any = true;
   }

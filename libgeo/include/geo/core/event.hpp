@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -54,9 +56,57 @@ struct OceanShift {
   [[nodiscard]] std::vector<Parameter> declarations();
 };
 
+/// A plate that drifts is given a new motion (plates.model = sphere).
+struct PlateMotion {
+  static constexpr std::string_view kKind = "plate-motion";
+  double time_myr = 0.0;      ///< since the drift began
+  double latitude_deg = 0.0;  ///< a place on the plate at that time
+  double longitude_deg = 0.0;
+  double pole_latitude_deg = 90.0;
+  double pole_longitude_deg = 0.0;
+  double speed_mm_yr = 50.0;
+
+  [[nodiscard]] std::vector<Parameter> declarations();
+};
+
+/// A plate that drifts breaks about a place.
+struct PlateRift {
+  static constexpr std::string_view kKind = "plate-rift";
+  double time_myr = 0.0;
+  double latitude_deg = 0.0;
+  double longitude_deg = 0.0;
+  double bearing_deg = 0.0;
+  std::int64_t fragments = 2;
+  double speed_mm_yr = 30.0;
+
+  [[nodiscard]] std::vector<Parameter> declarations();
+};
+
+/// The crust within a circle becomes continental or oceanic while plates drift.
+struct CrustChange {
+  static constexpr std::string_view kKind = "crust-change";
+  double time_myr = 0.0;
+  double latitude_deg = 0.0;
+  double longitude_deg = 0.0;
+  double radius_km = 500.0;
+  bool continental = true;
+
+  [[nodiscard]] std::vector<Parameter> declarations();
+};
+
+/// Whether an event befalls drifting plates, not the relief.
+template <class What>
+inline constexpr bool kIsOfPlates =
+    std::is_same_v<What, PlateMotion> || std::is_same_v<What, PlateRift> ||
+    std::is_same_v<What, CrustChange>;
+
 struct Event {
   std::string name;  ///< for maps and reports; may be empty
-  std::variant<Impact, Rift, OceanShift> what;
+  std::variant<Impact, Rift, OceanShift, PlateMotion, PlateRift, CrustChange> what;
+
+  [[nodiscard]] bool is_of_plates() const {
+    return std::visit([]<class What>(const What&) { return kIsOfPlates<What>; }, what);
+  }
 
   [[nodiscard]] std::string_view kind() const;
   /// Declarations of the keys of its kind, bound to this event.

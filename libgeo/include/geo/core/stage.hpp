@@ -3,12 +3,14 @@
 #include <atomic>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "geo/core/checkpoint.hpp"
 #include "geo/core/event.hpp"
 #include "geo/core/field.hpp"
 #include "geo/core/parameter.hpp"
@@ -50,6 +52,10 @@ struct Context {
   std::vector<Event> events;
   /// Called with the fraction of the stage that is done; may be empty.
   std::function<void(double fraction)> on_progress;
+  /// Called with each frame of a stage that runs through time; may be empty.
+  std::function<void(Frame frame)> on_frame;
+  /// What such a stage goes on from; empty: from its beginning.
+  std::shared_ptr<const Checkpoint> checkpoint;
   /// Set by a signal handler; stages look at it between steps.
   const std::atomic<bool>* stop = nullptr;
   /// Budgets of the stage that runs now.

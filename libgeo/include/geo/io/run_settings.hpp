@@ -30,6 +30,7 @@ struct RunSettings {
   std::string erodibility;  ///< FILE[:VARIABLE]
   std::string uplift_rate;  ///< FILE[:VARIABLE]
   std::string hypsography = "earth";
+  std::string start_frame;
 
   bool vtk = true;
   bool maps = true;

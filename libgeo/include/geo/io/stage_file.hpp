@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "geo/core/checkpoint.hpp"
 #include "geo/core/state.hpp"
 
 namespace geo::io {
@@ -27,6 +28,9 @@ struct Snapshot {
   std::string stage;
   std::shared_ptr<const Grid> grid;
   std::vector<std::pair<const FieldSpec*, std::shared_ptr<const Values>>> fields;
+  /// Of a frame of a stage that runs through time: a scalar time coordinate and the arrays to go on
+  /// from, in a group of their own.
+  std::shared_ptr<const Checkpoint> checkpoint;
 };
 
 /// Writes a snapshot as NetCDF-4 with CF-1.10 metadata: temporary name, flush, rename. Shuffled,
@@ -37,8 +41,10 @@ void write_netcdf(const std::filesystem::path& path, const Snapshot& snapshot,
 /// Writes a snapshot as VTK XML ImageData: cell data, appended raw. Temporary name, flush, rename.
 void write_vti(const std::filesystem::path& path, const Snapshot& snapshot,
                const Provenance& provenance);
-/// A ParaView collection that lists files with a time step each, in order.
-void write_pvd(const std::filesystem::path& path, const std::vector<std::filesystem::path>& files);
+/// A ParaView collection that lists files with a time step each, in order: 0, 1, 2 and so on, or
+/// the times given.
+void write_pvd(const std::filesystem::path& path, const std::vector<std::filesystem::path>& files,
+               const std::vector<double>& times = {});
 
 /// Reads back the grid and the vocabulary fields of a stage file, bit for bit. InputError when it
 /// is not one (names path and what is missing), IoError when it cannot be read.
@@ -46,6 +52,8 @@ Snapshot read_netcdf(const std::filesystem::path& path);
 /// The same of those fields alone that `wanted` says yes to; perhaps none.
 Snapshot read_netcdf(const std::filesystem::path& path,
                      const std::function<bool(const FieldSpec&)>& wanted);
+/// What a frame holds to go on from. InputError when the file is no frame.
+Checkpoint read_checkpoint(const std::filesystem::path& path);
 /// Provenance of a stage file.
 Provenance read_provenance(const std::filesystem::path& path);
 

@@ -18,6 +18,9 @@ class SpherePartition {
   /// After samples have changed their plates.
   void rebuild(const SphereState& state);
 
+  /// After samples have become continental.
+  void count_continents(const SphereState& state);
+
   /// Samples of one plate around one coarse place.
   struct Block {
     std::int16_t plate;

@@ -40,6 +40,10 @@ struct SphereSettings {
   double rift_warp_km = 400.0;        ///< of their borders
   double mean_area_km2 = 1.27e7;      ///< A_0
   double smallest_piece_km2 = 5e5;    ///< detached pieces below join a neighbour
+  std::vector<Vector3> plumes;        ///< places of hot spots, fixed in the mantle, unit vectors
+  double plume_mm_yr = 0.0;           ///< growth of volcanoes above them
+  double plume_km = 60.0;             ///< over which it falls to a half
+  double plume_top_km = 2.0;          ///< height that volcanoes of the sea floor reach
   bool no_net_rotation = true;
   std::int64_t least_steps = 10, most_steps = 60;  ///< between resamplings
   double rebound = 6.6;  ///< thickness of a root per height: rho_m / (rho_m - rho_c)
@@ -103,6 +107,14 @@ class SphereTectonics {
   /// Splits a plate by the nearest of some places, warped; the fragments part at the speed.
   void rift(int plate, std::span<const Vector3> places, double speed_mm_yr);
 
+  /// The plate that is on top at a place, or -1 in a gap.
+  [[nodiscard]] int plate_at(const Vector3& place) const;
+  /// From now on a plate turns about an axis (unit vector), rad/Myr.
+  void set_motion(int plate, const Vector3& axis, double speed_rad_myr);
+  /// The crust within a circle, whatever its plates, becomes continental or oceanic. Returns the
+  /// area that changed, km2.
+  double change_crust(const Vector3& place, double radius_km, bool continental);
+
   [[nodiscard]] const SphereState& state() const noexcept { return state_; }
   /// For what changes a state from outside, between steps; call repartition() after changing
   /// plates.
@@ -138,6 +150,7 @@ class SphereTectonics {
   void find_fronts();
   void spread_fronts();
   void raise();
+  void erupt();
   void pull_slabs();
   void collide();
   void collide(std::int32_t sample);

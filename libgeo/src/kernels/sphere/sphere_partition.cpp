@@ -90,7 +90,6 @@ void SpherePartition::rebuild(const SphereState& state) {
     for (const std::int32_t i : this->samples(block)) {
       const Vector3& r = samples.position(i);
       cap.centre = add(cap.centre, r);
-      cap.continental += state.crust.continental[i];
       for (int a = 0; a < 3; ++a) {
         for (int b = 0; b < 3; ++b) cap.inertia[a][b] += (a == b ? 1.0 : 0.0) - r[a] * r[b];
       }
@@ -100,6 +99,7 @@ void SpherePartition::rebuild(const SphereState& state) {
       near_[row + around_[k]] = 1;
     }
   }
+  count_continents(state);
   for (Cap& cap : cap_) {
     cap.centre = normalised(cap.centre);
     cap.cos_radius = cap.samples > 0 ? 1.0 : 2.0;
@@ -112,6 +112,15 @@ void SpherePartition::rebuild(const SphereState& state) {
     if (cap.samples == 0) continue;
     const double radius = std::acos(std::clamp(cap.cos_radius, -1.0, 1.0)) + reach_;
     cap.cos_radius = radius >= 3.14159 ? -2.0 : std::cos(radius);
+  }
+}
+
+void SpherePartition::count_continents(const SphereState& state) {
+  for (Cap& cap : cap_) cap.continental = 0;
+  for (const Block& block : blocks_) {
+    for (const std::int32_t i : samples(block)) {
+      cap_[block.plate].continental += state.crust.continental[i];
+    }
   }
 }
 

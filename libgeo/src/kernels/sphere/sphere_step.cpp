@@ -188,12 +188,14 @@ void SphereTectonics::finish() {
 
 void SphereTectonics::advance() {
   budget_ = {};
+  partition_.count_continents(state_);
   move();
   find_contacts();
   decide_pairs();
   find_fronts();
   spread_fronts();
   raise();
+  erupt();
   pull_slabs();
   state_.time_myr += settings_.law.step_myr;
   ++state_.steps;

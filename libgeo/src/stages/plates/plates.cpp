@@ -70,6 +70,8 @@ std::vector<Parameter> PlatesParameters::declarations() {
               "sphere: samples of crust on the whole planet", "cortial2019"),
       real("plates.time_myr", time_myr, "Myr", 0.0, 5000.0, "sphere: how long plates drift",
            "cortial2019"),
+      real("plates.frames_myr", frames_myr, "Myr", 0.0, 5000.0,
+           "sphere: time between the frames that are written; 0 writes none", "design"),
       real("plates.time_step_myr", sphere.law.step_myr, "Myr", 0.01, 50.0, "sphere: time step",
            "cortial2019"),
       real("plates.warp_km", start.warp_km, "km", 0.0, 5000.0,
@@ -137,6 +139,12 @@ std::vector<Parameter> PlatesParameters::declarations() {
            "sphere: width of that wedge", "design"),
       real("plates.arc_km", sphere.arc_km, "km", 5.0, 80.0,
            "sphere: thickness of an island arc's crust when it emerges", "christensen1995"),
+      real("plates.plume_mm_yr", sphere.plume_mm_yr, "mm yr-1", 0.0, 100.0,
+           "sphere: growth of volcanoes on the sea floor above plumes", "cortial2019"),
+      real("plates.plume_km", sphere.plume_km, "km", 1.0, 1000.0,
+           "sphere: distance from a plume over which that falls to a half", "design"),
+      real("plates.plume_top_km", sphere.plume_top_km, "km", -5.0, 10.0,
+           "sphere: height that those volcanoes reach", "design"),
       real("plates.margin_km", sphere.margin_km, "km", 0.0, 1000.0,
            "sphere: width of the stretched crust where a continent breaks", "watts2001"),
       real("plates.margin_source_km", sphere.margin_source_km, "km", 1.0, 5000.0,
@@ -178,7 +186,7 @@ class PlatesStage final : public Stage {
   [[nodiscard]] std::vector<Parameter> parameters() override { return parameters_.declarations(); }
 
   void run(StageIo& io, Context& context) const override {
-    parameters_.model == "sphere" ? drift(parameters_, io, context)
+    parameters_.model == "sphere" ? drift(parameters_, info(), io, context)
                                   : grow(parameters_, io, context);
   }
 
@@ -193,6 +201,7 @@ class PlatesStage final : public Stage {
                     &field::plate_velocity_north, &field::boundary_type, &field::boundary_strength,
                     &field::crust_age, &field::orogeny_type, &field::heat_anomaly}};
     info.writes.insert(info.writes.end(), crust);
+    info.feels_events = crust.size() > 0;
     return info;
   }
 

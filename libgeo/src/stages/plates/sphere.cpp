@@ -1,16 +1,21 @@
 #include "sphere.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "geo/core/error.hpp"
 #include "geo/kernels/sphere_start.hpp"
+#include "sphere_checkpoint.hpp"
 #include "sphere_on_grid.hpp"
+#include "sphere_timeline.hpp"
 
 namespace geo {
 namespace {
 
-SphereSettings settings_of(const PlatesParameters& p, double radius_km) {
+SphereSettings settings_of(const PlatesParameters& p, double radius_km, std::uint64_t seed) {
   SphereSettings settings = p.sphere;
+  settings.plumes = plume_places(p, seed);
   settings.radius_km = radius_km;
   settings.driftworld_uplift = p.uplift_profile == "driftworld";
   settings.floor_by_age = p.ocean_floor == "age";
@@ -82,29 +87,88 @@ class Books {
 
 }  // namespace
 
-void drift(const PlatesParameters& parameters, StageIo& io, Context& context) {
+namespace {
+
+constexpr double kDegrees = 57.29577951308232;
+
+SphereState beginning(const PlatesParameters& parameters, const SphereMesh& mesh,
+                      const SphereSettings& settings, const Context& context) {
+  if (context.checkpoint == nullptr) {
+    return start_sphere(mesh, start_of(parameters), settings, context.seed);
+  }
+  SphereState state = state_of(*context.checkpoint);
+  if (state.crust.size() != mesh.size()) {
+    throw InputError("plates: the frame to go on from has " + std::to_string(state.crust.size()) +
+                     " samples: plates.samples must be that, not " + std::to_string(mesh.size()));
+  }
+  return state;
+}
+
+/// What happened of itself and is large enough to be told, after the events that were asked for.
+void tell(const SphereTectonics& model, const Grid& grid, Context& context) {
+  constexpr double kTold_km2 = 2e5;
+  auto number = static_cast<int>(context.events.size());
+  for (const SphereEvent& event : model.events()) {
+    if (event.area_km2 < kTold_km2) continue;
+    const Vector3 at = grid.to_axis(event.place);
+    const bool collision = event.kind == SphereEvent::Kind::collision;
+    context.event_records.push_back(
+        {.number = ++number,
+         .kind = collision ? "continental-collision" : "plate-rifting",
+         .name = "",
+         .figures = {{"time_myr", event.time_myr},
+                     {"latitude_deg", std::asin(std::clamp(at[2], -1.0, 1.0)) * kDegrees},
+                     {"longitude_deg", std::atan2(at[1], at[0]) * kDegrees},
+                     {"area_km2", event.area_km2}}});
+  }
+}
+
+/// Hands out a frame: the crust as a resampling would show it, and the state as it is.
+void show(const PlatesParameters& parameters, const SphereTectonics& model, const StageInfo& info,
+          const Grid& grid, const Context& context) {
+  SphereTectonics seen = model;
+  seen.finish();
+  Frame frame{State(std::make_shared<const Grid>(grid)), checkpoint_of(model.state())};
+  StageIo io(frame.fields, info);
+  SphereOnGrid(parameters, seen, io, context).draw(io);
+  context.on_frame(std::move(frame));
+}
+
+}  // namespace
+
+void drift(const PlatesParameters& parameters, const StageInfo& info, StageIo& io,
+           Context& context) {
   if (io.grid().topology() != Topology::sphere) {
     throw InputError("plates: the grid must be a whole sphere");
   }
-  const SphereSettings settings = settings_of(parameters, 1e-3 * io.grid().figure().radius_m);
+  context.advance(0.0);
+  const SphereSettings settings =
+      settings_of(parameters, 1e-3 * io.grid().figure().radius_m, context.seed);
   const FibonacciSphere samples(static_cast<std::int32_t>(parameters.samples));
   const SphereMesh mesh(samples);
-  SphereTectonics model(mesh, settings,
-                        start_sphere(mesh, start_of(parameters), settings, context.seed),
+  SphereTectonics model(mesh, settings, beginning(parameters, mesh, settings, context),
                         context.seed);
   Books books;
   const auto steps = std::lround(parameters.time_myr / settings.law.step_myr);
-  for (long k = 0; k < steps; ++k) {
+  const auto every = std::lround(parameters.frames_myr / settings.law.step_myr);
+  const bool shows = context.on_frame && parameters.frames_myr > 0.0;
+  for (auto k = model.state().steps; k < steps; ++k) {
+    const double from_myr = model.state().time_myr;
+    if (shows && k == 0) show(parameters, model, info, io.grid(), context);
     context.advance(0.9 * static_cast<double>(k) / static_cast<double>(steps));
+    strike_plates(io.grid(), from_myr, from_myr + settings.law.step_myr, model, context);
     model.advance();
     books.enter(model.budget());
+    if (shows && (k + 1) % std::max(1L, every) == 0) {
+      show(parameters, model, info, io.grid(), context);
+    }
   }
   context.advance(0.9);
   model.finish();
   books.enter(model.budget());
   books.close(context.budget);
-  const SphereOnGrid on_grid(parameters, model, io, context);
-  on_grid.draw(io);
+  tell(model, io.grid(), context);
+  SphereOnGrid(parameters, model, io, context).draw(io);
 }
 
 }  // namespace geo

@@ -90,6 +90,13 @@ class SphereOnGrid::Bends {
   std::array<std::vector<float>, 3> along_;
 };
 
+std::vector<Vector3> plume_places(const PlatesParameters& parameters, std::uint64_t seed) {
+  const RandomStream random(seed, "plates.plumes");
+  std::vector<Vector3> places(static_cast<std::size_t>(std::lround(parameters.plumes)));
+  for (std::size_t k = 0; k < places.size(); ++k) places[k] = random.direction(k);
+  return places;
+}
+
 SphereOnGrid::SphereOnGrid(const PlatesParameters& parameters, const SphereTectonics& model,
                            StageIo& io, const Context& context)
     : p_(parameters),
@@ -132,9 +139,7 @@ SphereOnGrid::SphereOnGrid(const PlatesParameters& parameters, const SphereTecto
       for (const std::int32_t j : mesh_.neighbours(i)) is_edge_[i] |= inner[j];
     }
   }
-  const RandomStream random(seed_, "plates.plumes");
-  plumes_.resize(static_cast<std::size_t>(std::lround(p_.plumes)));
-  for (std::size_t k = 0; k < plumes_.size(); ++k) plumes_[k] = random.direction(k);
+  plumes_ = plume_places(p_, seed_);
 }
 
 void SphereOnGrid::draw(StageIo& io) const {

@@ -8,6 +8,10 @@
 
 namespace geo {
 
+/// Places of the mantle's plumes, unit vectors.
+[[nodiscard]] std::vector<Vector3> plume_places(const PlatesParameters& parameters,
+                                                std::uint64_t seed);
+
 /// Plates and crust of a lattice as the cells of a grid see them. The crust must have just been
 /// resampled.
 class SphereOnGrid {

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "geo/core/checkpoint.hpp"
+#include "geo/io/background_writer.hpp"
+#include "geo/io/run_settings.hpp"
+#include "geo/io/stage_file.hpp"
+
+namespace geo::io {
+
+/// Frames of a stage that runs through time: frames/plates-0050.nc and .vti, and plates.pvd, which
+/// lists them with their times.
+class FrameFiles {
+ public:
+  FrameFiles(const std::filesystem::path& folder, const RunSettings& settings)
+      : folder_(folder), settings_(settings) {}
+
+  /// Queues the files of one frame. Must outlive the queue.
+  void write(BackgroundWriter& writer, Frame frame, Provenance provenance);
+
+ private:
+  std::filesystem::path folder_;
+  const RunSettings& settings_;
+  std::vector<std::filesystem::path> listed_;
+  std::vector<double> times_;
+};
+
+}  // namespace geo::io

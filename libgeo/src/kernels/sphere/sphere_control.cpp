@@ -1,0 +1,51 @@
+#include <cmath>
+
+#include "geo/kernels/ocean_depth.hpp"
+#include "geo/kernels/sphere_tectonics.hpp"
+
+namespace geo {
+
+int SphereTectonics::plate_at(const Vector3& place) const {
+  std::int32_t top = -1;
+  for (std::size_t p = 0; p < state_.plates.size(); ++p) {
+    if (!state_.plates[p].alive) continue;
+    const std::int32_t sample = mesh_->samples().nearest(back(frame_[p], place));
+    if (state_.crust.plate[sample] != static_cast<std::int16_t>(p)) continue;
+    if (top < 0 || is_on_top(sample, top)) top = sample;
+  }
+  return top < 0 ? -1 : state_.root(state_.crust.plate[top]);
+}
+
+void SphereTectonics::set_motion(int plate, const Vector3& axis, double speed_rad_myr) {
+  state_.plates[plate].axis = normalised(axis);
+  state_.plates[plate].speed_rad_myr = speed_rad_myr;
+  set_frames();
+}
+
+double SphereTectonics::change_crust(const Vector3& place, double radius_km, bool continental) {
+  // Low land, as thick as it takes to float there; floor of the age of its surroundings.
+  constexpr float kLand_m = 300.0F, kThick_m = 36000.0F;
+  SphereCrust& crust = state_.crust;
+  const double lowest = std::cos(std::min(radius_km / settings_.radius_km, 3.14159));
+  std::vector<Vector3> middle;
+  for (const Matrix3& frame : frame_) middle.push_back(back(frame, place));
+  double changed = 0.0;
+  for (std::int32_t i = 0; i < crust.size(); ++i) {
+    const std::int16_t p = crust.plate[i];
+    if (p < 0 || dot(mesh_->samples().position(i), middle[p]) < lowest) continue;
+    if ((crust.continental[i] != 0) == continental) continue;
+    changed += sample_km2();
+    crust.continental[i] = continental ? 1 : 0;
+    crust.orogeny[i] = 0;
+    crust.orogeny_age_myr[i] = 0.0F;
+    crust.thickness_m[i] = continental ? kThick_m : static_cast<float>(1e3 * settings_.oceanic_km);
+    crust.elevation_m[i] =
+        continental ? kLand_m
+                    : static_cast<float>(settings_.floor_by_age ? -ocean_depth_m(crust.age_myr[i])
+                                                                : 1e3 * settings_.law.abyss_km);
+  }
+  repartition();
+  return changed;
+}
+
+}  // namespace geo

@@ -1,0 +1,127 @@
+#include "sphere_checkpoint.hpp"
+
+namespace geo {
+namespace {
+
+using Directions = std::vector<std::array<float, 3>>;
+
+std::vector<float> flat(const Directions& directions) {
+  std::vector<float> values;
+  values.reserve(3 * directions.size());
+  for (const auto& direction : directions) {
+    values.insert(values.end(), direction.begin(), direction.end());
+  }
+  return values;
+}
+
+Directions directions(const std::vector<float>& values) {
+  Directions all(values.size() / 3);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    all[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
+  }
+  return all;
+}
+
+constexpr std::size_t kNumbers = 9;  // of a plate: turn, axis, speed, birth
+
+}  // namespace
+
+Checkpoint checkpoint_of(const SphereState& state) {
+  Checkpoint out;
+  out.time_myr = state.time_myr;
+  const SphereCrust& crust = state.crust;
+  auto& to = out.arrays;
+  to["plate"] = crust.plate;
+  to["continental"] = crust.continental;
+  to["orogeny"] = crust.orogeny;
+  to["thickness_m"] = crust.thickness_m;
+  to["elevation_m"] = crust.elevation_m;
+  to["age_myr"] = crust.age_myr;
+  to["orogeny_age_myr"] = crust.orogeny_age_myr;
+  to["ridge"] = flat(crust.ridge);
+  to["fold"] = flat(crust.fold);
+  std::vector<double> numbers;
+  std::vector<std::int8_t> alive;
+  std::vector<std::int16_t> carrier;
+  for (const SpherePlate& plate : state.plates) {
+    numbers.insert(numbers.end(),
+                   {plate.turn.w, plate.turn.v[0], plate.turn.v[1], plate.turn.v[2], plate.axis[0],
+                    plate.axis[1], plate.axis[2], plate.speed_rad_myr, plate.born_myr});
+    alive.push_back(plate.alive ? 1 : 0);
+    carrier.push_back(plate.carrier);
+  }
+  to["plate_numbers"] = numbers;
+  to["plate_alive"] = alive;
+  to["plate_carrier"] = carrier;
+  std::vector<std::int8_t> ocean, continent;
+  std::vector<float> contact;
+  for (const PlatePair& pair : state.pairs) {
+    ocean.push_back(pair.ocean_top);
+    continent.push_back(pair.continent_top);
+    contact.push_back(pair.last_contact_myr);
+  }
+  to["pair_ocean_top"] = ocean;
+  to["pair_continent_top"] = continent;
+  to["pair_last_contact_myr"] = contact;
+  to["clock"] =
+      std::vector<double>{state.time_myr, static_cast<double>(state.steps), state.resampled_myr};
+  return out;
+}
+
+SphereState state_of(const Checkpoint& from) {
+  SphereState state;
+  SphereCrust& crust = state.crust;
+  crust.plate = from.get<std::int16_t>("plate");
+  crust.continental = from.get<std::int8_t>("continental");
+  crust.orogeny = from.get<std::int8_t>("orogeny");
+  crust.thickness_m = from.get<float>("thickness_m");
+  crust.elevation_m = from.get<float>("elevation_m");
+  crust.age_myr = from.get<float>("age_myr");
+  crust.orogeny_age_myr = from.get<float>("orogeny_age_myr");
+  crust.ridge = directions(from.get<float>("ridge"));
+  crust.fold = directions(from.get<float>("fold"));
+  const auto& numbers = from.get<double>("plate_numbers");
+  const auto& alive = from.get<std::int8_t>("plate_alive");
+  const auto& carrier = from.get<std::int16_t>("plate_carrier");
+  const auto& ocean = from.get<std::int8_t>("pair_ocean_top");
+  const auto& continent = from.get<std::int8_t>("pair_continent_top");
+  const auto& contact = from.get<float>("pair_last_contact_myr");
+  const auto& clock = from.get<double>("clock");
+  const std::size_t n = crust.plate.size(), plates = alive.size();
+  bool fits = numbers.size() == kNumbers * plates && carrier.size() == plates &&
+              ocean.size() == plates * plates && continent.size() == plates * plates &&
+              contact.size() == plates * plates && clock.size() == 3;
+  for (const std::size_t size :
+       {crust.continental.size(), crust.orogeny.size(), crust.thickness_m.size(),
+        crust.elevation_m.size(), crust.age_myr.size(), crust.orogeny_age_myr.size(),
+        crust.ridge.size(), crust.fold.size()}) {
+    fits = fits && size == n;
+  }
+  for (std::size_t i = 0; fits && i < n; ++i) {
+    fits = crust.plate[i] >= -1 && crust.plate[i] < static_cast<std::int16_t>(plates);
+  }
+  for (std::size_t p = 0; fits && p < plates; ++p) {
+    fits = carrier[p] >= -1 && carrier[p] < static_cast<std::int16_t>(plates);
+  }
+  if (!fits) throw InputError("the frame to go on from is damaged: its arrays do not fit");
+  for (std::size_t p = 0; p < plates; ++p) {
+    const double* at = numbers.data() + kNumbers * p;
+    SpherePlate plate;
+    plate.turn = {at[0], {at[1], at[2], at[3]}};
+    plate.axis = {at[4], at[5], at[6]};
+    plate.speed_rad_myr = at[7];
+    plate.born_myr = at[8];
+    plate.alive = alive[p] != 0;
+    plate.carrier = carrier[p];
+    state.plates.push_back(plate);
+  }
+  for (std::size_t k = 0; k < ocean.size(); ++k) {
+    state.pairs.push_back({ocean[k], continent[k], contact[k]});
+  }
+  state.time_myr = clock[0];
+  state.steps = static_cast<std::int64_t>(clock[1]);
+  state.resampled_myr = clock[2];
+  return state;
+}
+
+}  // namespace geo

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "geo/core/checkpoint.hpp"
+#include "geo/kernels/sphere_state.hpp"
+
+namespace geo {
+
+/// All of a state as named arrays, and back, bit for bit. Throws InputError when arrays are missing
+/// or do not fit together.
+[[nodiscard]] Checkpoint checkpoint_of(const SphereState& state);
+[[nodiscard]] SphereState state_of(const Checkpoint& checkpoint);
+
+}  // namespace geo

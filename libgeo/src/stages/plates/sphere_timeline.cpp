@@ -1,0 +1,127 @@
+#include "sphere_timeline.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "geo/core/place.hpp"
+#include "geo/kernels/plate_motion.hpp"
+
+namespace geo {
+namespace {
+
+using Figures = std::vector<std::pair<std::string, double>>;
+
+/// One event that is due.
+class Stroke {
+ public:
+  Stroke(const Grid& grid, SphereTectonics& model) : grid_(grid), model_(model) {}
+
+  /// False when no plate is at the place.
+  bool operator()(const PlateMotion& motion, Figures& figures) const {
+    const int plate = model_.plate_at(place_of(motion.latitude_deg, motion.longitude_deg));
+    if (plate < 0) return false;
+    model_.set_motion(plate, place_of(motion.pole_latitude_deg, motion.pole_longitude_deg),
+                      motion.speed_mm_yr / model_.settings().radius_km);
+    figures.emplace_back("plate", plate);
+    return true;
+  }
+  bool operator()(const PlateRift& rift, Figures& figures) const {
+    const Vector3 at = place_of(rift.latitude_deg, rift.longitude_deg);
+    const int plate = model_.plate_at(at);
+    if (plate < 0) return false;
+    // Fragments lie round the place, the first one to the right of the fracture.
+    constexpr double kAway = 0.15;  // radians
+    const auto [east, north] = axes_at(at);
+    std::vector<Vector3> places;
+    for (std::int64_t k = 0; k < rift.fragments; ++k) {
+      const double turn =
+          2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(rift.fragments);
+      const double azimuth =
+          rift.bearing_deg * std::numbers::pi / 180.0 + 0.5 * std::numbers::pi + turn;
+      const Vector3 away = add(scaled(north, std::cos(azimuth)), east, std::sin(azimuth));
+      places.push_back(normalised(add(scaled(at, std::cos(kAway)), away, std::sin(kAway))));
+    }
+    model_.rift(plate, places, rift.speed_mm_yr);
+    figures.emplace_back("plate", plate);
+    return true;
+  }
+  bool operator()(const CrustChange& change, Figures& figures) const {
+    figures.emplace_back("area_km2",
+                         model_.change_crust(place_of(change.latitude_deg, change.longitude_deg),
+                                             change.radius_km, change.continental));
+    return true;
+  }
+  bool operator()(const auto&, Figures&) const { return false; }
+
+ private:
+  /// A place given by latitude and longitude in the frame of plates, which the grid may have
+  /// turned.
+  [[nodiscard]] Vector3 place_of(double latitude_deg, double longitude_deg) const {
+    const Vector3 on_axis = unit_vector_of({latitude_deg, longitude_deg});
+    Vector3 out{};
+    for (int c = 0; c < 3; ++c) {
+      Vector3 axis{};
+      axis[c] = 1.0;
+      out[c] = dot(grid_.to_axis(axis), on_axis);
+    }
+    return out;
+  }
+  /// East and north at a place, in the frame of plates.
+  [[nodiscard]] std::pair<Vector3, Vector3> axes_at(const Vector3& at) const {
+    const Vector3 pole = place_of(90.0, 0.0);
+    Vector3 east = cross(pole, at);
+    if (length(east) < 1e-12) east = place_of(0.0, 90.0);
+    east = normalised(east);
+    return {east, cross(at, east)};
+  }
+
+  const Grid& grid_;
+  SphereTectonics& model_;
+};
+
+struct Due {
+  double time_myr = -1.0, latitude_deg = 0.0, longitude_deg = 0.0;
+};
+
+Due due_of(const Event& event) {
+  return std::visit(
+      []<class What>(const What& what) -> Due {
+        if constexpr (kIsOfPlates<What>) {
+          return {what.time_myr, what.latitude_deg, what.longitude_deg};
+        } else {
+          return {};
+        }
+      },
+      event.what);
+}
+
+}  // namespace
+
+void strike_plates(const Grid& grid, double from_myr, double to_myr, SphereTectonics& model,
+                   Context& context) {
+  const Stroke stroke(grid, model);
+  for (std::size_t i = 0; i < context.events.size(); ++i) {
+    const Event& event = context.events[i];
+    const Due due = due_of(event);
+    if (due.time_myr < from_myr || due.time_myr >= to_myr) continue;
+    EventRecord record{.number = static_cast<int>(i) + 1,
+                       .kind = std::string(event.kind()),
+                       .name = event.name,
+                       .figures = {{"time_myr", due.time_myr},
+                                   {"latitude_deg", due.latitude_deg},
+                                   {"longitude_deg", due.longitude_deg}}};
+    const bool struck =
+        std::visit([&](const auto& what) { return stroke(what, record.figures); }, event.what);
+    if (!struck) {
+      context.warnings.push_back(fmt::format(
+          "event {} ({}): no plate is at {:g}, {:g} after {:g} Myr, only a gap that opens", i + 1,
+          event.kind(), due.latitude_deg, due.longitude_deg, due.time_myr));
+      continue;
+    }
+    context.event_records.push_back(std::move(record));
+  }
+}
+
+}  // namespace geo
