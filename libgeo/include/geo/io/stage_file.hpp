@@ -30,7 +30,7 @@ struct Snapshot {
   std::vector<std::pair<const FieldSpec*, std::shared_ptr<const Values>>> fields;
   /// Of a frame of a stage that runs through time: a scalar time coordinate and the arrays to go on
   /// from, in a group of their own.
-  std::shared_ptr<const Checkpoint> checkpoint;
+  std::shared_ptr<const Checkpoint> checkpoint = {};
 };
 
 /// Writes a snapshot as NetCDF-4 with CF-1.10 metadata: temporary name, flush, rename. Shuffled,

@@ -183,6 +183,13 @@ class SphereTectonics {
   std::vector<std::uint8_t> hidden_;
   std::vector<Front> fronts_;
   std::vector<float> chord2_;
+  /// What spreading fronts asks of a sample, in one place of memory.
+  struct Spot {
+    float x, y, z, chord2;  // of the nearest front so far
+    std::int32_t front;
+    std::int16_t plate;  // -1 also below another plate
+  };
+  std::vector<Spot> spots_;
 };
 
 }  // namespace geo

@@ -139,7 +139,17 @@ void SphereTectonics::spread_fronts() {
   const double reach = settings_.law.subduction_distance_km / settings_.radius_km;
   const double half = std::sin(0.5 * std::min(reach, 3.1));
   const auto most = static_cast<float>(4.0 * half * half);
-  std::fill(front_of_.begin(), front_of_.end(), -1);
+  const std::int32_t n = mesh_->size();
+#pragma omp parallel for schedule(static)
+  for (std::int32_t i = 0; i < n; ++i) {
+    const Vector3& at = samples.position(i);
+    spots_[i] = {static_cast<float>(at[0]),
+                 static_cast<float>(at[1]),
+                 static_cast<float>(at[2]),
+                 most,
+                 -1,
+                 hidden_[i] != 0 ? std::int16_t{-1} : crust.plate[i]};
+  }
   std::vector<std::vector<std::int32_t>> of_plate(state_.plates.size());
   for (std::size_t k = 0; k < fronts_.size(); ++k) {
     of_plate[crust.plate[fronts_[k].sample]].push_back(static_cast<std::int32_t>(k));
@@ -150,30 +160,31 @@ void SphereTectonics::spread_fronts() {
     std::vector<std::int32_t> queue, next;
     for (const std::int32_t k : of_plate[p]) {
       const std::int32_t i = fronts_[k].sample;
-      front_of_[i] = k;
-      chord2_[i] = 0.0F;
+      spots_[i].front = k;
+      spots_[i].chord2 = 0.0F;
       queue.push_back(i);
     }
     while (!queue.empty()) {
       next.clear();
       for (const std::int32_t i : queue) {
-        const std::int32_t front = front_of_[i];
-        const Vector3& source = samples.position(fronts_[front].sample);
+        const std::int32_t front = spots_[i].front;
+        const Spot source = spots_[fronts_[front].sample];
         for (const std::int32_t j : mesh_->neighbours(i)) {
-          if (crust.plate[j] != static_cast<std::int16_t>(p) || hidden_[j] != 0) continue;
-          if (front_of_[j] == front) continue;
-          const Vector3& at = samples.position(j);
-          const double x = at[0] - source[0], y = at[1] - source[1], z = at[2] - source[2];
-          const auto chord2 = static_cast<float>(x * x + y * y + z * z);
-          if (chord2 >= most || (front_of_[j] >= 0 && chord2 >= chord2_[j])) continue;
-          front_of_[j] = front;
-          chord2_[j] = chord2;
+          Spot& at = spots_[j];
+          if (at.plate != static_cast<std::int16_t>(p) || at.front == front) continue;
+          const float x = at.x - source.x, y = at.y - source.y, z = at.z - source.z;
+          const float chord2 = x * x + y * y + z * z;
+          if (chord2 >= at.chord2) continue;
+          at.front = front;
+          at.chord2 = chord2;
           next.push_back(j);
         }
       }
       queue.swap(next);
     }
   }
+#pragma omp parallel for schedule(static)
+  for (std::int32_t i = 0; i < n; ++i) front_of_[i] = spots_[i].front;
 }
 
 }  // namespace geo

@@ -53,6 +53,7 @@ SphereTectonics::SphereTectonics(const SphereMesh& mesh, const SphereSettings& s
   front_of_.assign(n, -1);
   hidden_.assign(n, 0);
   chord2_.resize(n);
+  spots_.resize(n);
   repartition();
 }
 

@@ -1,0 +1,90 @@
+// Scenarios of data/scenarios: what they promise happens, and in time.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "cli/program.hpp"
+#include "io/temporary_folder.hpp"
+
+namespace geo {
+namespace {
+
+namespace fs = std::filesystem;
+using Words = std::vector<std::string>;
+
+struct Happening {
+  std::string kind;
+  double time_myr, area_km2;
+};
+
+/// What stage plates tells of a run.
+std::vector<Happening> happenings(const fs::path& folder) {
+  std::ifstream file(folder / "manifest.json");
+  const auto manifest = nlohmann::json::parse(file);
+  std::vector<Happening> all;
+  for (const auto& event : manifest.at("stages").at(0).at("events")) {
+    all.push_back({event.at("kind"), event.at("time_myr"), event.value("area_km2", 0.0)});
+  }
+  return all;
+}
+
+class Scenario : public testing::Test {
+ protected:
+  void run(const std::string& name, const Words& more = {}) {
+    Words arguments{"run",       std::string(TERRANE_SOURCE_DIR) + "/data/scenarios/" + name,
+                    "-o",        out_.string(),
+                    "--to",      "plates",
+                    "--grid",    "128x64",
+                    "--set",     "plates.samples=12000",
+                    "--no-maps", "--quiet"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = terrane(arguments);
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+  }
+
+  TemporaryFolder folder_;
+  const fs::path out_ = folder_ / "out";
+};
+
+TEST_F(Scenario, AnIslandIsDrivenIntoAContinentAndASupercontinentBreaks) {
+  run("island-and-supercontinent.toml");
+  std::vector<Happening> collisions;
+  bool broke = false;
+  for (const Happening& one : happenings(out_)) {
+    if (one.kind == "continental-collision") collisions.push_back(one);
+    broke = broke || (one.kind == "plate-rift" && one.time_myr == 245.0);
+  }
+  ASSERT_GE(collisions.size(), 2U);
+  EXPECT_NEAR(collisions.front().time_myr, 77.0, 20.0);
+  EXPECT_NEAR(collisions.front().area_km2, 5e5, 2e5);
+  const auto large = std::find_if(collisions.begin(), collisions.end(),
+                                  [](const Happening& one) { return one.area_km2 > 3e6; });
+  ASSERT_NE(large, collisions.end());
+  EXPECT_NEAR(large->time_myr, 191.0, 20.0);
+  EXPECT_TRUE(broke);
+}
+
+TEST_F(Scenario, ItsFramesAreWrittenAndGoOn) {
+  run("island-and-supercontinent.toml",
+      {"--set", "plates.time_myr=60", "--set", "plates.frames_myr=30"});
+  const fs::path middle = out_ / "frames" / "plates-0030.00.nc";
+  for (const fs::path& file :
+       {middle, out_ / "frames" / "plates-0060.00.vti", out_ / "plates.pvd"}) {
+    EXPECT_TRUE(fs::exists(file)) << file;
+  }
+  const fs::path first = out_ / "manifest.json";
+  const auto plates = [](const fs::path& manifest) {
+    std::ifstream file(manifest);
+    return nlohmann::json::parse(file).at("stages").at(0).at("fields").dump();
+  };
+  const std::string whole = plates(first);
+  run("island-and-supercontinent.toml",
+      {"--overwrite", "--set", "plates.time_myr=60", "--set", "plates.frames_myr=0", "--set",
+       "fields.start_frame=" + middle.string()});
+  EXPECT_EQ(plates(first), whole);  // digests of every field among it
+}
+
+}  // namespace
+}  // namespace geo
