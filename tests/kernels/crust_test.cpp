@@ -65,7 +65,8 @@ TEST(OceanDepth, FarFromLandSedimentGivesEarthsMedians) {
       {{1, 2979}, {15, 3757}, {50, 4639}, {90, 4922}, {130, 4870}}};
   for (const auto& [age_myr, depth_m] : median) {
     const double floor =
-        ocean_depth_m(age_myr) - datum.rise_per_sediment() * deep_sediment_m({}, age_myr, 700.0);
+        ocean_depth_m(age_myr) -
+        datum.rise_per_sediment() * deep_sediment_m(DeepSediment{}, age_myr, 700.0);
     EXPECT_NEAR(floor, depth_m, 230.0) << age_myr << " Myr";
   }
 }
