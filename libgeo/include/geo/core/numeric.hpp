@@ -48,6 +48,21 @@ template <class V>
   }
 }
 
+/// Whether a number carries a derivative that is not zero.
+template <class V>
+[[nodiscard]] inline bool carries_derivative(const V& x) {
+  if constexpr (Dual<V>) {
+    for (int d = 0; d < V::DIMENSION; ++d) {
+      if (x.v[d] != 0.0) return true;
+    }
+    return false;
+  } else if constexpr (requires { x.imag(); }) {
+    return x.imag() != 0.0;
+  } else {
+    return false;
+  }
+}
+
 /// The lesser and the greater by value; which one is not differentiated.
 template <class V>
 [[nodiscard]] inline V lesser(const V& x, const V& y) {
