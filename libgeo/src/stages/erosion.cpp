@@ -203,14 +203,7 @@ class ErosionStage final : public Stage {
       const auto type = io.read_optional(field::boundary_type);
       const auto strength = io.read_optional(field::boundary_strength);
       if (type.empty() || strength.empty()) return;
-      const auto in_m_yr = [](double rate_mm_yr) { return static_cast<float>(1e-3 * rate_mm_yr); };
-      const std::array<float, 4> rate{0.0F, in_m_yr(parameters_.convergent_uplift_mm_yr),
-                                      in_m_yr(parameters_.divergent_uplift_mm_yr),
-                                      in_m_yr(parameters_.transform_uplift_mm_yr)};
-#pragma omp parallel for schedule(static)
-      for (std::size_t cell = 0; cell < uplift_m_yr.size(); ++cell) {
-        uplift_m_yr[cell] += rate[type[cell]] * strength[cell];
-      }
+      add_boundary_uplift<float>(parameters_, {}, type, strength, uplift_m_yr);
     }
   }
   /// What the file reports is the whole uplift of the land.

@@ -77,6 +77,18 @@ template <class V>
   return value_of(x) < low ? V(low) : value_of(x) > high ? V(high) : x;
 }
 
+/// exp(x) - 1 without loss near 0.
+template <class V>
+[[nodiscard]] inline V expm1_of(const V& x) {
+  if constexpr (requires { x.imag(); }) {
+    return {std::expm1(x.real()) * std::cos(x.imag()) + std::cos(x.imag()) - 1.0,
+            std::exp(x.real()) * std::sin(x.imag())};
+  } else {
+    using std::expm1;
+    return expm1(x);
+  }
+}
+
 /// A parameter of the model as the number to compute with: the member itself, or, where it is one
 /// of those that derivatives are wanted for, with its unit derivative. Told apart by address.
 template <class V>

@@ -20,7 +20,8 @@ namespace geo {
 [[nodiscard]] double himalayan_thickening(double across_km, double strength);
 /// A volcanic arc above ocean that goes below ocean.
 [[nodiscard]] double island_arc(double across_km, double strength);
-/// Trench and outer rise, m, negative down.
+/// Trench and outer rise, m, negative down; kDeepestTrench_m at full strength.
+inline constexpr double kDeepestTrench_m = 3000.0;
 [[nodiscard]] double trench_m(double across_km, double strength);
 
 /// What meets at a convergent boundary.

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -22,6 +24,20 @@ void add_belt_uplift(const ErosionParameters& p, const Lift<V>& lift, std::span<
   for (std::size_t cell = 0; cell < uplift_m_yr.size(); ++cell) {
     uplift_m_yr[cell] +=
         closing * convergent[cell] + opening * divergent[cell] + shearing * transform[cell];
+  }
+}
+
+/// Rock uplift on the cells of plate boundaries alone, m yr-1, added to a field.
+template <class V>
+void add_boundary_uplift(const ErosionParameters& p, const Lift<V>& lift,
+                         std::span<const std::int8_t> type, std::span<const float> strength,
+                         std::span<V> uplift_m_yr) {
+  const std::array<V, 4> rate{V(0.0F), V(1e-3 * lift(p.convergent_uplift_mm_yr)),
+                              V(1e-3 * lift(p.divergent_uplift_mm_yr)),
+                              V(1e-3 * lift(p.transform_uplift_mm_yr))};
+#pragma omp parallel for schedule(static)
+  for (std::size_t cell = 0; cell < uplift_m_yr.size(); ++cell) {
+    uplift_m_yr[cell] += rate[type[cell]] * V(strength[cell]);
   }
 }
 

@@ -158,11 +158,10 @@ class Landscape {
   /// Airy rebound of the eroded load, spread by the plate and delayed by the mantle:
   /// the part 1 - exp(-dt / tau) of what is still owed comes back in each step.
   void rebound() {
-    using std::expm1;
     owed_m_.resize(grid_.size(), V(0.0F));
     const V share(lift_(p_.rebound_fraction));
     on_land([&](Index cell) { owed_m_[cell] += share * (before_[cell] - z_[cell]); });
-    const Number part = -expm1(Number(-lift_(p_.time_step_yr) / lift_(p_.rebound_time_yr)));
+    const Number part = -expm1_of(Number(-lift_(p_.time_step_yr) / lift_(p_.rebound_time_yr)));
     std::vector<V> response(owed_m_);
     if (p_.rebound_length_km > 0.0) {
       apply_linear<V, 1>(response, {1000.0 * lift_(p_.rebound_length_km)},

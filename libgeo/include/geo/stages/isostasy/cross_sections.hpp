@@ -12,18 +12,18 @@ namespace geo {
 /// What a convergent margin does to one cell; noise makes its belts wind and swell.
 template <class V>
 void cut_section(const ConvergentMargins& margins, Index cell, double along, double shift,
-                 Tectonics<V>& t) {
+                 const Arithmetic<V>& trenches, Tectonics<V>& t) {
   const double straight_km = margins.across_km[cell];
   const double across = straight_km + 55.0 * shift * smooth_step(40, 200, std::abs(straight_km));
   const double strength = std::clamp(margins.strength[cell] * (1.0 + 0.35 * along), 0.05, 1.3);
   switch (margins.kind[cell]) {
     case Convergence::oceans:
       t.arc[cell] = V(island_arc(across, strength));
-      t.trench_m[cell] = V(trench_m(straight_km, strength));
+      t.trench_m[cell] = V(trenches * trench_m(straight_km, strength));
       break;
     case Convergence::ocean_continent:
       t.thickening[cell] = V(andean_thickening(across, strength));
-      t.trench_m[cell] = V(trench_m(straight_km, strength));
+      t.trench_m[cell] = V(trenches * trench_m(straight_km, strength));
       break;
     case Convergence::continents:
       t.thickening[cell] = V(himalayan_thickening(across, strength));
@@ -57,6 +57,7 @@ void cut_sections(const Crust<V>& crust, const CoarseGrid& coarse, const Tectoni
   t.relict.resize(grid.size());
   const Arithmetic<V> thickness_noise_km = crust.lift(p.thickness_noise_km);
   const Arithmetic<V> swell_m = crust.lift(p.swell_m);
+  const Arithmetic<V> trenches = crust.lift(p.trench_depth_m) / kDeepestTrench_m;
 #pragma omp parallel
   {
     NoiseRow row(grid);
@@ -82,7 +83,8 @@ void cut_sections(const Crust<V>& crust, const CoarseGrid& coarse, const Tectoni
       row.choose(j, is_near);
       for (auto* line : {&alongs, &shifts}) line->read(row);
       for (int i = 0; i < grid.nx(); ++i) {
-        if (is_near(i)) cut_section(frame.margins, grid.cell(i, j), alongs[i], shifts[i], t);
+        if (is_near(i))
+          cut_section(frame.margins, grid.cell(i, j), alongs[i], shifts[i], trenches, t);
       }
     }
   }

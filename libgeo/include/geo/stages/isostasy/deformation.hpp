@@ -43,7 +43,7 @@ Tectonics<V> deform(const Crust<V>& crust, const CoarseGrid& coarse, const Tecto
       const Number length_km = crust.lift(p.weakness_length_km);
       t.weakness.resize(grid.size());
       for (Index cell = 0; cell < grid.size(); ++cell) {
-        t.weakness[cell] = V(exp(-frame.boundary_km[cell] / length_km));
+        t.weakness[cell] = V(exp(-static_cast<double>(frame.boundary_km[cell]) / length_km));
       }
     }
   }

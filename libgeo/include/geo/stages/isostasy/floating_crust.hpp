@@ -20,7 +20,6 @@ void float_margins_crust(const Crust<V>& crust, const CoarseGrid& coarse,
 template <class V>
 void fill_sea(const Crust<V>& crust, const V& level_m) {
   using Number = Arithmetic<V>;
-  using std::expm1;
   const IsostasyParameters& p = crust.parameters;
   const bool shelves = p.crust == "margins" && p.shelf_depth_m > 0.0;
   const Number shelf_depth_m = crust.lift(p.shelf_depth_m);
@@ -32,7 +31,7 @@ void fill_sea(const Crust<V>& crust, const V& level_m) {
     const double on_shelf = smooth_step(0.7, 0.95, static_cast<double>(crust.fraction[cell]));
     if (on_shelf <= 0.0) continue;
     const Number deep_m(z);
-    const Number filled = -shelf_depth_m * -expm1(Number(deep_m / shelf_depth_m));
+    const Number filled = -shelf_depth_m * -expm1_of(Number(deep_m / shelf_depth_m));
     z = lesser(V(-1e-3F), V(deep_m + on_shelf * (filled - deep_m)));
   }
 }

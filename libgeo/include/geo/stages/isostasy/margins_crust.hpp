@@ -172,10 +172,11 @@ class Columns {
         Number(row.divergent[i]) *
         (-1500.0 * bell(along.rift_km[i], 0.0, 38.0) + 900.0 * bell(along.rift_km[i], 95.0, 55.0));
     const Number relief_m = p_.land_roughness_m * (1.0 + 3.0 * belt + 1.5 * relict);
-    const Number elevation_m = balanced(datum_.dry_elevation_m(
-                                   1e3 * thickness_km, density_.continental_crust, lithosphere)) +
-                               Number(row.swell_m[i]) + valley_m + relief_m * rough + hot * 0.6 -
-                               p_.margin_tilt_m * exp(-along.inland_km[i] / p_.margin_tilt_km);
+    const Number elevation_m =
+        balanced(
+            datum_.dry_elevation_m(1e3 * thickness_km, density_.continental_crust, lithosphere)) +
+        Number(row.swell_m[i]) + valley_m + relief_m * rough + hot * 0.6 -
+        p_.margin_tilt_m * exp(-static_cast<double>(along.inland_km[i]) / p_.margin_tilt_km);
     return {thickness_km, elevation_m};
   }
 
