@@ -6,6 +6,7 @@
 
 #include "calibration/report_markup.hpp"
 #include "calibration/report_words.hpp"
+#include "geo/io/chart.hpp"
 
 namespace geo::calibration {
 namespace {
@@ -68,11 +69,12 @@ void add_parameter_table(pugi::xml_node section, const Result& result) {
          number_cell(parameter.standard_error, 2),
          number_cell(parameter.seed_error, 2),
          {unit_of(parameter.units)},
-         {fmt::format("{} to {}{}", shown(parameter.low), shown(parameter.high),
+         {fmt::format("{} to {}{}", io::tick_label(parameter.low), io::tick_label(parameter.high),
                       parameter.logarithmic ? ", log scale" : ""),
           "number"},
          {parameter.prior_deviation > 0.0
-              ? plus_minus(parameter.prior_mean, parameter.prior_deviation)
+              ? fmt::format("{} ± {}", io::tick_label(parameter.prior_mean),
+                            io::tick_label(parameter.prior_deviation))
               : "none",
           "number"},
          parameter.at_bound ? Cell{"✗ at its bound", "outside"} : Cell{"✓ inside", "within"}});

@@ -14,7 +14,7 @@ using io::Hue;
 using io::Series;
 using io::Stroke;
 
-constexpr double kLeft = 88, kRight = 12, kTop = 10, kFoot = 50, kGap = 22;
+constexpr double kLeft = 96, kRight = 26, kTop = 10, kFoot = 50, kGap = 22;
 
 std::string at(double value) { return fmt::format("{:.1f}", value); }
 
