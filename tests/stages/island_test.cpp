@@ -6,8 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 
 #include "geo/core/error.hpp"
+#include "geo/core/projection.hpp"
 #include "geo/kernels/blueprint_climate.hpp"
 #include "geo/kernels/catmull_rom.hpp"
 #include "geo/kernels/fine_relief.hpp"
@@ -20,23 +23,25 @@ namespace {
 
 const double kLapse_k_m = ClimateParameters{}.seasonal.energy.lapse_k_m;
 
+State make_planet(std::uint64_t seed) {
+  State state(std::make_shared<const Grid>(Grid::sphere(256, 128)));
+  const Pipeline pipeline = make_pipeline();
+  const auto parameters = pipeline.parameters();
+  find_parameter(parameters, "climate.resolution_deg")->set_text("10");  // takes a moment only
+  Context context;
+  context.seed = seed;
+  State whole(state.shared_grid());
+  Pipeline::Observer observer;
+  observer.after = [&](int, const State& now, const Context&) {
+    for (const FieldSpec* spec : now.present()) whole.share(*spec, now.values(*spec));
+  };
+  pipeline.run(state, context, 0, pipeline.find("biomes"), observer);
+  return whole;
+}
+
 /// A small planet with everything that an island reads; made once.
 const State& planet() {
-  static const State kPlanet = [] {
-    State state(std::make_shared<const Grid>(Grid::sphere(256, 128)));
-    const Pipeline pipeline = make_pipeline();
-    const auto parameters = pipeline.parameters();
-    find_parameter(parameters, "climate.resolution_deg")->set_text("10");  // takes a moment only
-    Context context;
-    context.seed = 3;
-    State whole(state.shared_grid());
-    Pipeline::Observer observer;
-    observer.after = [&](int, const State& now, const Context&) {
-      for (const FieldSpec* spec : now.present()) whole.share(*spec, now.values(*spec));
-    };
-    pipeline.run(state, context, 0, pipeline.find("biomes"), observer);
-    return whole;
-  }();
+  static const State kPlanet = make_planet(3);
   return kPlanet;
 }
 
@@ -45,10 +50,9 @@ struct Made {
   Budget budget;
 };
 
-Made make(IslandParameters p) {
-  State state = planet();
+Made make(IslandParameters p, State state = planet(), std::uint64_t seed = 3) {
   Context context;
-  context.seed = 3;
+  context.seed = seed;
   const auto stage = make_island_stage(std::move(p));
   StageIo io(state, stage->info());
   stage->run(io, context);
@@ -69,18 +73,17 @@ IslandParameters around(Centre place) {
   return p;
 }
 
-Centre place_of(Index planet_cell) {
-  const Grid& grid = planet().grid();
+Centre place_of(Index planet_cell, const Grid& grid = planet().grid()) {
   return grid.position(grid.column(planet_cell), grid.row(planet_cell));
 }
 
 /// Cells that the largest rivers of different basins pass through half-way, away from the poles.
-std::vector<Index> great_rivers(std::size_t count) {
-  const Grid& grid = planet().grid();
-  const auto discharge = planet().read(field::discharge);
-  const auto receiver = planet().read(field::flow_receiver);
-  const auto basin = planet().read(field::basin_id);
-  const auto lake = planet().read(field::lake_id);
+std::vector<Index> great_rivers(std::size_t count, const State& whole = planet()) {
+  const Grid& grid = whole.grid();
+  const auto discharge = whole.read(field::discharge);
+  const auto receiver = whole.read(field::flow_receiver);
+  const auto basin = whole.read(field::basin_id);
+  const auto lake = whole.read(field::lake_id);
   std::vector<Index> cells(grid.size());
   for (Index c = 0; c < grid.size(); ++c) cells[c] = c;
   std::stable_sort(cells.begin(), cells.end(),
@@ -221,6 +224,65 @@ TEST(Island, RiversCarryWhatTheyCarryOnThePlanet) {
     // Where rivers meet may move by a cell or two.
     EXPECT_LT(most, 1.1 * planets[receiver[receiver[c]]]);
   }
+}
+
+/// Whether a planet's cell has a river of its own, whose centre is well inside an island.
+bool has_river(const State& whole, const Grid& fine, Index cell) {
+  const Grid& grid = whole.grid();
+  const auto [x, y] =
+      EqualAreaProjection(*fine.centre(), fine.figure()).project(place_of(cell, grid));
+  const bool inside = std::abs(x) < 0.5 * fine.nx() * fine.spacing_east_m(0) &&
+                      std::abs(y) < 0.5 * fine.ny() * fine.step_north_m();
+  return inside && whole.read(field::elevation)[cell] >= 0.0F &&
+         whole.read(field::lake_id)[cell] == 0 &&
+         whole.read(field::drainage_area)[cell] > 10.0 * grid.area_m2(grid.row(cell));
+}
+
+// Rivers once met beyond the edge, left over a lower place, or ended in lakes of the detail.
+TEST(Island, RiversKeepTheirWaterAllTheWay) {
+  double all_there = 0.0, all_kept = 0.0;
+  for (const std::uint64_t seed : {2, 5}) {
+    const State whole = make_planet(seed);
+    const auto planets = whole.read(field::discharge);
+    const auto receiver = whole.read(field::flow_receiver);
+    for (const Index c : great_rivers(4, whole)) {
+      SCOPED_TRACE("seed " + std::to_string(seed) + ", window at " +
+                   text(place_of(c, whole.grid())));
+      const State island = make(around(place_of(c, whole.grid())), whole, seed).island;
+      const PlanetCells cells(whole.grid(), island.grid());
+      const auto discharge = island.read(field::discharge);
+      const auto z = island.read(field::elevation);
+      const auto lake = island.read(field::lake_id);
+      std::map<Index, double> most, in_rivers;  // a lake shows its outflow everywhere
+      std::set<Index> shore;
+      for (Index k = 0; k < island.grid().size(); ++k) {
+        const Index cell = cells.cell_of()[k];
+        if (z[k] < 0.0F) shore.insert(cell);
+        const double here = discharge[k];
+        most[cell] = std::max(most[cell], here);
+        if (lake[k] == 0) in_rivers[cell] = std::max(in_rivers[cell], here);
+      }
+      double there = 0.0, kept = 0.0, too_much = 0.0;
+      for (const auto& [cell, here] : most) {
+        if (!has_river(whole, island.grid(), cell) || shore.contains(cell)) continue;
+        // A river may cross a corner of the next cell.
+        double beside = planets[receiver[receiver[cell]]];
+        for (int k = 0; k < kDirections; ++k) {
+          const Index next = whole.grid().neighbour(cell, k);
+          if (next != kNoCell) beside = std::max<double>(beside, planets[next]);
+        }
+        const double below = std::max<double>(beside, planets[cell]);
+        there += planets[cell];
+        kept += std::min<double>(here, planets[cell]);
+        too_much += std::max(0.0, in_rivers[cell] - 1.1 * below);
+      }
+      EXPECT_GT(kept, 0.8 * there);
+      EXPECT_LT(too_much, 0.05 * there);
+      all_there += there;
+      all_kept += kept;
+    }
+  }
+  EXPECT_GT(all_kept, 0.95 * all_there);
 }
 
 TEST(Island, RunoffIsThatOfThePlanetOverTheSameGround) {

@@ -5,16 +5,18 @@
 #include <map>
 #include <vector>
 
-#include "plane_frame.hpp"
+#include "planet_window.hpp"
 
 namespace geo {
 namespace {
 
-/// Lowest land cell of a stretch, kNoCell when all of it is sea.
-Index lowest_land(const Stretch& stretch, std::span<const float> z) {
+/// Lowest land cell of a stretch that no river has taken, kNoCell when there is none.
+Index lowest_land(const Stretch& stretch, std::span<const float> z,
+                  std::span<const std::uint8_t> taken) {
   Index lowest = kNoCell;
   for (int k = 0; k < stretch.count; ++k) {
     const Index cell = stretch.first + k * stretch.step;
+    if (taken[cell] != 0) continue;
     if (z[cell] >= 0.0F && (lowest == kNoCell || z[cell] < z[lowest])) lowest = cell;
   }
   return lowest;
@@ -51,6 +53,62 @@ std::vector<double> areas_inside(const PlanetCells& cells) {
   return area_m2;
 }
 
+/// Land on the edge of the plane in each covered cell of the planet.
+std::map<Index, std::vector<Index>> land_edges(const PlanetCells& cells, std::span<const float> z) {
+  const Grid& fine = cells.fine();
+  std::map<Index, std::vector<Index>> edge;
+  for (Index c = 0; c < fine.size(); ++c) {
+    if (z[c] >= 0.0F && fine.is_open_edge(fine.column(c), fine.row(c))) {
+      edge[cells.cell_of()[c]].push_back(c);
+    }
+  }
+  return edge;
+}
+
+bool falls_inward(const Grid& fine, Index edge_cell, std::span<const float> z) {
+  for (int k = 0; k < kDirections; ++k) {
+    const Index next = fine.neighbour(edge_cell, k);
+    if (next == kNoCell || fine.is_open_edge(fine.column(next), fine.row(next))) continue;
+    if (z[next] < z[edge_cell]) return true;
+  }
+  return false;
+}
+
+/// Lowest of some edge cells that falls inward and where nothing leaves; kNoCell if there is none.
+Index lowest_inward(const Grid& fine, std::span<const Index> edge, std::span<const float> z,
+                    std::span<const std::uint8_t> leaves) {
+  Index lowest = kNoCell;
+  for (const Index c : edge) {
+    if (leaves[c] != 0 || !falls_inward(fine, c, z)) continue;
+    if (lowest == kNoCell || z[c] < z[lowest]) lowest = c;
+  }
+  return lowest;
+}
+
+/// A step of the planet's water over the edge.
+struct Passage {
+  Index from, to;
+  bool outward;
+};
+
+/// All of them, the largest first.
+std::vector<Passage> find_passages(const PlanetCells& cells, const PlanetWater& water,
+                                   const PlanetWindow& window) {
+  const Grid& planet = cells.planet();
+  std::vector<Passage> passages;
+  const Index begin = planet.cell(0, cells.first_row());
+  for (Index from = begin; from < begin + static_cast<Index>(cells.size()); ++from) {
+    const Index to = water.receiver[from];
+    const bool outward = window.inside(from);
+    if (outward == window.inside(to)) continue;
+    passages.push_back({from, to, outward});
+  }
+  std::stable_sort(passages.begin(), passages.end(), [&](const Passage& a, const Passage& b) {
+    return water.drainage_area_m2[a.from] > water.drainage_area_m2[b.from];
+  });
+  return passages;
+}
+
 }  // namespace
 
 std::vector<RiverCrossing> find_inflow(const PlanetCells& cells, const PlanetWater& water,
@@ -58,70 +116,56 @@ std::vector<RiverCrossing> find_inflow(const PlanetCells& cells, const PlanetWat
                                        std::span<double> inflow_area_m2,
                                        std::span<float> inflow_m3_s) {
   const Grid& planet = cells.planet();
-  const PlaneFrame frame(cells.fine());
+  const PlanetWindow window(cells, water.receiver);
   const Discharge discharge(cells, water);
   std::fill(inflow_area_m2.begin(), inflow_area_m2.end(), 0.0);
   std::fill(inflow_m3_s.begin(), inflow_m3_s.end(), 0.0F);
-  std::map<Index, double> exits;
-  std::vector<RiverCrossing> crossings;
-
+  const auto enter = [&](Index edge_cell, Index planet_cell, double area_m2) {
+    inflow_area_m2[edge_cell] += area_m2;
+    inflow_m3_s[edge_cell] +=
+        static_cast<float>(area_m2 / water.drainage_area_m2[planet_cell] * discharge(planet_cell));
+  };
   const std::vector<double> inside_m2 = areas_inside(cells);
-  const auto share_outside = [&](Index cell) {
+  const auto outside_m2 = [&](Index cell) {
     const double inside = inside_m2[cells.at(planet.column(cell), planet.row(cell))];
-    return std::max(0.0, 1.0 - inside / planet.area_m2(planet.row(cell)));
+    return std::max(0.0, planet.area_m2(planet.row(cell)) - inside);
   };
-  const auto place = [&](Index cell) {
-    return frame.project(planet.position(planet.column(cell), planet.row(cell)));
-  };
-  for (int j = cells.first_row(); j < cells.first_row() + cells.rows(); ++j) {
-    const double reach_m = 0.5 * std::min(planet.spacing_east_m(j), planet.face_east_m(j));
-    for (Index from = planet.cell(0, j); from < planet.cell(0, j) + planet.nx(); ++from) {
-      const Index to = water.receiver[from];
-      const double area = water.drainage_area_m2[from];
-      if (to == from) continue;
-      const auto start = place(from), end = place(to);
-      const bool starts_inside = frame.holds(start);
-      if (starts_inside == frame.holds(end)) continue;
-      const double own = planet.area_m2(j);
-      const bool is_river = area >= kRiverCells * own;
-      if (starts_inside && !is_river) continue;
-      const Stretch stretch =
-          starts_inside ? frame.crossing(end, start, reach_m) : frame.crossing(start, end, reach_m);
-      const Index lowest = lowest_land(stretch, elevation_m);
-      if (lowest == kNoCell) continue;  // straight into the sea
-      if (is_river) {
-        const double way = starts_inside ? 1.0 - stretch.share : stretch.share;
-        const double level_m = std::lerp(std::max(water.elevation_m[from], 0.0F),
-                                         std::max(water.elevation_m[to], 0.0F), way);
-        elevation_m[lowest] = std::min(elevation_m[lowest], static_cast<float>(level_m));
-        crossings.push_back({from, lowest});
-      }
-      if (starts_inside) {
-        exits[lowest] = std::max(exits[lowest], area);
-        continue;
-      }
-      const double m3_s_per_m2 = discharge(from) / area;
-      const double upstream = area - own, beside = own * share_outside(from);
-      const double gathered = is_river ? upstream : upstream + beside;
-      inflow_area_m2[lowest] += gathered;
-      inflow_m3_s[lowest] += static_cast<float>(gathered * m3_s_per_m2);
-      if (!is_river) continue;
-      int land = 0;
-      for (int k = 0; k < stretch.count; ++k) {
-        land += elevation_m[stretch.first + k * stretch.step] >= 0.0F ? 1 : 0;
-      }
-      for (int k = 0; k < stretch.count; ++k) {
-        const Index cell = stretch.first + k * stretch.step;
-        if (elevation_m[cell] < 0.0F) continue;
-        inflow_area_m2[cell] += beside / land;
-        inflow_m3_s[cell] += static_cast<float>(beside * m3_s_per_m2 / land);
-      }
+
+  std::vector<RiverCrossing> crossings;
+  std::map<Index, Index> entry_of;
+  std::vector<std::uint8_t> taken(elevation_m.size()), leaves(elevation_m.size());
+  for (const auto& [from, to, outward] : find_passages(cells, water, window)) {
+    const int row = planet.row(from);
+    const double reach_m = 0.5 * std::min(planet.spacing_east_m(row), planet.face_east_m(row));
+    const auto start = window.place(from), end = window.place(to);
+    const Stretch stretch = outward ? window.frame().crossing(end, start, reach_m)
+                                    : window.frame().crossing(start, end, reach_m);
+    const Index lowest = lowest_land(stretch, elevation_m, taken);
+    if (lowest == kNoCell) {  // straight into the sea, or out of it
+      if (outward) crossings.push_back({from, stretch.middle()});
+      continue;
     }
+    const double way = outward ? 1.0 - stretch.share : stretch.share;
+    const double level_m = std::lerp(std::max(water.elevation_m[from], 0.0F),
+                                     std::max(water.elevation_m[to], 0.0F), way);
+    elevation_m[lowest] = std::min(elevation_m[lowest], static_cast<float>(level_m));
+    crossings.push_back({from, lowest});
+    taken[lowest] = 1;
+    if (outward) {
+      leaves[lowest] = 1;
+      continue;
+    }
+    const double own_inside = planet.area_m2(row) - outside_m2(from);
+    entry_of.try_emplace(to, lowest);
+    enter(lowest, from, water.drainage_area_m2[from] - own_inside);
   }
-  for (const auto& [cell, area] : exits) {
-    if (inflow_area_m2[cell] >= area) continue;
-    inflow_area_m2[cell] = 0.0;
-    inflow_m3_s[cell] = 0.0F;
+  for (const auto& [cell, edge] : land_edges(cells, elevation_m)) {
+    if (!window.inside(cell) || water.elevation_m[cell] < 0.0F) continue;
+    const auto river = entry_of.find(cell);
+    const Index entry = river != entry_of.end()
+                            ? river->second
+                            : lowest_inward(cells.fine(), edge, elevation_m, leaves);
+    if (entry != kNoCell) enter(entry, cell, outside_m2(cell));
   }
   return crossings;
 }

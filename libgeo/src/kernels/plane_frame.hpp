@@ -15,6 +15,7 @@ struct Stretch {
   Index step = 1;
   int count = 0;
   double share = 0.0;  ///< of the way from outside to inside
+  [[nodiscard]] Index middle() const { return first + count / 2 * step; }
 };
 
 /// The rectangle of a fine grid on its map.
@@ -29,8 +30,16 @@ class PlaneFrame {
   [[nodiscard]] std::array<double, 2> project(Centre position) const {
     return projection_.project(position);
   }
-  [[nodiscard]] bool holds(std::array<double, 2> p) const {
-    return std::abs(p[0]) < half_width_ && std::abs(p[1]) < half_height_;
+  /// Whether a place lies within the rectangle, or within so much of it.
+  [[nodiscard]] bool holds(std::array<double, 2> p, double across_m = 0.0,
+                           double up_m = 0.0) const {
+    return std::abs(p[0]) < half_width_ + across_m && std::abs(p[1]) < half_height_ + up_m;
+  }
+  /// The nearest place that is not on the edge.
+  [[nodiscard]] std::array<double, 2> nearest_within(std::array<double, 2> p) const {
+    const double x = half_width_ - 1.5 * fine_.spacing_east_m(0);
+    const double y = half_height_ - 1.5 * fine_.step_north_m();
+    return {std::clamp(p[0], -x, x), std::clamp(p[1], -y, y)};
   }
   /// Cells of the side that the way from `outside` to `inside` crosses, within `reach_m` of where.
   [[nodiscard]] Stretch crossing(std::array<double, 2> outside, std::array<double, 2> inside,

@@ -125,11 +125,13 @@ class IslandStage final : public Stage {
                             io.read(field::drainage_area), io.read(field::discharge),
                             io.read_optional(field::lake_id)};
     const auto crossings = find_inflow(cells, water, z, inflow_area, inflow);
-    open_river_courses(cells, water, crossings, z);
-    Bytes outlets = find_outlets(fine, z), held = outlets;
-    for (std::size_t c = 0; c < outlets.size(); ++c) {
-      if (inflow_area[c] > 0.0) outlets[c] = 0;
+    RiverCourses courses = trace_river_courses(cells, water, crossings, context.seed, z);
+    Bytes edges = find_outlets(fine, z), held = edges;
+    for (std::size_t c = 0; c < edges.size(); ++c) {
+      if (inflow_area[c] > 0.0) edges[c] = 0;
     }
+    open_river_courses(fine, edges, courses, z);
+    Bytes outlets = edges;
     add_endorheic_bottoms(cells, io.read(field::flow_receiver), z, outlets);
     for (std::size_t c = 0; c < held.size(); ++c) held[c] |= outlets[c];
 
@@ -137,6 +139,7 @@ class IslandStage final : public Stage {
     const IslandErosion done = wear_island(
         cells, p_, law, {outlets, held, inflow_area, erodibility},
         [&](double share) { context.advance(0.2 + 0.4 * share); }, z);
+    open_river_courses(fine, edges, courses, z);
     report_erosion(fine, done, context.budget, state);
   }
 

@@ -18,9 +18,6 @@ struct PlanetWater {
   std::span<const std::int32_t> lake_id;  ///< may be empty
 };
 
-/// Planet cells that make a river worth keeping.
-inline constexpr double kRiverCells = 2.5;
-
 /// Where a river of the planet crosses the edge of a part of it.
 struct RiverCrossing {
   Index planet_cell = kNoCell;  ///< the last on this side of the edge, whichever that is
@@ -29,17 +26,19 @@ struct RiverCrossing {
 
 /// Water that enters a part of a planet from outside, for a fine plane in an equal-area projection.
 ///
-/// Wherever a river, the water of at least `kRiverCells` planet cells, passes the edge, it crosses
-/// at the lowest land cell within half a planet cell of where the line between the two cell centres
-/// does, and that cell sinks to the river's level, interpolated between the two, so that the coarse
-/// relief dams no river at the edge. What gathered upstream of the last cell outside (drainage area
-/// and discharge) enters there. What falls on as much of that cell itself as lies outside enters
-/// evenly along the stretch. Lesser brooks enter whole at the lowest cell, which stays as it is. So
+/// A planet cell counts as inside if its centre lies on the plane, or less than half a cell beyond
+/// the edge while its water goes in from there. Wherever the planet's water passes from outside to
+/// inside or back, largest first, it crosses at the lowest land cell that no other has taken within
+/// half a planet cell of where the line between the two cell centres crosses the edge, and that
+/// cell sinks to the planet's level, interpolated between the two, so that the coarse relief dams
+/// no river at the edge. What gathered outside (drainage area and discharge) enters there. What
+/// falls on as much of an inside cell as lies beyond the edge comes in with the largest of its
+/// rivers from outside, or else at the lowest of its edge cells whose ground falls inward. So
 /// rivers keep their area and discharge, and no ground counts twice. No edge cell that water comes
-/// in over is to be an outlet. Where a larger planet river leaves at a cell, nothing enters there.
-/// On a lake, whose cells all carry the discharge of the whole, discharge goes by the share of the
-/// drainage area. Outputs: one value per fine cell, 0 elsewhere; `elevation_m` of the fine cells:
-/// in and out. Returns every crossing, in and out.
+/// in over is to be an outlet; where water leaves, none enters. On a lake, whose cells all carry
+/// the discharge of the whole, discharge goes by the share of the drainage area. Outputs: one value
+/// per fine cell, 0 elsewhere; `elevation_m` of the fine cells: in and out. Returns every crossing,
+/// in and out, and, where water goes straight out to sea, the sea there.
 std::vector<RiverCrossing> find_inflow(const PlanetCells& cells, const PlanetWater& water,
                                        std::span<float> elevation_m,
                                        std::span<double> inflow_area_m2,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "geo/kernels/shapes.hpp"
 #include "geo/stages/isostasy/deformation.hpp"
@@ -30,6 +31,22 @@ void cut_section(const ConvergentMargins& margins, Index cell, double along, dou
       break;
     default:
       break;
+  }
+}
+
+/// Where two stretches of boundary are equally near, sections meet in a straight line. Far from the
+/// boundary plateaus pass into each other, and end, over a broader slope than belts have near it.
+template <class V>
+void soften_far_edges(const Grid& grid, const ConvergentMargins& margins,
+                      const Arithmetic<V>& length_m, std::vector<V>& thickening) {
+  constexpr double kBroader = 3.5, kNear_km = 250.0, kFar_km = 700.0;
+  std::vector<V> broad = thickening;
+  blur(grid, thickening, length_m);
+  blur(grid, broad, kBroader * length_m);
+#pragma omp parallel for schedule(static)
+  for (Index cell = 0; cell < grid.size(); ++cell) {
+    const double far = smooth_step(kNear_km, kFar_km, std::abs(margins.across_km[cell]));
+    thickening[cell] += V(static_cast<float>(far)) * (broad[cell] - thickening[cell]);
   }
 }
 
@@ -88,10 +105,15 @@ void cut_sections(const Crust<V>& crust, const CoarseGrid& coarse, const Tectoni
       }
     }
   }
+<<<<<<< HEAD:libgeo/include/geo/stages/isostasy/cross_sections.hpp
   const Arithmetic<V> smoothing_km = crust.lift(p.deformation_smoothing_km);
-  blur(grid, t.thickening, 2e3 * smoothing_km);
+  soften_far_edges<V>(grid, frame.margins, 2e3 * smoothing_km, t.thickening);
   blur(grid, t.arc, 0.7e3 * smoothing_km);
   blur(grid, t.trench_m, 0.6e3 * smoothing_km);
+=======
+  smooth(grid, t.arc, 0.7e3 * p.deformation_smoothing_km);
+  smooth(grid, t.trench_m, 0.6e3 * p.deformation_smoothing_km);
+>>>>>>> main:libgeo/src/stages/isostasy/cross_sections.cpp
   t.convergent = t.thickening;
   for (Index cell = 0; cell < grid.size(); ++cell) t.convergent[cell] += t.arc[cell];
 }
