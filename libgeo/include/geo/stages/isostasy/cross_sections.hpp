@@ -105,15 +105,10 @@ void cut_sections(const Crust<V>& crust, const CoarseGrid& coarse, const Tectoni
       }
     }
   }
-<<<<<<< HEAD:libgeo/include/geo/stages/isostasy/cross_sections.hpp
   const Arithmetic<V> smoothing_km = crust.lift(p.deformation_smoothing_km);
   soften_far_edges<V>(grid, frame.margins, 2e3 * smoothing_km, t.thickening);
   blur(grid, t.arc, 0.7e3 * smoothing_km);
   blur(grid, t.trench_m, 0.6e3 * smoothing_km);
-=======
-  smooth(grid, t.arc, 0.7e3 * p.deformation_smoothing_km);
-  smooth(grid, t.trench_m, 0.6e3 * p.deformation_smoothing_km);
->>>>>>> main:libgeo/src/stages/isostasy/cross_sections.cpp
   t.convergent = t.thickening;
   for (Index cell = 0; cell < grid.size(); ++cell) t.convergent[cell] += t.arc[cell];
 }
