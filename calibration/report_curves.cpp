@@ -49,8 +49,8 @@ io::Axis elevation_axis(const Result& result) {
 std::vector<std::string> caption(const Result& result) {
   std::vector<std::string> lines{fmt::format(
       "Wasserstein-1 distance of the mean curve to the target: {} m before, {} m after.",
-      shown(wasserstein_m(result.before, result.target)),
-      shown(wasserstein_m(result.after, result.target)))};
+      shown(curve_distance_m(result.before, result.target)),
+      shown(curve_distance_m(result.after, result.target)))};
   std::string seeds =
       fmt::format("Mean over {} fitted seeds: {} m before, {} m after", result.fitted.size(),
                   shown(mean_before_m(result.fitted)), shown(mean_after_m(result.fitted)));
@@ -65,7 +65,7 @@ std::vector<std::string> caption(const Result& result) {
 
 }  // namespace
 
-double wasserstein_m(const Curve& a, const Curve& b) {
+double curve_distance_m(const Curve& a, const Curve& b) {
   if (a.elevation_m.empty() || a.elevation_m.size() != b.elevation_m.size()) {
     throw Bug(fmt::format("curves of {} and {} bins cannot be compared", a.elevation_m.size(),
                           b.elevation_m.size()));

@@ -9,7 +9,7 @@ namespace geo::calibration {
 
 /// Mean distance between two curves of as many bins: the Wasserstein-1 distance of the two
 /// distributions of elevation, to the width of a bin.
-double wasserstein_m(const Curve& a, const Curve& b);
+double curve_distance_m(const Curve& a, const Curve& b);
 
 /// Text of hypsometry.csv: quantile,target_m,before_m,after_m at the middle of each bin.
 std::string curves_csv(const Result& result);

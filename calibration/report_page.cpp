@@ -34,18 +34,18 @@ void add_introduction(pugi::xml_node main, const Result& result) {
   add(main, "p",
       fmt::format("{} parameters of {} fitted to {} at {} cells, over seeds {}: {}. {}",
                   result.parameters.size(), result.preset_or_config, result.target_name,
-                  result.grid, seeds_in_words(result.fitted), shape, result.ending),
+                  result.grid, seeds_in_words(result.fitted), shape, sentence(result.ending)),
       {{"class", "lead"}});
 }
 
 void add_warnings(pugi::xml_node main, const Result& result) {
   std::vector<std::string> lines;
+  for (const auto& warning : result.warnings) lines.push_back(sentence(warning));
   if (!result.converged) {
     lines.push_back(
-        "The fit did not converge: what follows is the best that was found, and its "
-        "errors cannot be relied upon.");
+        "As the fit did not converge, this is the best that was found, and its errors "
+        "cannot be relied upon.");
   }
-  lines.insert(lines.end(), result.warnings.begin(), result.warnings.end());
   if (lines.empty()) return;
   auto box = add(main, "section", {}, {{"class", "warnings"}, {"role", "note"}});
   add(box, "h2", lines.size() == 1 ? "One warning" : fmt::format("{} warnings", lines.size()));
@@ -116,8 +116,10 @@ void add_profiles(pugi::xml_node main, const Result& result) {
   if (result.profiles.empty()) return;
   add(main, "h2", "Profiles");
   add(main, "p",
-      "The cost along each, all other parameters fitted again. The dotted line is one standard "
-      "error above the least: a profile that stays below it on one side gives no bound there.");
+      "The cost along each, all other parameters fitted again. Dashed lines stand one standard "
+      "error "
+      "to either side of the fitted value. A curve that is flat towards one side gives no bound "
+      "there, and one that is no parabola says that the standard error is too simple.");
   add_profile_pictures(main, result);
 }
 

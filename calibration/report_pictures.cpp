@@ -53,11 +53,9 @@ Series cost_of_start(const Result& result, int start, bool is_best) {
   return series;
 }
 
-/// One standard error costs this much, judged by the scatter of the residuals.
-double cost_of_one_error(const Result& result) {
-  const auto freedom =
-      static_cast<double>(result.residuals.size()) - static_cast<double>(result.parameters.size());
-  return freedom > 0.0 ? result.cost_after / freedom : NAN;
+/// An upright line across the whole panel.
+Series upright(double x, const io::Axis& y) {
+  return {"", {x, x}, {y.low, y.high}, Hue::grey, Stroke::dashed};
 }
 
 io::Chart profile_chart(const Result& result, const Profile& profile) {
@@ -66,15 +64,18 @@ io::Chart profile_chart(const Result& result, const Profile& profile) {
                    [&](const FittedParameter& each) { return each.name == profile.name; });
   const bool is_parameter = parameter != result.parameters.end();
   const bool logarithmic = is_parameter && parameter->logarithmic;
-  const double least = *std::min_element(profile.cost.begin(), profile.cost.end());
-  const double limit = least + cost_of_one_error(result);
   const bool has_unit = is_parameter && parameter->units != "1";
   io::ChartPanel panel;
   panel.x = io::axis_over(has_unit ? parameter->units : "", {profile.value}, logarithmic);
-  panel.y = io::axis_over("cost", {profile.cost, {limit}});
-  panel.series = {{"", profile.value, profile.cost, Hue::blue},
-                  {"", profile.value, profile.cost, Hue::blue, Stroke::dots}};
-  panel.levels = {{limit, ""}};
+  panel.y = io::axis_over("cost", {profile.cost});
+  if (is_parameter && std::isfinite(parameter->standard_error)) {
+    for (const double side : {-1.0, 1.0}) {
+      panel.series.push_back(
+          upright(parameter->fitted + side * parameter->standard_error, panel.y));
+    }
+  }
+  panel.series.push_back({"", profile.value, profile.cost, Hue::blue});
+  panel.series.push_back({"", profile.value, profile.cost, Hue::blue, Stroke::dots});
   return {"Profile of " + profile.name, {}, {panel}};
 }
 

@@ -98,8 +98,8 @@ void add_residual_tables(pugi::xml_node section, const Result& result) {
   }
   if (!terms.empty()) add_residual_table(section, terms);
   if (curve.empty()) return;
-  add_residual_table(add_details(section, fmt::format("The {} bins of the curve", curve.size())),
-                     curve);
+  add_residual_table(
+      add_details(section, fmt::format("The {} quantiles of the curve", curve.size())), curve);
 }
 
 void add_misfit_tables(pugi::xml_node section, const Result& result) {

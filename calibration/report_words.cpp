@@ -42,6 +42,17 @@ std::string shown(double value, int digits) {
   return (value < 0.0 && text.find_first_not_of("0.") != std::string::npos ? "\u2212" : "") + text;
 }
 
+std::string sentence(std::string text) {
+  if (text.empty()) return text;
+  // A name of a parameter keeps its letters.
+  const bool is_word = text.substr(0, text.find(' ')).find('.') == std::string::npos;
+  if (is_word && text.front() >= 'a' && text.front() <= 'z') {
+    text.front() = static_cast<char>(text.front() - 'a' + 'A');
+  }
+  if (text.back() != '.') text += '.';
+  return text;
+}
+
 std::string seeds_in_words(const std::vector<SeedMisfit>& seeds) {
   std::string words;
   for (std::size_t i = 0; i < seeds.size();) {

@@ -11,6 +11,9 @@ namespace geo::calibration {
 /// dash for what is not determined.
 std::string shown(double value, int digits = 3);
 
+/// With a capital letter and a full stop.
+std::string sentence(std::string text);
+
 /// "1, 2, 5 to 8"
 std::string seeds_in_words(const std::vector<SeedMisfit>& seeds);
 
