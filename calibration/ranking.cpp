@@ -74,6 +74,18 @@ Ranking::Window Ranking::window(double share, double half_width) const {
   return window;
 }
 
+double Ranking::gap_below(double value, double width, int most) const {
+  const auto above = std::lower_bound(value_.begin(), value_.end(), value) - value_.begin();
+  double widest = 0.0, middle = value;
+  for (auto k = above; k > 0 && above - k < most && widest < width; --k) {
+    const double top = k == above ? value : value_[k], gap = top - value_[k - 1];
+    if (gap <= widest) continue;
+    widest = gap;
+    middle = top - 0.5 * gap;
+  }
+  return middle;
+}
+
 double Ranking::density(double share, double half_width) const {
   const double from = std::max(0.0, share - half_width), to = std::min(1.0, share + half_width);
   return (to - from) / std::max(quantile(to) - quantile(from), 1e-6);

@@ -38,6 +38,9 @@ class Ranking {
     }
     return sum;
   }
+  /// The middle of the first gap of at least `width` between values in order, from `value` down;
+  /// of the widest among the next `most` where none is as wide.
+  [[nodiscard]] double gap_below(double value, double width, int most) const;
   /// Area per elevation about a share, as a share of the whole per metre.
   [[nodiscard]] double density(double share, double half_width) const;
 

@@ -56,6 +56,11 @@ void SeedPlanet::find_sea(const Model& model, std::span<const double> elevation_
   }
   const double share = model.planet.ocean_fraction;
   sea.ranking.emplace(grid, elevation_m);
+  // The level is the height of a cell. In a gap somewhat lower it makes almost the same land, and
+  // no cell stands at the bend between shelf and land, where nothing has a derivative.
+  constexpr double kGap_m = 0.02;
+  constexpr int kCells = 20;
+  sea.level_m = sea.ranking->gap_below(sea.level_m, kGap_m, kCells);
   sea.window = sea.ranking->window(share, kHalfWidth);
   sea.mean_m = sea.ranking->mean(sea.window, elevation_m);
   sea.asked = share;

@@ -2,6 +2,7 @@
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <complex>
 
 #include "small_planets.hpp"
@@ -30,11 +31,11 @@ const std::vector<std::string> kDifferenced{"isostasy.deformation_smoothing_km",
                                             "erosion.rebound_length_km",
                                             "erosion.diffusivity_m2_yr", "erosion.time_step_yr"};
 
+/// The planet of seed 1, routed.
 struct Planet1 {
-  SmallRun run;
-  Model model{run.parameters};
-  SeedPlanet planet{run.parameters, 1, 96, 48};
-  Planet1() { planet.route(model); }
+  explicit Planet1(int rows = 48) : planet(run.parameters, 1, 2 * rows, rows) {
+    (void)planet.route(model);
+  }
   double* member(const std::string& name) const {
     return std::get<double*>(model.find(name).storage);
   }
@@ -43,6 +44,10 @@ struct Planet1 {
     double* const at = member(name);
     return planet.follow<V>(model, Lift<V>({{at, V(*at) + unit}}));
   }
+
+  SmallRun run{"erosion.diffusivity_m2_yr=500"};  // enough to be seen on cells of 400 km
+  Model model{run.parameters};
+  SeedPlanet planet;
 };
 
 double norm(const std::vector<double>& x) {
@@ -123,29 +128,38 @@ TEST(Derivatives, ValuesAreThoseOfARun) {
   Context context;
   context.planet = p.run.planet;
   context.seed = 1;
-  p.run.pipeline.run(state, context, 0, p.run.pipeline.find("erosion"), {});
-  const auto z = state.read(field::elevation);
-  double worst = 0.0, sum = 0.0;
+  std::vector<float> z;
+  p.run.pipeline.run(state, context, 0, p.run.pipeline.find("erosion"),
+                     {.before = [](int) {},
+                      .after = [&](int, const State& after, const Context&) {
+                        if (!after.has(field::elevation)) return;
+                        const auto now = after.read(field::elevation);
+                        z.assign(now.begin(), now.end());
+                      }});
+  double sum = 0.0;
+  int others = 0;
   for (std::size_t c = 0; c < z.size(); ++c) {
-    worst = std::max(worst, std::abs(relief.elevation_m[c] - z[c]));
-    sum += std::abs(relief.elevation_m[c] - z[c]);
+    const double off = std::abs(relief.elevation_m[c] - z[c]);
+    sum += off;
+    others += off > 1.0;
   }
-  // Rounding to float may turn a brook into another valley, no more.
-  EXPECT_LT(sum / double(z.size()), 0.05);
-  EXPECT_LT(worst, 200.0);
+  // The sea stands some centimetres lower, and rounding to float may turn a brook into another
+  // valley.
+  EXPECT_LT(sum / double(z.size()), 0.5);
+  EXPECT_LT(others, 0.005 * double(z.size()));
 }
 
 /// dq / dtheta by the mean over the cells about the quantile against differences of true quantiles
 /// of the held-fast relief.
 TEST(Derivatives, QuantilesFollowTheMeanOfTheCellsThere) {
-  Planet1 p;
-  const Grid grid = p.run.grid();
+  Planet1 p(96);
+  const Grid& grid = p.planet.grid();
   const auto base = p.planet.follow<double>(p.model, {});
   const Ranking ranking(grid, base.elevation_m);
   for (const std::string name :
        {"isostasy.lithosphere", "isostasy.collision_km", "isostasy.swell_m"}) {
     double* const at = p.member(name);
-    const double value = *at, step = 0.02 * value;
+    const double value = *at, step = 0.01 * value;
     *at = value + step;
     const Ranking above(grid, p.planet.follow<double>(p.model, {}).elevation_m);
     *at = value - step;
@@ -153,11 +167,16 @@ TEST(Derivatives, QuantilesFollowTheMeanOfTheCellsThere) {
     *at = value;
     const auto jets = p.follow<Jet>(name, Jet(0.0, 0));
     double error = 0.0, size = 0.0;
-    for (int k = 10; k <= 90; ++k) {
-      const double share = 0.01 * k;
-      const auto window = ranking.window(share, 0.01);
+    for (int k = 5; k <= 45; ++k) {
+      const double share = 0.02 * k, half = 0.01;
+      const auto window = ranking.window(share, half);
       const double by_mean = ranking.mean(window, std::span<const Jet>(jets.elevation_m)).v[0];
-      const double by_difference = (above.quantile(share) - below.quantile(share)) / (2 * step);
+      // Single quantiles jump from cell to cell: 40 of them together.
+      double by_difference = 0.0;
+      for (int i = 0; i < 40; ++i) {
+        const double at_share = share + half * ((i + 0.5) / 20.0 - 1.0);
+        by_difference += (above.quantile(at_share) - below.quantile(at_share)) / (2 * step) / 40;
+      }
       error += std::abs(by_mean - by_difference);
       size += std::abs(by_difference);
     }

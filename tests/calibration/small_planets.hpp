@@ -14,11 +14,12 @@ namespace geo::calibration {
 /// The configuration of a run, with everything small.
 class SmallRun {
  public:
-  SmallRun() {
+  explicit SmallRun(const std::string& assignment = "erosion.steps=4") {
     for (auto declarations : {planet.parameters(), pipeline.parameters()}) {
       parameters.insert(parameters.end(), declarations.begin(), declarations.end());
     }
     set("erosion.steps=4");
+    set(assignment);
     settings.seeds = "1-2";
     settings.grid = "96x48";
   }
