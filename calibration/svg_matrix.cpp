@@ -4,13 +4,19 @@
 #include <cmath>
 
 #include "calibration/report_markup.hpp"
-#include "calibration/report_words.hpp"
 #include "calibration/svg_picture.hpp"
 
 namespace geo::calibration {
 namespace {
 
 constexpr double kCell = 46, kHead = 26, kLetter = 7.4;
+
+/// As many decimals as a square has room for.
+std::string number_in_square(double value) {
+  if (!std::isfinite(value)) return "–";
+  const std::string digits = fmt::format("{:.2f}", std::abs(value));
+  return value < 0.0 && digits != "0.00" ? "\u2212" + digits : digits;
+}
 
 std::string at(double value) { return fmt::format("{:.1f}", value); }
 
@@ -25,7 +31,7 @@ void add_cell(pugi::xml_node svg, double x, double y, double value) {
   // Never so dark that the number in it is hard to read.
   const double strength = std::isfinite(value) ? std::min(std::abs(value), 1.0) : 0.0;
   square.append_attribute("fill-opacity") = fmt::format("{:.2f}", 0.04 + 0.6 * strength).c_str();
-  add(svg, "text", shown(value, 2),
+  add(svg, "text", number_in_square(value),
       {{"x", at(x + 0.5 * kCell)},
        {"y", at(y + 0.5 * kCell + 4)},
        {"text-anchor", "middle"},

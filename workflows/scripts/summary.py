@@ -94,14 +94,23 @@ def place_in_bounds(parameter, value):
     return (value - low) / (high - low)
 
 
+def one_error_around(parameter, error):
+    """From one error below to one above; a factor where the parameter was fitted on a log scale."""
+    fitted, (low, high) = parameter["fitted"], parameter["bounds"]
+    if parameter["scale"] == "logarithmic":
+        factor = math.exp(min(error / fitted, 50.0))
+        ends = fitted / factor, fitted * factor
+    else:
+        ends = fitted - error, fitted + error
+    return [min(max(value, low), high) for value in ends]
+
+
 def draw_parameters(axes, sweep):
     parameters = sweep.fit["parameters"]
     for row, parameter in enumerate(reversed(parameters)):
         fitted = parameter["fitted"]
-        errors = [parameter[key] or 0.0 for key in ("standard_error", "seed_error")]
-        low, high = parameter["bounds"]
-        ends = [place_in_bounds(parameter, min(max(fitted + sign * max(errors), low), high))
-                for sign in (-1, 1)]
+        error = max(parameter[key] or 0.0 for key in ("standard_error", "seed_error"))
+        ends = [place_in_bounds(parameter, value) for value in one_error_around(parameter, error)]
         axes.plot(ends, [row, row], color=RED, lw=1.5)
         axes.plot(place_in_bounds(parameter, parameter["start"]), row, "o", mfc="none", color=GREY)
         axes.plot(place_in_bounds(parameter, fitted), row, "o", color=RED)
