@@ -48,9 +48,19 @@ void write_checkpoint(const Checkpoint& c, const std::filesystem::path& file) {
   all["iterations"] = json::array();
   for (const Iteration& iteration : c.iterations) all["iterations"].push_back(to_json(iteration));
   const FitState& s = c.state;
-  all["state"] = {{"x", as_list(s.x)},        {"cost", s.cost},           {"radius", s.radius},
-                  {"iteration", s.iteration}, {"stalls", s.stalls},       {"begun", s.begun},
-                  {"ended", s.ended},         {"converged", s.converged}, {"ending", s.ending}};
+  all["state"] = {{"x", as_list(s.x)},
+                  {"probed", as_list(s.probed)},
+                  {"probed_cost", s.probed_cost},
+                  {"probes", s.probes},
+                  {"polishes", s.polishes},
+                  {"cost", s.cost},
+                  {"radius", s.radius},
+                  {"iteration", s.iteration},
+                  {"stalls", s.stalls},
+                  {"begun", s.begun},
+                  {"ended", s.ended},
+                  {"converged", s.converged},
+                  {"ending", s.ending}};
   io::write_text_file(file, all.dump(1) + "\n");
 }
 
@@ -64,6 +74,10 @@ Checkpoint read_checkpoint(const std::filesystem::path& file) {
     for (const json& j : all.at("iterations")) c.iterations.push_back(iteration_from(j));
     const json& s = all.at("state");
     c.state.x = as_vector(s.at("x").get<std::vector<double>>());
+    c.state.probed = as_vector(s.at("probed").get<std::vector<double>>());
+    c.state.probed_cost = s.at("probed_cost");
+    c.state.probes = s.at("probes");
+    c.state.polishes = s.at("polishes");
     c.state.cost = s.at("cost");
     c.state.radius = s.at("radius");
     c.state.iteration = s.at("iteration");

@@ -3,7 +3,9 @@
 #include <ceres/ceres.h>
 #include <fmt/format.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 
@@ -52,7 +54,7 @@ double cost_of(const Eigen::VectorXd& residual) {
 /// A few steps with all held fast. Returns where they end.
 Eigen::VectorXd solve_held_fast(Objective& objective, const Problem& problem,
                                 const FitState& state) {
-  Eigen::VectorXd x = state.x;
+  Eigen::VectorXd x = state.probed;
   const auto count = static_cast<int>(x.size());
   ceres::Problem held;
   held.AddParameterBlock(x.data(), count);
@@ -76,6 +78,39 @@ Eigen::VectorXd solve_held_fast(Objective& objective, const Problem& problem,
   return x;
 }
 
+/// One Gauss-Newton step with derivatives by differences of planets routed anew, over a step wide
+/// enough to average over the jumps of rivers. Returns whether it found a better place.
+bool polish(Objective& objective, const Problem& problem, FitState& state) {
+  constexpr std::array kSteps{0.02, 0.005, 0.05};
+  const double width = kSteps[state.polishes % kSteps.size()];
+  constexpr double kFarthest = 0.2;
+  const Eigen::Index count = state.x.size();
+  const Eigen::VectorXd here = objective.route(state.x);
+  Eigen::MatrixXd rates(here.size(), count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const FreeParameter& free = problem.free[i];
+    Eigen::VectorXd x = state.x;
+    const double step = x[i] + width > free.to_x(free.high) ? -width : width;
+    x[i] += step;
+    rates.col(i) = (objective.route(x) - here) / step;
+  }
+  Eigen::VectorXd step = -rates.completeOrthogonalDecomposition().solve(here);
+  step *= std::min(1.0, kFarthest / std::max(step.cwiseAbs().maxCoeff(), 1e-300));
+  for (double part = 1.0; part > 0.2; part *= 0.5) {
+    Eigen::VectorXd x = state.x + part * step;
+    for (Eigen::Index i = 0; i < count; ++i) {
+      x[i] = std::clamp(x[i], problem.free[i].to_x(problem.free[i].low),
+                        problem.free[i].to_x(problem.free[i].high));
+    }
+    const double cost = cost_of(objective.route(x));
+    if (!(cost < state.cost)) continue;
+    state.x = state.probed = x;
+    state.cost = state.probed_cost = cost;
+    return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 void fit(Objective& objective, Problem& problem, const FitOptions& options, FitState& state,
@@ -84,42 +119,68 @@ void fit(Objective& objective, Problem& problem, const FitOptions& options, FitS
   if (!state.begun) {
     state.radius = kFirstRadius;
     state.begun = true;
-    state.cost = cost_of(objective.route(state.x));
+    state.cost = state.probed_cost = cost_of(objective.route(state.x));
+    state.probed = state.x;
   } else {
-    objective.route(state.x);
+    objective.route(state.probed);
   }
   if (!std::isfinite(state.cost)) {
     throw InputError("calibration: the start gives a relief that is not finite");
   }
   while (!state.ended) {
     const auto begin = Clock::now();
-    const Eigen::VectorXd from = state.x;
-    const Eigen::VectorXd to = solve_held_fast(objective, problem, state);
+    const Eigen::VectorXd from = state.probed, best = state.x;
     const double before = state.cost;
-    double part = 1.0;
+    const Eigen::VectorXd to = solve_held_fast(objective, problem, state);
+    double part = 1.0, full_cost = 0.0;
     bool accepted = false;
-    constexpr double kLeastPart = 0.1;
+    constexpr double kLeastPart = 0.2;
     while (!accepted && part > kLeastPart && (to - from).cwiseAbs().maxCoeff() > 0.0) {
       const Eigen::VectorXd x = from + part * (to - from);
       const double cost = cost_of(objective.route(x));
+      if (part == 1.0) full_cost = cost;
       accepted = cost < before;
       if (accepted) {
-        state.x = x;
-        state.cost = cost;
+        state.x = state.probed = x;
+        state.cost = state.probed_cost = cost;
+        state.probes = 0;
       } else {
         part *= 0.5;
       }
     }
-    if (!accepted) objective.route(from);
-    state.radius = std::clamp(state.radius * (part == 1.0 ? 3.0
-                                              : accepted  ? 0.5
-                                                          : 0.03),
-                              kLeastRadius, kMostRadius);
+    if (!accepted) {
+      constexpr int kProbes = 2;
+      constexpr double kNotMuchWorse = 4.0;
+      const bool goes_on =
+          state.probes < kProbes && full_cost > 0.0 && full_cost < kNotMuchWorse * before;
+      state.probes = goes_on ? state.probes + 1 : 0;
+      state.probed = goes_on ? to : best;
+      state.probed_cost = goes_on ? full_cost : state.cost;
+      objective.route(state.probed);
+      if (!goes_on) state.radius = std::max(0.03 * state.radius, kLeastRadius);
+    } else {
+      state.radius =
+          std::clamp(state.radius * (part == 1.0 ? 3.0 : 0.5), kLeastRadius, kMostRadius);
+    }
     ++state.iteration;
-    const double step = (state.x - from).cwiseAbs().maxCoeff();
     const double gain = (before - state.cost) / std::max(before, 1e-300);
     state.stalls = gain < options.tolerance ? state.stalls + 1 : 0;
-    constexpr int kPatience = 2;
+    constexpr int kPatience = 3;
+    // Where the target can be met, no jump of a river shall keep the fit from it.
+    const bool is_close = state.cost < 0.005 * static_cast<double>(objective.residuals());
+    const int attempts = is_close ? 3 : 1;
+    if (state.stalls >= kPatience && state.polishes < attempts) {
+      const double unpolished = state.cost;
+      accepted = polish(objective, problem, state);
+      const bool gained = unpolished - state.cost > options.tolerance * unpolished;
+      state.polishes = gained ? 0 : state.polishes + 1;
+      // Polished again unless the next iteration gains by itself.
+      state.stalls = gained || state.polishes < attempts ? kPatience - 1 : kPatience;
+      state.probes = 0;
+      state.probed = state.x;
+      objective.route(state.x);
+    }
+    const double step = (state.x - best).cwiseAbs().maxCoeff();
     // A cost of nothing is as far as a fit can go.
     const double nothing = 1e-10 * static_cast<double>(objective.residuals());
     if (state.cost <= nothing || state.stalls >= kPatience) {

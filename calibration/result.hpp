@@ -20,8 +20,8 @@ struct FittedParameter {
   bool logarithmic = false;      ///< fitted on a log scale
   bool at_bound = false;
   double prior_mean = 0.0, prior_deviation = 0.0;  ///< deviation 0: no prior
-  double standard_error = 0.0;  ///< from the residuals; NaN where not determined
-  double seed_error = 0.0;      ///< from the spread of the seeds; NaN with fewer than three seeds
+  double standard_error = 0.0;                     ///< from the residuals; NaN where not determined
+  double seed_error = 0.0;  ///< from the spread of the seeds; NaN with fewer than three seeds
 };
 
 /// One statistic that the fit aims at.

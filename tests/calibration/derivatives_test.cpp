@@ -14,22 +14,38 @@ using Jet = ceres::Jet<double, 1>;
 using Complex = std::complex<double>;
 
 /// Parameters of formulas; those of smoothing lengths and plates are differences of a kernel.
-const std::vector<std::string> kExact{
-    "isostasy.collision_km",    "isostasy.continental_km",      "isostasy.lithosphere",
-    "isostasy.swell_m",         "isostasy.thickness_noise_km",  "isostasy.craton_compensation",
-    "isostasy.ocean_swell_m",   "isostasy.margin_tilt_m",       "isostasy.margin_tilt_km",
-    "isostasy.relict_km",       "isostasy.arc_km",              "isostasy.heat_m",
-    "isostasy.shelf_depth_m",   "isostasy.trench_depth_m",      "isostasy.pelagic_rate_m_myr",
-    "isostasy.apron_length_km", "isostasy.water_density_kg_m3", "isostasy.seafloor_roughness_m",
-    "erosion.erodibility_factor", "erosion.area_exponent",      "erosion.slope_exponent",
-    "erosion.convergent_uplift_mm_yr", "erosion.uplift_mm_yr",  "erosion.rebound_fraction",
-    "erosion.rebound_time_yr",  "erosion.warping_m",            "erosion.subgrid_exponent",
-    "planet.ocean_fraction"};
-const std::vector<std::string> kDifferenced{"isostasy.deformation_smoothing_km",
-                                            "isostasy.elastic_thickness_km",
-                                            "isostasy.mantle_density_kg_m3",
-                                            "erosion.rebound_length_km",
-                                            "erosion.diffusivity_m2_yr", "erosion.time_step_yr"};
+const std::vector<std::string> kExact{"isostasy.collision_km",
+                                      "isostasy.continental_km",
+                                      "isostasy.lithosphere",
+                                      "isostasy.swell_m",
+                                      "isostasy.thickness_noise_km",
+                                      "isostasy.craton_compensation",
+                                      "isostasy.ocean_swell_m",
+                                      "isostasy.margin_tilt_m",
+                                      "isostasy.margin_tilt_km",
+                                      "isostasy.relict_km",
+                                      "isostasy.arc_km",
+                                      "isostasy.heat_m",
+                                      "isostasy.shelf_depth_m",
+                                      "isostasy.trench_depth_m",
+                                      "isostasy.pelagic_rate_m_myr",
+                                      "isostasy.apron_length_km",
+                                      "isostasy.water_density_kg_m3",
+                                      "isostasy.seafloor_roughness_m",
+                                      "erosion.erodibility_factor",
+                                      "erosion.area_exponent",
+                                      "erosion.slope_exponent",
+                                      "erosion.convergent_uplift_mm_yr",
+                                      "erosion.uplift_mm_yr",
+                                      "erosion.rebound_fraction",
+                                      "erosion.rebound_time_yr",
+                                      "erosion.warping_m",
+                                      "erosion.subgrid_exponent",
+                                      "planet.ocean_fraction"};
+const std::vector<std::string> kDifferenced{
+    "isostasy.deformation_smoothing_km", "isostasy.elastic_thickness_km",
+    "isostasy.mantle_density_kg_m3",     "erosion.rebound_length_km",
+    "erosion.diffusivity_m2_yr",         "erosion.time_step_yr"};
 
 /// The planet of seed 1, routed.
 struct Planet1 {
@@ -131,11 +147,12 @@ TEST(Derivatives, ValuesAreThoseOfARun) {
   std::vector<float> z;
   p.run.pipeline.run(state, context, 0, p.run.pipeline.find("erosion"),
                      {.before = [](int) {},
-                      .after = [&](int, const State& after, const Context&) {
-                        if (!after.has(field::elevation)) return;
-                        const auto now = after.read(field::elevation);
-                        z.assign(now.begin(), now.end());
-                      }});
+                      .after =
+                          [&](int, const State& after, const Context&) {
+                            if (!after.has(field::elevation)) return;
+                            const auto now = after.read(field::elevation);
+                            z.assign(now.begin(), now.end());
+                          }});
   double sum = 0.0;
   int others = 0;
   for (std::size_t c = 0; c < z.size(); ++c) {

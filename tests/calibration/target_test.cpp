@@ -54,8 +54,8 @@ TEST_F(TargetFile, DeviationsMayStandBesideQuantiles) {
 }
 
 TEST_F(TargetFile, BinsAreAHistogram) {
-  const Target target = read(
-      "lower_m,upper_m,fraction\n-5000,-3000,0.5\n-3000,0,0\n0,1000,0.3\n1000,2000,0.2\n");
+  const Target target =
+      read("lower_m,upper_m,fraction\n-5000,-3000,0.5\n-3000,0,0\n0,1000,0.3\n1000,2000,0.2\n");
   double mean = 0.0;
   for (const double bin : target.fine_bin_m) mean += bin / kFineBins;
   EXPECT_NEAR(mean, 0.5 * -4000 + 0.3 * 500 + 0.2 * 1500, 1.0);
