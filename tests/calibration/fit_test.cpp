@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include <cstdlib>
+
 #include "calibration/uncertainty.hpp"
 #include "geo/core/random.hpp"
 #include "small_planets.hpp"
@@ -18,13 +20,14 @@ const std::vector<std::pair<std::string, double>> kTruth{
 
 class Twin {
  public:
-  explicit Twin(std::vector<std::int64_t> of_seeds = {1, 2}) : seeds(std::move(of_seeds)) {
+  explicit Twin(std::vector<std::int64_t> of_seeds = {1, 2}, int of_rows = 48)
+      : seeds(std::move(of_seeds)), rows(of_rows) {
     run.settings.free.clear();
     for (const auto& [name, value] : kTruth) {
       run.settings.free += (run.settings.free.empty() ? "" : ", ") + name;
       set(name, value);
     }
-    target = own_target(run, seeds);
+    target = own_target(run, seeds, rows);
   }
   void set(const std::string& name, double value) {
     find_parameter(run.parameters, name)->set(value);
@@ -39,7 +42,7 @@ class Twin {
       set(kTruth[i].first, kTruth[i].second * factor[i]);
     }
     Problem problem(run.parameters, run.settings, aim);
-    Objective objective(problem, run.parameters, seeds, 96, 48);
+    Objective objective(problem, run.parameters, seeds, 2 * rows, rows);
     Answer answer;
     answer.state.x = problem.present();
     fit(objective, problem, {40, 1e-4}, answer.state, [](const auto&, const auto&) {});
@@ -60,32 +63,36 @@ class Twin {
 
   SmallRun run;
   std::vector<std::int64_t> seeds;
+  int rows;
   Target target;
 };
 
-TEST(Twin, SixParametersComeBackFromFiveRandomStarts) {
-  Twin twin;
+class RandomStart : public testing::TestWithParam<std::uint64_t> {};
+
+TEST_P(RandomStart, SixParametersComeBackWithinAPercent) {
+  Twin twin({1, 2, 3, 4}, 64);
   const RandomStream random(3, "test.twin");
-  for (std::uint64_t start = 0; start < 5; ++start) {
-    std::vector<double> factor;
-    for (std::size_t i = 0; i < kTruth.size(); ++i) {
-      factor.push_back(std::exp(random.uniform(start, i, -0.4, 0.4)));
-    }
-    const auto answer = twin.fit_from(factor, twin.target, false);
-    EXPECT_TRUE(answer.state.converged) << "start " << start;
-    for (std::size_t i = 0; i < kTruth.size(); ++i) {
-      EXPECT_NEAR(answer.result.parameters[i].fitted / kTruth[i].second, 1.0, 0.01)
-          << kTruth[i].first << ", start " << start << ", cost " << answer.state.cost;
-    }
+  std::vector<double> factor;
+  for (std::size_t i = 0; i < kTruth.size(); ++i) {
+    factor.push_back(std::exp(random.uniform(GetParam(), i, -0.4, 0.4)));
+  }
+  const auto answer = twin.fit_from(factor, twin.target, false);
+  EXPECT_TRUE(answer.state.converged);
+  for (std::size_t i = 0; i < kTruth.size(); ++i) {
+    EXPECT_NEAR(answer.result.parameters[i].fitted / kTruth[i].second, 1.0, 0.01)
+        << kTruth[i].first << ", cost " << answer.state.cost;
   }
 }
+INSTANTIATE_TEST_SUITE_P(Twin, RandomStart, testing::Range<std::uint64_t>(0, 5));
 
 TEST(Twin, StandardErrorsCoverTheTruthUnderNoise) {
   Twin twin({1});
-  constexpr int kRuns = 50;
+  // A few here; TERRANE_TWIN_RUNS=50 for the whole experiment.
+  const char* const asked = std::getenv("TERRANE_TWIN_RUNS");
+  const int runs = asked != nullptr ? std::atoi(asked) : 8;
   const RandomStream random(5, "test.noise");
   int covered = 0;
-  for (int run = 0; run < kRuns; ++run) {
+  for (int run = 0; run < runs; ++run) {
     Target noisy = twin.target;
     for (std::size_t k = 0; k < noisy.share.size(); ++k) {
       noisy.elevation_m[k] += 10.0 * random.normal(std::uint64_t(run), k);
@@ -96,7 +103,7 @@ TEST(Twin, StandardErrorsCoverTheTruthUnderNoise) {
       covered += std::abs(parameter.fitted - kTruth[i].second) <= 2.0 * parameter.standard_error;
     }
   }
-  EXPECT_GE(covered, 0.9 * kRuns * double(kTruth.size()));
+  EXPECT_GE(covered, 0.9 * runs * double(kTruth.size()));
 }
 
 TEST(Fit, GivesTheSameBitsForAnyNumberOfThreads) {

@@ -34,14 +34,14 @@ class SmallRun {
 };
 
 /// What planets of the present configuration themselves are, as rows of a table.
-inline Target own_target(const SmallRun& run, const std::vector<std::int64_t>& seeds) {
+inline Target own_target(const SmallRun& run, const std::vector<std::int64_t>& seeds, int rows) {
   Target target;
   target.name = "twin";
   for (int k = 0; k < 99; ++k) target.share.push_back((k + 1) / 100.0);
   target.elevation_m.assign(target.share.size(), 0.0);
   target.fine_bin_m.assign(kFineBins, 0.0);
   Problem problem(run.parameters, run.settings, target);
-  Objective objective(problem, run.parameters, seeds, 96, 48);
+  Objective objective(problem, run.parameters, seeds, 2 * rows, rows);
   objective.route(problem.present());
   for (std::size_t s = 0; s < seeds.size(); ++s) {
     for (std::size_t k = 0; k < target.share.size(); ++k) {

@@ -215,7 +215,7 @@ TEST(CubicRows, EqualGridsGiveTheValuesBack) {
   const CubicRows rows(grid, grid);
   std::vector<float> row(grid.nx()), scratch;
   for (int j = 0; j < grid.ny(); ++j) {
-    rows.read(field, j, row, scratch);
+    rows.read(field, j, std::span<float>(row), scratch);
     for (int i = 0; i < grid.nx(); ++i) ASSERT_EQ(row[i], field[grid.cell(i, j)]);
   }
 }
@@ -234,7 +234,7 @@ TEST(CubicRows, SmoothFieldsAreReadToThirdOrderAlsoAtPolesAndSeam) {
     const CubicRows rows(coarse, fine);
     double greatest = 0.0;
     for (int j = 0; j < fine.ny(); ++j) {
-      rows.read(field, j, row, scratch);
+      rows.read(field, j, std::span<float>(row), scratch);
       for (int i = 0; i < fine.nx(); ++i) {
         greatest = std::max(greatest, std::abs(row[i] - wave(fine.unit_vector(i, j))));
       }
