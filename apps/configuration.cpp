@@ -6,6 +6,9 @@ Configuration::Configuration() : pipeline(geo::make_pipeline()) {
   for (auto declarations : {settings.parameters(), planet.parameters(), pipeline.parameters()}) {
     parameters_.insert(parameters_.end(), declarations.begin(), declarations.end());
   }
+  all_parameters_ = parameters_;
+  const auto own = calibration.parameters();
+  all_parameters_.insert(all_parameters_.end(), own.begin(), own.end());
 }
 
 std::vector<int> Configuration::stage_numbers() const {

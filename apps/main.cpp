@@ -93,6 +93,7 @@ void run_program(int argc, char** argv) {
   terrane::add_run_command(program, action);
   terrane::add_island_command(program, action);
   terrane::add_score_command(program, action);
+  terrane::add_calibrate_command(program, action);
   terrane::add_maps_command(program, action);
   terrane::add_params_command(program, action);
   terrane::add_fields_command(program, action);

@@ -157,7 +157,7 @@ void add_params_command(CLI::App& program, Action& action) {
       check_format(options->format);
       if (options->section == "event") return print_events(options->format);
       const Configuration configuration;
-      const Rows rows = chosen_rows(configuration.parameters(), options->section);
+      const Rows rows = chosen_rows(configuration.all_parameters(), options->section);
       if (options->format == "table") return print_table(rows);
       if (options->format == "json") {
         fmt::print("{}\n", to_json(rows).dump(2));

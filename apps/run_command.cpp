@@ -4,7 +4,6 @@
 
 #include <CLI/App.hpp>
 #include <CLI/Formatter.hpp>
-#include <charconv>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -19,6 +18,7 @@
 #include "log.hpp"
 #include "progress.hpp"
 #include "signals.hpp"
+#include "thread_count.hpp"
 
 namespace terrane {
 namespace {
@@ -52,7 +52,7 @@ void set_option(const Configuration& configuration, std::string_view option, std
 /// Defaults, then preset, then file, then the command line. A run that goes on in a folder starts
 /// from the configuration which that folder holds, unless another is given. Returns whether it did.
 bool configure(Configuration& configuration, const RunOptions& options) {
-  const auto& parameters = configuration.parameters();
+  const auto& parameters = configuration.all_parameters();
   auto& settings = configuration.settings;
   fs::path file = options.config;
   const fs::path kept = fs::path(options.folder) / "config.toml";
@@ -85,19 +85,6 @@ bool configure(Configuration& configuration, const RunOptions& options) {
   if (options.no_vtk) settings.vtk = false;
   if (options.no_maps) settings.maps = false;
   return takes_kept;
-}
-
-int thread_count(const std::string& text) {
-  if (text.empty()) return omp_get_max_threads();
-  constexpr int kMost = 1024;
-  int threads = 0;
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, threads);
-  if (error != std::errc() || stop != end || threads < 1 || threads > kMost) {
-    throw geo::ConfigurationError(
-        fmt::format("--threads {}: must be a whole number from 1 to {}", text, kMost));
-  }
-  return threads;
 }
 
 void print_prediction(const geo::io::RunSession& session, const RunOptions& options, int threads) {

@@ -57,7 +57,7 @@ void SteepestDescentAndAccumulation(benchmark::State& state) {  // on a surface 
   const Grid& grid = sphere();
   auto z = terrain(grid);
   const auto outlets = find_outlets(grid, z);
-  breach_sills(grid, route_water(grid, z, outlets).graph, z);
+  breach_sills<float>(grid, route_water(grid, z, outlets).graph, z);
   const auto areas = cell_areas(grid);
   for (auto _ : state) {
     FlowGraph graph;
@@ -89,7 +89,7 @@ void ErosionStep(benchmark::State& state) {
     const auto outlets = find_outlets(grid, z);
     const FlowGraph graph = route_water(grid, z, outlets).graph;
     graph.accumulate(area);
-    incise<float>(grid, graph, area, erodibility, {.dt_yr = 1e5, .sea_level_m = 0.0}, z);
+    incise<float, float>(grid, graph, area, erodibility, {.dt_yr = 1e5, .sea_level_m = 0.0}, z);
   }
   report(state, grid, 4 + 4 + 1 + 4 + 4 + 8 + 4);
 }

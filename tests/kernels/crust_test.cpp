@@ -65,7 +65,8 @@ TEST(OceanDepth, FarFromLandSedimentGivesEarthsMedians) {
       {{1, 2979}, {15, 3757}, {50, 4639}, {90, 4922}, {130, 4870}}};
   for (const auto& [age_myr, depth_m] : median) {
     const double floor =
-        ocean_depth_m(age_myr) - datum.rise_per_sediment() * deep_sediment_m({}, age_myr, 700.0);
+        ocean_depth_m(age_myr) -
+        datum.rise_per_sediment() * deep_sediment_m(DeepSediment{}, age_myr, 700.0);
     EXPECT_NEAR(floor, depth_m, 230.0) << age_myr << " Myr";
   }
 }
@@ -214,7 +215,7 @@ TEST(CubicRows, EqualGridsGiveTheValuesBack) {
   const CubicRows rows(grid, grid);
   std::vector<float> row(grid.nx()), scratch;
   for (int j = 0; j < grid.ny(); ++j) {
-    rows.read(field, j, row, scratch);
+    rows.read(field, j, std::span<float>(row), scratch);
     for (int i = 0; i < grid.nx(); ++i) ASSERT_EQ(row[i], field[grid.cell(i, j)]);
   }
 }
@@ -233,7 +234,7 @@ TEST(CubicRows, SmoothFieldsAreReadToThirdOrderAlsoAtPolesAndSeam) {
     const CubicRows rows(coarse, fine);
     double greatest = 0.0;
     for (int j = 0; j < fine.ny(); ++j) {
-      rows.read(field, j, row, scratch);
+      rows.read(field, j, std::span<float>(row), scratch);
       for (int i = 0; i < fine.nx(); ++i) {
         greatest = std::max(greatest, std::abs(row[i] - wave(fine.unit_vector(i, j))));
       }

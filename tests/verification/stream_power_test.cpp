@@ -58,7 +58,7 @@ class River {
   void step(const StreamPower& law, float erodibility, double uplift_m_yr) {
     for (int c = 0; c < cells_; ++c) height(c) += uplift_m_yr * law.dt_yr;
     const std::vector<float> single{erodibility};
-    incise<double>(grid_, graph, area_m2, single, law, z);
+    incise<float, double>(grid_, graph, area_m2, single, law, z);
   }
   /// Steps until nothing moves any more.
   void settle(const StreamPower& law, float erodibility, double uplift_m_yr) {
@@ -214,7 +214,8 @@ TEST(StreamPower, NeverClimbsNorDigsPits) {
       for (Index c = 0; c < grid.size(); ++c) area[c] = grid.area_m2(grid.row(c));
       graph.accumulate(area);
       const std::vector<float> single{1e-5F};
-      incise<float>(grid, graph, area, single, {.slope_exponent = 1.3, .sea_level_m = 0.0}, z);
+      incise<float, float>(grid, graph, area, single, {.slope_exponent = 1.3, .sea_level_m = 0.0},
+                           z);
       for (Index c = 0; c < grid.size(); ++c) {
         const Index to = graph.receiver[c];
         ASSERT_LE(z[c], before[c]);
@@ -234,7 +235,7 @@ TEST(StreamPower, BreachingLeavesNoClimbOnTheWayToTheSea) {
     auto z = test::random_terrain(grid, 11);
     const auto before = z;
     const FlowGraph graph = route_water(grid, z, find_outlets(grid, z)).graph;
-    const double removed = breach_sills(grid, graph, z);
+    const double removed = breach_sills<float>(grid, graph, z);
     double lowered = 0.0;
     for (Index c = 0; c < grid.size(); ++c) {
       lowered += grid.area_m2(grid.row(c)) * (static_cast<double>(before[c]) - z[c]);

@@ -158,6 +158,13 @@ Parameter text(std::string_view name, std::string& member, std::string_view doc,
   return choice(name, member, {}, doc, source);
 }
 
+Parameter list(std::string_view name, std::string& member, std::string_view doc,
+               std::string_view source) {
+  Parameter parameter = text(name, member, doc, source);
+  parameter.takes_list = true;
+  return parameter;
+}
+
 std::string to_toml(const ParameterValue& value) {
   struct Writer {
     std::string operator()(double number) const {

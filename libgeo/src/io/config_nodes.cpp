@@ -22,6 +22,25 @@ std::string_view kind_of(const toml::node& node) {
   return "a date or time";
 }
 
+/// A list of words as one text, commas between.
+std::optional<ParameterValue> list_value(const toml::node& node) {
+  const auto* list = node.as_array();
+  if (list == nullptr) return std::nullopt;
+  std::string joined;
+  for (const toml::node& entry : *list) {
+    std::string word;
+    if (const auto* words = entry.as_string()) {
+      word = words->get();
+    } else if (const auto* whole = entry.as_integer()) {
+      word = std::to_string(whole->get());
+    } else {
+      return std::nullopt;
+    }
+    joined += (joined.empty() ? "" : ", ") + word;
+  }
+  return ParameterValue(joined);
+}
+
 }  // namespace
 
 std::string_view section_of(std::string_view name) { return name.substr(0, name.find('.')); }
@@ -66,7 +85,8 @@ void apply_node(const toml::node& node, const std::string& name, const std::stri
                 std::span<const Parameter> parameters) {
   const Parameter* parameter = find_parameter(parameters, name);
   if (parameter == nullptr) refuse_unknown(where, name, parameters);
-  const auto value = plain_value(node);
+  auto value = plain_value(node);
+  if (!value && parameter->takes_list) value = list_value(node);
   if (!value) {
     throw ConfigurationError(fmt::format("{}{}: is {}, must be a plain {} value", where, name,
                                          kind_of(node), parameter->type_name()));

@@ -1,4 +1,4 @@
-#include "embedded_data.hpp"
+#include "geo/io/embedded_data.hpp"
 
 #include <algorithm>
 #include <charconv>

@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <numbers>
 
-#include "embedded_data.hpp"
 #include "geo/core/error.hpp"
 #include "geo/io/config.hpp"
+#include "geo/io/embedded_data.hpp"
 
 namespace geo::io {
 namespace {

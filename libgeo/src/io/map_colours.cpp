@@ -3,8 +3,8 @@
 #include <charconv>
 #include <cmath>
 
-#include "embedded_data.hpp"
 #include "geo/core/error.hpp"
+#include "geo/io/embedded_data.hpp"
 
 namespace geo::io {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "embedded_data.hpp"
+#include "geo/io/embedded_data.hpp"
 #include "geo/io/maps.hpp"
 #include "map_canvas.hpp"
 

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <vector>
 
-#include "embedded_data.hpp"
 #include "geo/core/error.hpp"
 #include "geo/io/config.hpp"
+#include "geo/io/embedded_data.hpp"
 
 namespace geo::io {
 

@@ -6,8 +6,8 @@
 #include <pugixml.hpp>
 #include <sstream>
 
-#include "embedded_data.hpp"
 #include "geo/io/atomic_file.hpp"
+#include "geo/io/embedded_data.hpp"
 #include "report_scorecard.hpp"
 
 namespace geo::io {

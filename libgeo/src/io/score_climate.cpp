@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "embedded_data.hpp"
+#include "geo/io/embedded_data.hpp"
 #include "geo/kernels/hypsometry_figures.hpp"
 #include "geo/kernels/quantiles.hpp"
 #include "geo/kernels/zonal_means.hpp"

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "embedded_data.hpp"
 #include "geo/core/error.hpp"
+#include "geo/io/embedded_data.hpp"
 #include "score_figures.hpp"
 
 namespace geo::io {

@@ -162,10 +162,9 @@ ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int1
   return margins;
 }
 
-std::vector<float> propagated_deformation(const Grid& grid,
-                                          std::span<const std::int8_t> boundary_type,
-                                          std::span<const float> boundary_strength,
-                                          std::int8_t type, double length_km) {
+DeformationSources deformation_sources(const Grid& grid, std::span<const std::int8_t> boundary_type,
+                                       std::span<const float> boundary_strength, std::int8_t type,
+                                       double length_km) {
   Sources sources(grid);
   for (Index cell = 0; cell < grid.size(); ++cell) {
     if (boundary_type[cell] != type || boundary_strength[cell] <= 0.0F) continue;
@@ -173,13 +172,26 @@ std::vector<float> propagated_deformation(const Grid& grid,
     sources.add(grid, cell, -1e3 * length_km * std::log(boundary_strength[cell]));
   }
   sources.propagate(grid);
-  std::vector<float> deformation(grid.size(), 0.0F);
-  if (sources.position.empty()) return deformation;
+  DeformationSources found{std::vector<float>(grid.size(), 0.0F),
+                           std::vector<double>(grid.size(), 0.0)};
+  if (sources.position.empty()) return found;
 #pragma omp parallel for schedule(static)
   for (Index cell = 0; cell < grid.size(); ++cell) {
-    const float strength = boundary_strength[sources.cell[sources.nearest[cell]]];
-    deformation[cell] =
-        strength * static_cast<float>(std::exp(-sources.distance_km(grid, cell) / length_km));
+    found.strength[cell] = boundary_strength[sources.cell[sources.nearest[cell]]];
+    found.distance_km[cell] = sources.distance_km(grid, cell);
+  }
+  return found;
+}
+
+std::vector<float> propagated_deformation(const Grid& grid,
+                                          std::span<const std::int8_t> boundary_type,
+                                          std::span<const float> boundary_strength,
+                                          std::int8_t type, double length_km) {
+  const DeformationSources sources =
+      deformation_sources(grid, boundary_type, boundary_strength, type, length_km);
+  std::vector<float> deformation(sources.strength);
+  for (std::size_t cell = 0; cell < deformation.size(); ++cell) {
+    deformation[cell] *= static_cast<float>(std::exp(-sources.distance_km[cell] / length_km));
   }
   return deformation;
 }

@@ -24,9 +24,10 @@ constexpr double kGamma = 1.0 - 1.0 / std::numbers::sqrt2;
 constexpr double kWeak = 0.01;
 
 // Rows and columns of one diffusion problem, cut into directions.
+template <class Real>
 class SplitDiffusion {
  public:
-  SplitDiffusion(const Grid& grid, std::span<float> field, double diffusivity_m2_yr,
+  SplitDiffusion(const Grid& grid, std::span<Real> field, double diffusivity_m2_yr,
                  const DiffusionOptions& options)
       : grid_(grid), field_(field), diffusivity_m2_yr_(diffusivity_m2_yr), options_(options) {}
 
@@ -46,7 +47,7 @@ class SplitDiffusion {
           continue;
         }
         couple_rows(system, row, strength);
-        std::array<float*, kRows> rows;
+        std::array<Real*, kRows> rows;
         for (int k = 0; k < kRows; ++k) {
           rows[k] = &field_[std::size_t(std::min(row + k, ny - 1)) * nx];
         }
@@ -56,7 +57,7 @@ class SplitDiffusion {
         step(system, value, stage);
         // Beyond the last row it is written again, alike.
         for (int i = 0; i < nx; ++i) {
-          for (int k = 0; k < kRows; ++k) rows[k][i] = static_cast<float>(value[i * kRows + k]);
+          for (int k = 0; k < kRows; ++k) rows[k][i] = static_cast<Real>(value[i * kRows + k]);
         }
       }
     }
@@ -78,13 +79,13 @@ class SplitDiffusion {
         const int column = b * kColumns, width = std::min(kColumns, nx - column);
         if (has_marks()) couple_columns(system, column, strength);
         for (int j = 0; j < ny; ++j) {
-          const float* from = &field_[std::size_t(j) * nx + column];
+          const Real* from = &field_[std::size_t(j) * nx + column];
           for (int k = 0; k < width; ++k) value[j * kColumns + k] = from[k];
         }
         step(system, value, stage);
         for (int j = 0; j < ny; ++j) {
-          float* to = &field_[std::size_t(j) * nx + column];
-          for (int k = 0; k < width; ++k) to[k] = static_cast<float>(value[j * kColumns + k]);
+          Real* to = &field_[std::size_t(j) * nx + column];
+          for (int k = 0; k < width; ++k) to[k] = static_cast<Real>(value[j * kColumns + k]);
         }
       }
     }
@@ -144,14 +145,14 @@ class SplitDiffusion {
     const bool periodic = grid_.topology() == Topology::sphere;
     const double coupling = coupling_east(row, strength);
     const std::size_t begin = std::size_t(row) * nx;
-    float* z = &field_[begin];
+    Real* z = &field_[begin];
     const double first = z[0];
     double west = periodic ? z[nx - 1] : z[0];
     for (int i = 0; i < nx; ++i) {
       const double here = z[i];
       const double east = i + 1 < nx ? z[i + 1] : (periodic ? first : here);
       if (!is_fixed(begin + i))
-        z[i] = static_cast<float>(here + coupling * (west + east - 2.0 * here));
+        z[i] = static_cast<Real>(here + coupling * (west + east - 2.0 * here));
       west = here;
     }
   }
@@ -170,7 +171,7 @@ class SplitDiffusion {
         for (int k = 0; k < width; ++k) {
           const double here = field_[begin + k], north = field_[above + k];
           const double change = down * (south[k] - here) + up * (north - here);
-          if (!is_fixed(begin + k)) field_[begin + k] = static_cast<float>(here + change);
+          if (!is_fixed(begin + k)) field_[begin + k] = static_cast<Real>(here + change);
           south[k] = here;
         }
       }
@@ -253,7 +254,7 @@ class SplitDiffusion {
   }
 
   const Grid& grid_;
-  std::span<float> field_;
+  std::span<Real> field_;
   double diffusivity_m2_yr_;
   const DiffusionOptions& options_;
 };
@@ -276,11 +277,11 @@ int choose_substeps(const Grid& grid, double variance_m2, bool waves_apart) {
   return static_cast<int>(std::clamp(std::ceil(spread_m / polar_radius_m), wanted, most));
 }
 
-void check(const Grid& grid, std::span<const float> field, double diffusivity_m2_yr, double dt_yr,
+void check(const Grid& grid, std::size_t field_size, double diffusivity_m2_yr, double dt_yr,
            const DiffusionOptions& options) {
   const auto cells = static_cast<std::size_t>(grid.size());
   const auto fits = [cells](std::size_t size) { return size == 0 || size == cells; };
-  if (field.size() != cells || !fits(options.fixed.size()) || !fits(options.excluded.size())) {
+  if (field_size != cells || !fits(options.fixed.size()) || !fits(options.excluded.size())) {
     throw InputError("diffusion: field and masks must have " + std::to_string(cells) + " cells");
   }
   const double product = diffusivity_m2_yr * dt_yr;
@@ -289,11 +290,10 @@ void check(const Grid& grid, std::span<const float> field, double diffusivity_m2
   }
 }
 
-}  // namespace
-
-void diffuse(const Grid& grid, std::span<float> field, double diffusivity_m2_yr, double dt_yr,
-             const DiffusionOptions& options) {
-  check(grid, field, diffusivity_m2_yr, dt_yr, options);
+template <class Real>
+void diffuse_in(const Grid& grid, std::span<Real> field, double diffusivity_m2_yr, double dt_yr,
+                const DiffusionOptions& options) {
+  check(grid, field.size(), diffusivity_m2_yr, dt_yr, options);
   if (diffusivity_m2_yr * dt_yr == 0.0) return;
   const bool waves_apart =
       grid.topology() == Topology::sphere && options.fixed.empty() && options.excluded.empty();
@@ -314,7 +314,7 @@ void diffuse(const Grid& grid, std::span<float> field, double diffusivity_m2_yr,
       }
     }
   }
-  SplitDiffusion diffusion(grid, field, diffusivity_m2_yr, options);
+  SplitDiffusion<Real> diffusion(grid, field, diffusivity_m2_yr, options);
   diffusion.solve_rows(0.5 * step_yr);
   for (int s = 0; s < steps; ++s) {
     diffusion.solve_columns(step_yr);
@@ -322,6 +322,17 @@ void diffuse(const Grid& grid, std::span<float> field, double diffusivity_m2_yr,
     diffusion.solve_rows(s + 1 < steps ? step_yr : 0.5 * step_yr);
   }
   if (waves) waves->return_to(field);
+}
+
+}  // namespace
+
+void diffuse(const Grid& grid, std::span<float> field, double diffusivity_m2_yr, double dt_yr,
+             const DiffusionOptions& options) {
+  diffuse_in(grid, field, diffusivity_m2_yr, dt_yr, options);
+}
+void diffuse(const Grid& grid, std::span<double> field, double diffusivity_m2_yr, double dt_yr,
+             const DiffusionOptions& options) {
+  diffuse_in(grid, field, diffusivity_m2_yr, dt_yr, options);
 }
 
 }  // namespace geo

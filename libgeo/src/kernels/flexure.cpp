@@ -35,10 +35,22 @@ std::vector<double> compensation_degrees(const ElasticPlate& plate, int degrees)
   return share;
 }
 
-void flex(const Grid& grid, std::span<float> deflection_m, const ElasticPlate& plate) {
+namespace {
+
+template <class Real>
+void flex_in(const Grid& grid, std::span<Real> deflection_m, const ElasticPlate& plate) {
   // All that a small grid can hold; on larger ones what bends, within the reach of the quadrature.
   const int degrees = std::min({grid.ny(), grid.nx() / 2, std::max(384, 2 * grid.ny() / 3)});
   filter_degrees(grid, deflection_m, compensation_degrees(plate, degrees));
+}
+
+}  // namespace
+
+void flex(const Grid& grid, std::span<float> deflection_m, const ElasticPlate& plate) {
+  flex_in(grid, deflection_m, plate);
+}
+void flex(const Grid& grid, std::span<double> deflection_m, const ElasticPlate& plate) {
+  flex_in(grid, deflection_m, plate);
 }
 
 }  // namespace geo

@@ -10,9 +10,11 @@
 #include "tridiagonal.hpp"
 
 namespace geo {
+namespace {
 
-void smooth(const Grid& grid, std::span<float> field, double length_m,
-            std::span<const std::uint8_t> mask) {
+template <class Real>
+void smooth_in(const Grid& grid, std::span<Real> field, double length_m,
+               std::span<const std::uint8_t> mask) {
   if (!(length_m >= 0.0 && std::isfinite(length_m))) {
     throw InputError("smoothing: length of " + std::to_string(length_m) +
                      " m must be finite and not negative");
@@ -23,6 +25,50 @@ void smooth(const Grid& grid, std::span<float> field, double length_m,
   for (std::size_t c = 0; c < mask.size(); ++c) excluded[c] = mask[c] == 0;
   options.excluded = excluded;
   diffuse(grid, field, 0.5 * length_m * length_m, 1.0, options);
+}
+
+template <class Real>
+void smooth_slivers_in(const Grid& grid, std::span<Real> field,
+                       std::span<const std::uint8_t> fixed) {
+  if (grid.topology() != Topology::sphere) return;
+  constexpr double kShare = 0.3;
+  const int nx = grid.nx();
+#pragma omp parallel
+  {
+    TridiagonalBlock<1> system(nx, /*periodic=*/true);
+    std::vector<double> value(nx);
+#pragma omp for schedule(dynamic, 8)
+    for (int j = 0; j < grid.ny(); ++j) {
+      const double width = grid.spacing_east_m(j), height = grid.face_east_m(j);
+      const double variance_m2 = kShare * (height * height - 4.0 * width * width);
+      if (variance_m2 <= 0.0) continue;
+      const double exchange = 0.5 * variance_m2 / (width * width);
+      const Index begin = grid.cell(0, j);
+      const auto wall = [&](int i) { return fixed[begin + i] != 0; };
+      for (int i = 0; i < nx; ++i) {
+        const int west = i > 0 ? i - 1 : nx - 1, east = i + 1 < nx ? i + 1 : 0;
+        *system.lower(i) = wall(i) || wall(west) ? 0.0 : exchange;
+        *system.upper(i) = wall(i) || wall(east) ? 0.0 : exchange;
+        value[i] = field[begin + i];
+      }
+      system.factorise();
+      system.solve(value.data());
+      for (int i = 0; i < nx; ++i) {
+        if (!wall(i)) field[begin + i] = static_cast<Real>(value[i]);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void smooth(const Grid& grid, std::span<float> field, double length_m,
+            std::span<const std::uint8_t> mask) {
+  smooth_in(grid, field, length_m, mask);
+}
+void smooth(const Grid& grid, std::span<double> field, double length_m,
+            std::span<const std::uint8_t> mask) {
+  smooth_in(grid, field, length_m, mask);
 }
 
 void smooth_broadly(const Grid& grid, std::span<float> field, double length_m) {
@@ -49,36 +95,16 @@ void smooth_broadly(const Grid& grid, std::span<float> field, double length_m) {
     }
   }
 }
+void smooth_broadly(const Grid& grid, std::span<double> field, double length_m) {
+  smooth(grid, field, length_m);
+}
 
 void smooth_slivers(const Grid& grid, std::span<float> field, std::span<const std::uint8_t> fixed) {
-  if (grid.topology() != Topology::sphere) return;
-  constexpr double kShare = 0.3;
-  const int nx = grid.nx();
-#pragma omp parallel
-  {
-    TridiagonalBlock<1> system(nx, /*periodic=*/true);
-    std::vector<double> value(nx);
-#pragma omp for schedule(dynamic, 8)
-    for (int j = 0; j < grid.ny(); ++j) {
-      const double width = grid.spacing_east_m(j), height = grid.face_east_m(j);
-      const double variance_m2 = kShare * (height * height - 4.0 * width * width);
-      if (variance_m2 <= 0.0) continue;
-      const double exchange = 0.5 * variance_m2 / (width * width);
-      const Index begin = grid.cell(0, j);
-      const auto wall = [&](int i) { return fixed[begin + i] != 0; };
-      for (int i = 0; i < nx; ++i) {
-        const int west = i > 0 ? i - 1 : nx - 1, east = i + 1 < nx ? i + 1 : 0;
-        *system.lower(i) = wall(i) || wall(west) ? 0.0 : exchange;
-        *system.upper(i) = wall(i) || wall(east) ? 0.0 : exchange;
-        value[i] = field[begin + i];
-      }
-      system.factorise();
-      system.solve(value.data());
-      for (int i = 0; i < nx; ++i) {
-        if (!wall(i)) field[begin + i] = static_cast<float>(value[i]);
-      }
-    }
-  }
+  smooth_slivers_in(grid, field, fixed);
+}
+void smooth_slivers(const Grid& grid, std::span<double> field,
+                    std::span<const std::uint8_t> fixed) {
+  smooth_slivers_in(grid, field, fixed);
 }
 
 }  // namespace geo

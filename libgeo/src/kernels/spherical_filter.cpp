@@ -160,9 +160,8 @@ void filter_order(int order, std::span<Complex> column, std::span<const double> 
   }
 }
 
-}  // namespace
-
-void filter_degrees(const Grid& grid, std::span<float> field, std::span<const double> gain) {
+template <class Real>
+void filter_degrees_in(const Grid& grid, std::span<Real> field, std::span<const double> gain) {
   const int nx = grid.nx(), ny = grid.ny(), orders = static_cast<int>(gain.size());
   if (grid.topology() != Topology::sphere) {
     throw InputError("spherical filter: the grid must be a whole sphere");
@@ -206,9 +205,18 @@ void filter_degrees(const Grid& grid, std::span<float> field, std::span<const do
         if (m > 0) row[nx - m] = std::conj(value);
       }
       fourier.transform(row, true);
-      for (int i = 0; i < nx; ++i) field[grid.cell(i, j)] = static_cast<float>(row[i].real());
+      for (int i = 0; i < nx; ++i) field[grid.cell(i, j)] = static_cast<Real>(row[i].real());
     }
   }
+}
+
+}  // namespace
+
+void filter_degrees(const Grid& grid, std::span<float> field, std::span<const double> gain) {
+  filter_degrees_in(grid, field, gain);
+}
+void filter_degrees(const Grid& grid, std::span<double> field, std::span<const double> gain) {
+  filter_degrees_in(grid, field, gain);
 }
 
 }  // namespace geo

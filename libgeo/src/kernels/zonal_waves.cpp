@@ -19,11 +19,12 @@ ZonalWaves::ZonalWaves(const Grid& grid)
   }
 }
 
-void ZonalWaves::take_from(std::span<float> field) {
+template <class Real>
+void ZonalWaves::take_from(std::span<Real> field) {
   const int nx = grid_.nx();
 #pragma omp parallel for schedule(static) if (grid_.size() > 16384)
   for (int j = 0; j < grid_.ny(); ++j) {
-    float* row = &field[std::size_t(j) * nx];
+    Real* row = &field[std::size_t(j) * nx];
     double sum[kSeries] = {};
     for (int i = 0; i < nx; ++i) {
       for (int s = 0; s < kSeries; ++s) sum[s] += row[i] * basis_[std::size_t(s) * nx + i];
@@ -37,7 +38,7 @@ void ZonalWaves::take_from(std::span<float> field) {
     for (int i = 0; i < nx; ++i) {
       double wave = 0.0;
       for (int s = 0; s < kSeries; ++s) wave += amplitude[s] * basis_[std::size_t(s) * nx + i];
-      row[i] = static_cast<float>(row[i] - wave);
+      row[i] = static_cast<Real>(row[i] - wave);
     }
   }
 }
@@ -78,18 +79,24 @@ void ZonalWaves::solve_second_order(double strength_m2) {
   }
 }
 
-void ZonalWaves::return_to(std::span<float> field) const {
+template <class Real>
+void ZonalWaves::return_to(std::span<Real> field) const {
   const int nx = grid_.nx();
 #pragma omp parallel for schedule(static) if (grid_.size() > 16384)
   for (int j = 0; j < grid_.ny(); ++j) {
-    float* row = &field[std::size_t(j) * nx];
+    Real* row = &field[std::size_t(j) * nx];
     const double* amplitude = &amplitude_[std::size_t(j) * kSeries];
     for (int i = 0; i < nx; ++i) {
       double wave = 0.0;
       for (int s = 0; s < kSeries; ++s) wave += amplitude[s] * basis_[std::size_t(s) * nx + i];
-      row[i] = static_cast<float>(row[i] + wave);
+      row[i] = static_cast<Real>(row[i] + wave);
     }
   }
 }
+
+template void ZonalWaves::take_from<float>(std::span<float>);
+template void ZonalWaves::take_from<double>(std::span<double>);
+template void ZonalWaves::return_to<float>(std::span<float>) const;
+template void ZonalWaves::return_to<double>(std::span<double>) const;
 
 }  // namespace geo

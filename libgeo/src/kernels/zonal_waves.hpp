@@ -17,13 +17,15 @@ class ZonalWaves {
   explicit ZonalWaves(const Grid& grid);
 
   /// Moves the waves from the field into this object.
-  void take_from(std::span<float> field);
+  template <class Real>
+  void take_from(std::span<Real> field);
   /// One implicit solve of strength κ dt (m2): amplitudes a become (1 − κ dt ∇²)^-1 a.
   void solve(double strength_m2);
   /// Applies the solve twice and combines: (1 + √2) second − √2 first.
   void solve_second_order(double strength_m2);
   /// Adds the waves to the field.
-  void return_to(std::span<float> field) const;
+  template <class Real>
+  void return_to(std::span<Real> field) const;
 
  private:
   static constexpr int kWaves = 3;

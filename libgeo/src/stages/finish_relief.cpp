@@ -30,44 +30,6 @@ std::vector<std::uint8_t> land_of(std::span<const float> elevation_m) {
 
 }  // namespace
 
-bool ReliefFinish::inject_noise(std::span<float> elevation_m) const {
-  if (p_.noise_injection_m <= 0.0) return false;
-  constexpr double kFrequency = 48.0;
-  constexpr float kLowest_m = 0.5F;
-  const Noise noise(context_.seed, "erosion.injected");
-#pragma omp parallel for schedule(dynamic, 4)
-  for (int j = 0; j < grid_.ny(); ++j) {
-    for (int i = 0; i < grid_.nx(); ++i) {
-      float& height = elevation_m[grid_.cell(i, j)];
-      if (height < 0.0F) continue;
-      const float bump = octave(noise, grid_.unit_vector(i, j), kFrequency);
-      height = std::max(height + static_cast<float>(p_.noise_injection_m) * bump, kLowest_m);
-    }
-  }
-  return true;
-}
-
-bool ReliefFinish::warp(std::span<float> elevation_m) const {
-  if (p_.warping_m <= 0.0 || p_.steps == 0) return false;
-  // Shores keep their place: the warping sets in with height.
-  constexpr double kDeviation = 0.19;  // of the fbm below
-  constexpr float kFull_m = 150.0F;
-  const Noise noise(context_.seed, "erosion.warping");
-  const double frequency = 1e-3 * grid_.figure().radius_m / p_.warping_km;
-#pragma omp parallel for schedule(dynamic, 4)
-  for (int j = 0; j < grid_.ny(); ++j) {
-    for (int i = 0; i < grid_.nx(); ++i) {
-      float& height = elevation_m[grid_.cell(i, j)];
-      if (height <= 0.0F) continue;
-      const float bend = static_cast<float>(p_.warping_m / kDeviation) *
-                         noise.fbm(grid_.unit_vector(i, j), frequency, 3, 0.5);
-      const float part = std::min(height / kFull_m, 1.0F);
-      height = std::max(height + part * bend, 0.2F * height);
-    }
-  }
-  return true;
-}
-
 bool ReliefFinish::reshape(std::span<float> elevation_m) const {
   const bool reshapes =
       p_.land_smoothing_km > 0.0 || p_.hypsometry != "none" || p_.detail_noise > 0.0;

@@ -7,17 +7,13 @@
 
 namespace geo {
 
-/// What happens to a relief after rivers have worked on it, where it is asked for: noise that
-/// breaks the coherence of channels (blueprint 4.5a) before `relax` is called (4.6), smoothing of
-/// land, hypsometry, detail noise (4.9a). The sea then takes its level again if any of it moved the
+/// What happens to a relief in the end, where it is asked for: smoothing of land, hypsometry,
+/// detail noise (blueprint 4.6 to 4.9a). The sea then takes its level again if any of it moved the
 /// ground. Returns whether it did.
 class ReliefFinish {
  public:
   ReliefFinish(const ErosionParameters& parameters, const Grid& grid, const Context& context)
       : p_(parameters), grid_(grid), context_(context) {}
-  [[nodiscard]] bool inject_noise(std::span<float> elevation_m) const;
-  /// The latest warping of the ground, which rivers have not yet cut through.
-  [[nodiscard]] bool warp(std::span<float> elevation_m) const;
   [[nodiscard]] bool reshape(std::span<float> elevation_m) const;
 
  private:

@@ -202,7 +202,7 @@ IslandErosion wear_island(const PlanetCells& cells, const IslandParameters& p,
     std::fill(area.begin(), area.end(), fine.area_m2(0));
     for (std::size_t c = 0; c < size; ++c) area[c] += ground.inflow_area_m2[c];
     graph.accumulate(area);
-    incise<float>(fine, graph, area, ground.erodibility, power, elevation_m);
+    incise<float, float>(fine, graph, area, ground.erodibility, power, elevation_m);
     // Hillslopes end at the shore, whatever the depth beyond.
     std::transform(elevation_m.begin(), elevation_m.end(), surface.begin(),
                    [](float z) { return std::max(z, 0.0F); });

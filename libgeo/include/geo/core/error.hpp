@@ -11,6 +11,7 @@ enum class ErrorKind : int {
   configuration = 2,  ///< wrong command line or configuration
   input = 3,          ///< unusable input data
   io = 4,             ///< could not read or write
+  unreached = 5,      ///< a calibration did not converge, or not near its target
   interrupted = 130,  ///< stopped by SIGINT or SIGTERM
 };
 

@@ -24,6 +24,7 @@ struct Parameter {
   std::vector<std::string_view> choices;  ///< allowed words of a string parameter; empty: any
   std::variant<double*, std::int64_t*, bool*, std::string*> storage;
   ParameterValue default_value;
+  bool takes_list = false;  ///< a text of entries with commas between, in TOML also an array
 
   [[nodiscard]] ParameterValue value() const;
   /// Checks type and range (NaN-safe) and stores. An integer is accepted where a real number is
@@ -47,6 +48,9 @@ Parameter flag(std::string_view name, bool& member, std::string_view doc, std::s
 Parameter choice(std::string_view name, std::string& member, std::vector<std::string_view> choices,
                  std::string_view doc, std::string_view source);
 Parameter text(std::string_view name, std::string& member, std::string_view doc,
+               std::string_view source);
+/// Entries with commas between; in TOML an array of them.
+Parameter list(std::string_view name, std::string& member, std::string_view doc,
                std::string_view source);
 
 /// A value as TOML writes it; real numbers keep every bit.

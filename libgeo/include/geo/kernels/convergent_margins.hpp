@@ -20,7 +20,8 @@ namespace geo {
 [[nodiscard]] double himalayan_thickening(double across_km, double strength);
 /// A volcanic arc above ocean that goes below ocean.
 [[nodiscard]] double island_arc(double across_km, double strength);
-/// Trench and outer rise, m, negative down.
+/// Trench and outer rise, m, negative down; kDeepestTrench_m at full strength.
+inline constexpr double kDeepestTrench_m = 3000.0;
 [[nodiscard]] double trench_m(double across_km, double strength);
 
 /// What meets at a convergent boundary.
@@ -43,6 +44,16 @@ ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int1
                                      std::span<const float> continental_fraction,
                                      std::span<const float> age_myr,
                                      std::span<const float> speed_mm_yr);
+
+/// The boundary of one type that deforms each cell most, where deformation dies away as
+/// strength exp(-distance / length).
+struct DeformationSources {
+  std::vector<float> strength;  ///< 0 where there is none at all
+  std::vector<double> distance_km;
+};
+DeformationSources deformation_sources(const Grid& grid, std::span<const std::int8_t> boundary_type,
+                                       std::span<const float> boundary_strength, std::int8_t type,
+                                       double length_km);
 
 /// Deformation that boundaries of one type spread around them (England & McKenzie 1982): the
 /// largest over all of strength exp(-distance / length). Sphere grids; linear cost.

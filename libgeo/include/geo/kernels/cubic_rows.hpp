@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "geo/core/grid.hpp"
@@ -15,8 +17,9 @@ class CubicRows {
  public:
   CubicRows(const Grid& from, const Grid& to);
   /// Values of `field` (one per cell of `from`) along row `row` of `to`. `scratch` is resized.
-  void read(std::span<const float> field, int row, std::span<float> out,
-            std::vector<float>& scratch) const;
+  /// V may carry derivatives (core/numeric.hpp).
+  template <class V>
+  void read(const std::vector<V>& field, int row, std::span<V> out, std::vector<V>& scratch) const;
 
  private:
   struct Stencil {
@@ -27,5 +30,35 @@ class CubicRows {
   int nx_, ny_;
   std::vector<Stencil> columns_, rows_;
 };
+
+template <class V>
+void CubicRows::read(const std::vector<V>& field, int row, std::span<V> out,
+                     std::vector<V>& scratch) const {
+  using Weight = std::conditional_t<std::is_same_v<V, float>, float, double>;
+  constexpr int kMargin = 2;
+  scratch.assign(nx_ + 2 * kMargin, V(0.0F));
+  const Stencil& meridian = rows_[row];
+  for (int k = 0; k < 4; ++k) {
+    if (meridian.weight[k] == 0.0F) continue;
+    int j = meridian.first + k, shift = 0;
+    if (j < 0) j = -1 - j, shift = nx_ / 2;
+    if (j >= ny_) j = 2 * ny_ - 1 - j, shift = nx_ / 2;
+    const V* values = field.data() + static_cast<std::size_t>(j) * nx_;
+    V* to = scratch.data() + kMargin;
+    for (int i = 0; i < nx_ - shift; ++i) to[i] += Weight(meridian.weight[k]) * values[i + shift];
+    for (int i = nx_ - shift; i < nx_; ++i)
+      to[i] += Weight(meridian.weight[k]) * values[i + shift - nx_];
+  }
+  for (int i = 0; i < kMargin; ++i) {
+    scratch[i] = scratch[nx_ + i];
+    scratch[nx_ + kMargin + i] = scratch[kMargin + i];
+  }
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const Stencil& s = columns_[i];
+    const V* v = scratch.data() + kMargin + s.first;
+    out[i] = Weight(s.weight[0]) * v[0] + Weight(s.weight[1]) * v[1] + Weight(s.weight[2]) * v[2] +
+             Weight(s.weight[3]) * v[3];
+  }
+}
 
 }  // namespace geo

@@ -47,5 +47,7 @@ struct DiffusionOptions {
 /// Throws InputError if shapes do not fit the grid or if κ or dt are negative or not finite.
 void diffuse(const Grid& grid, std::span<float> field, double diffusivity_m2_yr, double dt_yr,
              const DiffusionOptions& options = {});
+void diffuse(const Grid& grid, std::span<double> field, double diffusivity_m2_yr, double dt_yr,
+             const DiffusionOptions& options = {});
 
 }  // namespace geo

@@ -36,5 +36,6 @@ std::vector<double> compensation_degrees(const ElasticPlate& plate, int degrees)
 /// is more, as far as the grid holds them. What is finer does not bend the plate: an Earth's of 20
 /// km under dry land is bent by 4 % of local balance at degree 384.
 void flex(const Grid& grid, std::span<float> deflection_m, const ElasticPlate& plate);
+void flex(const Grid& grid, std::span<double> deflection_m, const ElasticPlate& plate);
 
 }  // namespace geo

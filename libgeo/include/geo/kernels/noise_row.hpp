@@ -17,6 +17,7 @@ class NoiseRow {
   /// Chooses the columns of `row` for which `wanted(column)` is true.
   template <class Wanted>
   void choose(int row, Wanted&& wanted) {
+    row_ = row;
     columns_.clear();
     positions_.clear();
     for (int i = 0; i < grid_.nx(); ++i) {
@@ -35,8 +36,12 @@ class NoiseRow {
     for (std::size_t k = 0; k < columns_.size(); ++k) line[columns_[k]] = values_[k];
   }
 
+  /// The westernmost cell of the chosen row.
+  [[nodiscard]] Index first_cell() const { return grid_.cell(0, row_); }
+
  private:
   const Grid& grid_;
+  int row_ = 0;
   std::vector<int> columns_;
   std::vector<std::array<double, 3>> positions_;
   std::vector<float> values_;

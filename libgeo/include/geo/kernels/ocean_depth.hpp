@@ -28,21 +28,25 @@ inline double ocean_heat_flow_mw_m2(double age_myr) {
 /// Sediment on the deep floor, m: the rain of plankton and dust, first filling the hollows of the
 /// hills within a few Myr, then piling up, and the apron of what rivers bring, which thins away
 /// from the foot of the continent.
-struct DeepSediment {
-  double early_m = 250.0;
+template <class T>
+struct BasicDeepSediment {
+  T early_m{250.0};
   double early_time_myr = 8.0;
-  double rate_m_myr = 4.5;
-  double apron_m = 3000.0;
-  double apron_length_km = 320.0;
+  T rate_m_myr{4.5};
+  T apron_m{3000.0};
+  T apron_length_km{320.0};
 };
+using DeepSediment = BasicDeepSediment<double>;
 
-inline double deep_sediment_m(const DeepSediment& s, double age_myr, double from_continent_km) {
+template <class T>
+[[nodiscard]] inline T deep_sediment_m(const BasicDeepSediment<T>& s, double age_myr,
+                                       double from_continent_km) {
+  using std::exp;
   const double t = age_myr > 0.0 ? age_myr : 0.0;
-  const double pelagic = s.early_m * -std::expm1(-t / s.early_time_myr) + s.rate_m_myr * t;
+  const T pelagic = s.early_m * -std::expm1(-t / s.early_time_myr) + s.rate_m_myr * t;
   // Young floor has not been near a continent for long.
   const double grown = -std::expm1(-t / 40.0);
-  return pelagic +
-         grown * s.apron_m * std::exp(-std::fmax(from_continent_km, 0.0) / s.apron_length_km);
+  return pelagic + grown * s.apron_m * exp(-std::fmax(from_continent_km, 0.0) / s.apron_length_km);
 }
 
 }  // namespace geo

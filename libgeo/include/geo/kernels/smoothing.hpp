@@ -19,6 +19,8 @@ namespace geo {
 /// if shapes do not fit the grid or if length_m is negative or not finite.
 void smooth(const Grid& grid, std::span<float> field, double length_m,
             std::span<const std::uint8_t> mask = {});
+void smooth(const Grid& grid, std::span<double> field, double length_m,
+            std::span<const std::uint8_t> mask = {});
 
 /// The same blur where the bell is many cells wide, at a cost that hardly depends on the cells:
 /// worked out on cells of a fifth of the length, with the spread that averaging onto them and
@@ -26,6 +28,8 @@ void smooth(const Grid& grid, std::span<float> field, double length_m,
 /// range of the field and within 2 % of the peak of the Gaussian answer; mass is kept within 0.3 %,
 /// at the poles too.
 void smooth_broadly(const Grid& grid, std::span<float> field, double length_m);
+/// In double precision: `smooth` itself, at its own cost.
+void smooth_broadly(const Grid& grid, std::span<double> field, double length_m);
 
 /// Blurs the cells of a sphere that are narrower than half their height along their parallels, to
 /// about the width that they have elsewhere: a variance of 0.3 (height^2 - 4 width^2). Where
@@ -33,5 +37,6 @@ void smooth_broadly(const Grid& grid, std::span<float> field, double length_m);
 /// Positive, and conservative along each row; cells with a non-zero byte in `fixed` keep their
 /// values and nothing crosses to them. Other grids stay as they are.
 void smooth_slivers(const Grid& grid, std::span<float> field, std::span<const std::uint8_t> fixed);
+void smooth_slivers(const Grid& grid, std::span<double> field, std::span<const std::uint8_t> fixed);
 
 }  // namespace geo

@@ -18,5 +18,6 @@ namespace geo {
 /// taken for that of a sphere. Throws InputError unless the grid is a sphere, field fits it and
 /// there are at most ny and nx / 2 gains.
 void filter_degrees(const Grid& grid, std::span<float> field, std::span<const double> gain);
+void filter_degrees(const Grid& grid, std::span<double> field, std::span<const double> gain);
 
 }  // namespace geo

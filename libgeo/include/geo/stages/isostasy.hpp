@@ -45,6 +45,7 @@ struct IsostasyParameters {
   double heat_m = 700.0;
   double thermal_coefficient = 0.02;
   double shelf_depth_m = 130.0;
+  double trench_depth_m = 3000.0;
   double seamount_m = 1800.0;
   double seafloor_roughness_m = 130.0;
   double land_roughness_m = 60.0;

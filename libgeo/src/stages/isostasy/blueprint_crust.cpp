@@ -26,7 +26,7 @@ void for_each_cell(const Grid& grid, AtCell&& at_cell) {
 }
 
 /// Coasts are smoothed, perturbed where they are neither land nor sea, and smoothed again.
-void perturb_coasts(const Crust& crust) {
+void perturb_coasts(const Crust<float>& crust) {
   smooth(crust.grid, crust.fraction, 1e3 * crust.parameters.coast_smoothing_km);
   const Noise coast(crust.seed, "isostasy.coast");
   for_each_cell(crust.grid, [&](Index cell, const std::array<double, 3>& at) {
@@ -40,7 +40,8 @@ void perturb_coasts(const Crust& crust) {
   smooth(crust.grid, crust.fraction, kThreePasses_m);
 }
 
-void read_deformation(const Crust& crust, const CoarseGrid& coarse, const Tectonics& t) {
+void read_deformation(const Crust<float>& crust, const CoarseGrid& coarse,
+                      const Tectonics<float>& t) {
   const Grid& grid = crust.grid;
   const CubicRows rows(coarse.grid(), grid);
 #pragma omp parallel
@@ -59,7 +60,7 @@ void read_deformation(const Crust& crust, const CoarseGrid& coarse, const Tecton
   }
 }
 
-void draw_thickness(const Crust& crust) {
+void draw_thickness(const Crust<float>& crust) {
   const IsostasyParameters& p = crust.parameters;
   const Noise broad(crust.seed, "isostasy.crust"), fine(crust.seed, "isostasy.crust_again");
   for_each_cell(crust.grid, [&](Index cell, const std::array<double, 3>& at) {
@@ -81,18 +82,18 @@ void draw_thickness(const Crust& crust) {
 
 /// Height of a column: dry as the blueprint has it (3.3), or on the ridge's datum with the sea's
 /// load and a lithosphere as cold as the floor is old.
-double balanced_m(const Crust& crust, bool is_dry, Index cell) {
+double balanced_m(const Crust<float>& crust, bool is_dry, Index cell) {
   const IsostasyParameters& p = crust.parameters;
   const double thickness_m = crust.thickness_m[cell], density = crust.density[cell];
   if (is_dry) return airy_freeboard_m(thickness_m, density, p.density.mantle);
   const double share = crust.fraction[cell];
   const double floor =
-      crust.datum.lithosphere_of_depth(ocean_depth_m(std::min(crust.age_myr[cell], 200.0F)));
+      crust.datum().lithosphere_of_depth(ocean_depth_m(std::min(crust.in.age_myr[cell], 200.0F)));
   const double lithosphere = share * p.lithosphere + (1.0 - share) * floor;
-  return crust.datum.loaded(crust.datum.dry_elevation_m(thickness_m, density, lithosphere));
+  return crust.datum().loaded(crust.datum().dry_elevation_m(thickness_m, density, lithosphere));
 }
 
-void draw_heights(const Crust& crust) {
+void draw_heights(const Crust<float>& crust) {
   const IsostasyParameters& p = crust.parameters;
   const bool is_dry = p.compensation == "airy-dry";
   const Noise overlay(crust.seed, "isostasy.overlay");
@@ -101,7 +102,7 @@ void draw_heights(const Crust& crust) {
     const double density =
         p.density.oceanic_crust + (p.density.continental_crust - p.density.oceanic_crust) * share;
     crust.density[cell] =
-        static_cast<float>(density * (1.0 - p.thermal_coefficient * crust.heat[cell]));
+        static_cast<float>(density * (1.0 - p.thermal_coefficient * crust.in.heat[cell]));
     const double noise = 60.0 * octave(overlay, at, 3) + 35.0 * octave(overlay, at, 6) +
                          18.0 * octave(overlay, at, 12) + 7.0 * octave(overlay, at, 24);
     crust.elevation_m[cell] =
@@ -111,7 +112,8 @@ void draw_heights(const Crust& crust) {
 
 }  // namespace
 
-void draw_blueprint_crust(const Crust& crust, const CoarseGrid& coarse, const Tectonics& t) {
+void draw_blueprint_crust(const Crust<float>& crust, const CoarseGrid& coarse,
+                          const Tectonics<float>& t) {
   perturb_coasts(crust);
   read_deformation(crust, coarse, t);
   draw_thickness(crust);

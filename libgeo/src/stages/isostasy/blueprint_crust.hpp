@@ -1,12 +1,14 @@
 #pragma once
 
-#include "coarse_grid.hpp"
-#include "crust.hpp"
-#include "tectonics.hpp"
+#include "geo/stages/isostasy/tectonics.hpp"
 
 namespace geo {
 
 /// crust = "blueprint": 3.1 to 3.6 of the Tectonica blueprint, with lengths in place of passes.
-void draw_blueprint_crust(const Crust& crust, const CoarseGrid& coarse, const Tectonics& tectonics);
+void draw_blueprint_crust(const Crust<float>& crust, const CoarseGrid& coarse,
+                          const Tectonics<float>& tectonics);
+
+/// Adds to the elevation what stiffness holds up of a blueprint crust's own weight.
+void stiffen_blueprint(const Crust<float>& crust, const CoarseGrid& coarse);
 
 }  // namespace geo

@@ -1,4 +1,4 @@
-#include "coarse_grid.hpp"
+#include "geo/stages/isostasy/coarse_grid.hpp"
 
 #include <algorithm>
 

@@ -1,57 +1,64 @@
 #include "geo/stages/isostasy.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "blueprint_crust.hpp"
-#include "coarse_grid.hpp"
-#include "crust.hpp"
 #include "geo/core/error.hpp"
-#include "geo/kernels/shapes.hpp"
+#include "geo/stages/isostasy/floating_crust.hpp"
+#include "geo/stages/isostasy/rocks.hpp"
 #include "geo/stages/sea_level.hpp"
-#include "margins_crust.hpp"
-#include "rocks.hpp"
-#include "stiffness.hpp"
-#include "tectonics.hpp"
 
 namespace geo {
 namespace {
 
-void float_crust(const Crust& crust, const Context& context) {
+std::span<const float> made_by_plates(const StageIo& io) {
+  const auto elevation_m = io.read_optional(field::crust_elevation);
+  const auto thickness_m = io.read_optional(field::crust_thickness);
+  if (elevation_m.empty() || thickness_m.empty()) {
+    throw InputError(
+        "isostasy: crust = \"simulated\" needs crust_elevation and crust_thickness, which "
+        "plates.model = \"sphere\" writes");
+  }
+  return elevation_m;
+}
+
+Crust<float> open_crust(const IsostasyParameters& parameters, StageIo& io, const Context& context) {
+  return {.parameters = parameters,
+          .planet = context.planet,
+          .seed = context.seed,
+          .grid = io.grid(),
+          .in = {.plate = io.read(field::plate_id),
+                 .boundary_type = io.read(field::boundary_type),
+                 .boundary_strength = io.read(field::boundary_strength),
+                 .age_myr = io.read(field::crust_age),
+                 .heat = io.read(field::heat_anomaly),
+                 .velocity_east = io.read(field::plate_velocity_east),
+                 .velocity_north = io.read(field::plate_velocity_north),
+                 .made_elevation_m = parameters.crust == "simulated" ? made_by_plates(io)
+                                                                     : std::span<const float>{}},
+          .fraction = io.write(field::continental_fraction),
+          .convergent = io.write(field::convergent_deformation),
+          .divergent = io.write(field::divergent_deformation),
+          .transform = io.write(field::transform_deformation),
+          .weakness = io.write(field::lithospheric_weakness),
+          .thickness_m = io.write(field::crust_thickness),
+          .density = io.write(field::crust_density),
+          .rock = io.write(field::rock_type),
+          .erodibility = io.write(field::erodibility),
+          .elevation_m = io.write(field::elevation)};
+}
+
+void float_crust(const Crust<float>& crust, const Context& context) {
   const CoarseGrid coarse(crust.grid);
-  Tectonics tectonics = deform(crust, coarse);
+  const TectonicFrame frame = tectonic_frame(crust.parameters, coarse, crust.in, crust.fraction);
   context.advance(0.3);
   if (crust.parameters.crust == "blueprint") {
-    draw_blueprint_crust(crust, coarse, tectonics);
+    draw_blueprint_crust(crust, coarse, deform(crust, coarse, frame));
     stiffen_blueprint(crust, coarse);
   } else {
-    cut_sections(crust, coarse, tectonics);
-    tectonics.flexure_m = flexure_of_belts_m(crust, coarse.grid(), tectonics);
-    context.advance(0.4);
-    draw_margins_crust(crust, coarse, tectonics);
+    float_margins_crust(crust, coarse, frame);
   }
 }
 
-/// The sea covers its share; sediment builds its margins up towards its level. Returns the level
-/// that became 0, m.
-double fill_sea(const Crust& crust) {
-  const IsostasyParameters& p = crust.parameters;
-  const auto level = static_cast<float>(sea_level_m(crust.grid, crust.elevation_m, crust.planet));
-  const bool shelves = p.crust != "blueprint" && p.shelf_depth_m > 0.0;
-#pragma omp parallel for schedule(static)
-  for (Index cell = 0; cell < crust.grid.size(); ++cell) {
-    float& z = crust.elevation_m[cell];
-    z -= level;
-    if (!shelves || z >= 0.0F) continue;
-    const double on_shelf = smooth_step(0.7, 0.95, crust.fraction[cell]);
-    if (on_shelf <= 0.0) continue;
-    const double filled = -p.shelf_depth_m * -std::expm1(z / p.shelf_depth_m);
-    z = std::min(-1e-3F, static_cast<float>(z + on_shelf * (filled - z)));
-  }
-  return level;
-}
-
-void report(const Crust& crust, Budget& budget) {
+void report(const Crust<float>& crust, Budget& budget) {
   const Grid& grid = crust.grid;
   double continental = 0.0, volume = 0.0, all_crust = 0.0;
   for (int j = 0; j < grid.ny(); ++j) {
@@ -94,10 +101,13 @@ class IsostasyStage final : public Stage {
     if (io.grid().topology() != Topology::sphere) {
       throw InputError("isostasy: the grid must be a whole sphere");
     }
-    const Crust crust(parameters_, io, context);
+    const Crust<float> crust = open_crust(parameters_, io, context);
     float_crust(crust, context);
     context.advance(0.8);
-    context.budget["sea_level_shift_m"] = fill_sea(crust);
+    const auto level_m =
+        static_cast<float>(sea_level_m(crust.grid, crust.elevation_m, crust.planet));
+    fill_sea(crust, level_m);
+    context.budget["sea_level_shift_m"] = level_m;
     classify_rock(crust);
     report(crust, context.budget);
   }

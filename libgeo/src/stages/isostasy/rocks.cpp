@@ -1,4 +1,4 @@
-#include "rocks.hpp"
+#include "geo/stages/isostasy/rocks.hpp"
 
 #include <algorithm>
 #include <array>
@@ -21,13 +21,13 @@ RockType cover(float strata) {
 }
 
 /// Whether nothing deformed the continent here.
-bool is_covered(const Crust& crust, Index cell) {
+bool is_covered(const Crust<float>& crust, Index cell) {
   return crust.fraction[cell] >= 0.5F && crust.convergent[cell] <= 0.15F &&
          crust.divergent[cell] <= 0.3F && crust.transform[cell] <= 0.2F;
 }
 
 /// Rock of sea floor and of deformed continents.
-RockType basement(const Crust& crust, Index cell) {
+RockType basement(const Crust<float>& crust, Index cell) {
   if (crust.fraction[cell] < 0.5F) {
     return crust.convergent[cell] > 0.3F ? RockType::schist : RockType::basalt;
   }
@@ -38,10 +38,10 @@ RockType basement(const Crust& crust, Index cell) {
 
 }  // namespace
 
-void classify_rock(const Crust& crust) {
+void classify_rock(const Crust<float>& crust) {
   const Grid& grid = crust.grid;
   const Noise strata(crust.seed, "isostasy.strata");
-  const double frequency = crust.radius_km / 700.0;
+  const double frequency = crust.radius_km() / 700.0;
 #pragma omp parallel
   {
     NoiseRow row(grid);
@@ -54,7 +54,7 @@ void classify_rock(const Crust& crust) {
         const Index cell = grid.cell(i, j);
         const RockType rock = is_covered(crust, cell) ? cover(layer[i]) : basement(crust, cell);
         crust.rock[cell] = static_cast<std::int8_t>(rock);
-        const float fault = crust.boundary_type[cell] != 0 ? 1.5F : 1.0F;
+        const float fault = crust.in.boundary_type[cell] != 0 ? 1.5F : 1.0F;
         // Smoothing must not lose digits: millionths become ones.
         crust.erodibility[cell] = 1e6F * kErodibility[static_cast<int>(rock)] * fault;
       }

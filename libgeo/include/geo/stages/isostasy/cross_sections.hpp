@@ -1,31 +1,33 @@
+#pragma once
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "geo/kernels/shapes.hpp"
-#include "geo/kernels/smoothing.hpp"
-#include "swell.hpp"
-#include "tectonics.hpp"
+#include "geo/stages/isostasy/deformation.hpp"
+#include "geo/stages/isostasy/swell.hpp"
 
 namespace geo {
-namespace {
 
 /// What a convergent margin does to one cell; noise makes its belts wind and swell.
-void cut_section(Index cell, double along, double shift, Tectonics& t) {
-  const double straight_km = t.margins.across_km[cell];
+template <class V>
+void cut_section(const ConvergentMargins& margins, Index cell, double along, double shift,
+                 const Arithmetic<V>& trenches, Tectonics<V>& t) {
+  const double straight_km = margins.across_km[cell];
   const double across = straight_km + 55.0 * shift * smooth_step(40, 200, std::abs(straight_km));
-  const double strength = std::clamp(t.margins.strength[cell] * (1.0 + 0.35 * along), 0.05, 1.3);
-  switch (t.margins.kind[cell]) {
+  const double strength = std::clamp(margins.strength[cell] * (1.0 + 0.35 * along), 0.05, 1.3);
+  switch (margins.kind[cell]) {
     case Convergence::oceans:
-      t.arc[cell] = static_cast<float>(island_arc(across, strength));
-      t.trench_m[cell] = static_cast<float>(trench_m(straight_km, strength));
+      t.arc[cell] = V(island_arc(across, strength));
+      t.trench_m[cell] = V(trenches * trench_m(straight_km, strength));
       break;
     case Convergence::ocean_continent:
-      t.thickening[cell] = static_cast<float>(andean_thickening(across, strength));
-      t.trench_m[cell] = static_cast<float>(trench_m(straight_km, strength));
+      t.thickening[cell] = V(andean_thickening(across, strength));
+      t.trench_m[cell] = V(trenches * trench_m(straight_km, strength));
       break;
     case Convergence::continents:
-      t.thickening[cell] = static_cast<float>(himalayan_thickening(across, strength));
+      t.thickening[cell] = V(himalayan_thickening(across, strength));
       break;
     default:
       break;
@@ -34,26 +36,29 @@ void cut_section(Index cell, double along, double shift, Tectonics& t) {
 
 /// Where two stretches of boundary are equally near, sections meet in a straight line. Far from the
 /// boundary plateaus pass into each other, and end, over a broader slope than belts have near it.
-void soften_far_edges(const Grid& grid, double length_m, Tectonics& t) {
+template <class V>
+void soften_far_edges(const Grid& grid, const ConvergentMargins& margins,
+                      const Arithmetic<V>& length_m, std::vector<V>& thickening) {
   constexpr double kBroader = 3.5, kNear_km = 250.0, kFar_km = 700.0;
-  std::vector<float> broad = t.thickening;
-  smooth(grid, t.thickening, length_m);
-  smooth(grid, broad, kBroader * length_m);
+  std::vector<V> broad = thickening;
+  blur(grid, thickening, length_m);
+  blur(grid, broad, kBroader * length_m);
 #pragma omp parallel for schedule(static)
   for (Index cell = 0; cell < grid.size(); ++cell) {
-    const double far = smooth_step(kNear_km, kFar_km, std::abs(t.margins.across_km[cell]));
-    t.thickening[cell] += static_cast<float>(far) * (broad[cell] - t.thickening[cell]);
+    const double far = smooth_step(kNear_km, kFar_km, std::abs(margins.across_km[cell]));
+    thickening[cell] += V(static_cast<float>(far)) * (broad[cell] - thickening[cell]);
   }
 }
 
-}  // namespace
-
-void cut_sections(const Crust& crust, const CoarseGrid& coarse, Tectonics& t) {
+/// Cross sections of convergent margins, old belts, broad variation of continents and sea floor.
+template <class V>
+void cut_sections(const Crust<V>& crust, const CoarseGrid& coarse, const TectonicFrame& frame,
+                  Tectonics<V>& t) {
   const IsostasyParameters& p = crust.parameters;
   const Grid& grid = coarse.grid();
   const auto swell_of = [&](std::string_view stream, double wavelength_km, int octaves,
                             double gain) {
-    return Swell(crust.seed, stream, crust.radius_km, wavelength_km, octaves, gain);
+    return Swell(grid, crust.seed, stream, wavelength_km, octaves, gain, crust.noise);
   };
   const Swell along = swell_of("isostasy.belts", 1100.0, 3, 0.6);
   const Swell shift = swell_of("isostasy.belt_shift", 700.0, 3, 0.6);
@@ -62,10 +67,14 @@ void cut_sections(const Crust& crust, const CoarseGrid& coarse, Tectonics& t) {
   const Swell floor = swell_of("isostasy.ocean_swells", 2800.0, 4, 0.55);
   const Swell suture = swell_of("isostasy.sutures", 4200.0, 4, 0.5);
   const Swell worn = swell_of("isostasy.worn", 2000.0, 3, 0.6);
-  for (auto* field : {&t.thickening, &t.arc, &t.trench_m, &t.thickness_noise_km, &t.swell_m,
-                      &t.ocean_swell, &t.relict}) {
-    field->assign(grid.size(), 0.0F);
+  for (auto* field : {&t.thickening, &t.arc, &t.trench_m, &t.thickness_noise_km, &t.swell_m}) {
+    field->assign(grid.size(), V(0.0F));
   }
+  t.ocean_swell.resize(grid.size());
+  t.relict.resize(grid.size());
+  const Arithmetic<V> thickness_noise_km = crust.lift(p.thickness_noise_km);
+  const Arithmetic<V> swell_m = crust.lift(p.swell_m);
+  const Arithmetic<V> trenches = crust.lift(p.trench_depth_m) / kDeepestTrench_m;
 #pragma omp parallel
   {
     NoiseRow row(grid);
@@ -79,25 +88,27 @@ void cut_sections(const Crust& crust, const CoarseGrid& coarse, Tectonics& t) {
       for (int i = 0; i < grid.nx(); ++i) {
         const Index cell = grid.cell(i, j);
         t.ocean_swell[cell] = static_cast<float>(floors[i]);
-        t.thickness_noise_km[cell] = static_cast<float>(p.thickness_noise_km * noises[i]);
+        t.thickness_noise_km[cell] = V(thickness_noise_km * noises[i]);
         // Plateaus stand further above the middle of continents than basins lie below it.
         const double up = std::exp(0.6 * swells[i]) - std::exp(0.18);
-        t.swell_m[cell] = static_cast<float>(p.swell_m * up / 0.8);
+        t.swell_m[cell] = V(swell_m * up / 0.8);
         const double age = smooth_step(-0.4, 1.2, worns[i]);
         t.relict[cell] = static_cast<float>(age * bell(sutures[i], 0.0, 0.16));
       }
-      const auto far_km = [&](int i) { return std::abs(t.margins.across_km[grid.cell(i, j)]); };
+      const auto far_km = [&](int i) { return std::abs(frame.margins.across_km[grid.cell(i, j)]); };
       const auto is_near = [&](int i) { return far_km(i) <= 2500.0F; };
       row.choose(j, is_near);
       for (auto* line : {&alongs, &shifts}) line->read(row);
       for (int i = 0; i < grid.nx(); ++i) {
-        if (is_near(i)) cut_section(grid.cell(i, j), alongs[i], shifts[i], t);
+        if (is_near(i))
+          cut_section(frame.margins, grid.cell(i, j), alongs[i], shifts[i], trenches, t);
       }
     }
   }
-  soften_far_edges(grid, 2e3 * p.deformation_smoothing_km, t);
-  smooth(grid, t.arc, 0.7e3 * p.deformation_smoothing_km);
-  smooth(grid, t.trench_m, 0.6e3 * p.deformation_smoothing_km);
+  const Arithmetic<V> smoothing_km = crust.lift(p.deformation_smoothing_km);
+  soften_far_edges<V>(grid, frame.margins, 2e3 * smoothing_km, t.thickening);
+  blur(grid, t.arc, 0.7e3 * smoothing_km);
+  blur(grid, t.trench_m, 0.6e3 * smoothing_km);
   t.convergent = t.thickening;
   for (Index cell = 0; cell < grid.size(); ++cell) t.convergent[cell] += t.arc[cell];
 }

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "calibration/fit.hpp"
+#include "calibration/result.hpp"
+
+namespace geo::calibration {
+
+/// All that an interrupted calibration needs to go on.
+struct Checkpoint {
+  std::string question;       ///< configuration and target: another one cannot be gone on with
+  std::vector<Start> starts;  ///< that have ended
+  std::vector<Iteration> iterations;
+  FitState state;  ///< of the one under way
+  double seconds = 0.0;
+};
+
+/// Throws IoError.
+void write_checkpoint(const Checkpoint& checkpoint, const std::filesystem::path& file);
+/// Throws InputError when the file is none of ours.
+Checkpoint read_checkpoint(const std::filesystem::path& file);
+
+}  // namespace geo::calibration

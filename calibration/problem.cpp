@@ -1,0 +1,132 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "calibration/objective.hpp"
+#include "geo/core/error.hpp"
+
+namespace geo::calibration {
+namespace {
+
+Term read_term(const Estimate& estimate) {
+  static constexpr std::string_view kThickness = "crust_thickness_q";
+  const std::string& name = estimate.name;
+  if (name == "land_fraction") return {Term::Kind::land_fraction, 0.0, estimate, "1"};
+  if (name == "water_volume_km3") return {Term::Kind::water_volume, 0.0, estimate, "km3"};
+  if (name == "erosion_rate_mm_yr") return {Term::Kind::erosion_rate, 0.0, estimate, "mm yr-1"};
+  if (name == "concavity") return {Term::Kind::concavity, 0.0, estimate, "1"};
+  if (name.starts_with(kThickness) && name.ends_with("_km")) {
+    int percent = 0;
+    const char* const end = name.data() + name.size() - 3;
+    const auto [stop, error] = std::from_chars(name.data() + kThickness.size(), end, percent);
+    if (error == std::errc() && stop == end && percent > 0 && percent < 100) {
+      return {Term::Kind::crust_thickness, 0.01 * percent, estimate, "km"};
+    }
+  }
+  throw ConfigurationError(
+      fmt::format("calibration.terms: {}: must be one of land_fraction, water_volume_km3, "
+                  "erosion_rate_mm_yr, concavity, crust_thickness_q01_km to _q99_km",
+                  name));
+}
+
+FreeParameter make_free(const Parameter& declaration, std::span<const Range> bounds,
+                        std::span<const Estimate> priors) {
+  FreeParameter free{declaration, declaration.min, declaration.max};
+  const double start = *std::get<double*>(declaration.storage);
+  for (const Range& range : bounds) {
+    if (range.name != declaration.name) continue;
+    if (range.low < declaration.min || range.high > declaration.max) {
+      throw ConfigurationError(fmt::format("calibration.bounds: {} = {:g} .. {:g}: must lie in {}",
+                                           range.name, range.low, range.high,
+                                           declaration.range_text()));
+    }
+    free.low = range.low;
+    free.high = range.high;
+  }
+  if (start < free.low || start > free.high) {
+    throw ConfigurationError(
+        fmt::format("calibration.bounds: {} = {:g} .. {:g}: must hold its start {:g}",
+                    declaration.name, free.low, free.high, start));
+  }
+  free.logarithmic = free.low >= 0.0 && start > 0.0;
+  const double width = free.high - free.low;
+  free.scale = std::max(std::abs(start), std::isfinite(width) ? 0.05 * width : 1.0);
+  // On a log scale the bound 0 lies at infinity.
+  if (free.logarithmic) free.low = std::max(free.low, 1e-6 * start);
+  for (const Estimate& prior : priors) {
+    if (prior.name == declaration.name) free.prior = prior;
+  }
+  return free;
+}
+
+void check_known(std::string_view key, std::string_view name, std::span<const FreeParameter> free) {
+  const bool known = std::any_of(free.begin(), free.end(), [&](const FreeParameter& parameter) {
+    return parameter.declaration.name == name;
+  });
+  if (!known) {
+    throw ConfigurationError(fmt::format("{}: {}: must be one of calibration.free", key, name));
+  }
+}
+
+}  // namespace
+
+double FreeParameter::to_x(double value) const {
+  return logarithmic ? std::log(value) : value / scale;
+}
+double FreeParameter::to_value(double x) const {
+  return std::clamp(logarithmic ? std::exp(x) : x * scale, low, high);
+}
+double FreeParameter::rate(double x) const { return logarithmic ? std::exp(x) : scale; }
+
+Problem::Problem(std::span<const Parameter> configuration, const Settings& settings, Target aims)
+    : model(configuration),
+      target(std::move(aims)),
+      every_seed(settings.objective == "each"),
+      deviation_m(settings.deviation_m) {
+  const auto bounds = read_ranges("calibration.bounds", settings.bounds);
+  const auto priors = read_estimates("calibration.priors", settings.priors);
+  for (const std::string& name : read_names("calibration.free", settings.free)) {
+    free.push_back(make_free(model.find(name), bounds, priors));
+  }
+  if (free.empty()) throw ConfigurationError("calibration.free: must name a parameter");
+  for (const Range& range : bounds) check_known("calibration.bounds", range.name, free);
+  for (const Estimate& prior : priors) check_known("calibration.priors", prior.name, free);
+  for (const Estimate& term : read_estimates("calibration.terms", settings.terms)) {
+    terms.push_back(read_term(term));
+  }
+  if (statistics() < free.size()) {
+    throw ConfigurationError(
+        fmt::format("calibration.free: {} parameters for {} figures: must be fewer", free.size(),
+                    statistics()));
+  }
+}
+
+void Problem::set(const Eigen::VectorXd& x) {
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    *std::get<double*>(free[i].declaration.storage) = free[i].to_value(x[Eigen::Index(i)]);
+  }
+}
+
+Eigen::VectorXd Problem::present() const {
+  Eigen::VectorXd x(free.size());
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    x[Eigen::Index(i)] = free[i].to_x(*std::get<double*>(free[i].declaration.storage));
+  }
+  return x;
+}
+
+double Problem::deviation(std::size_t statistic) const {
+  const std::size_t quantiles = target.share.size();
+  if (statistic >= quantiles) return terms[statistic - quantiles].target.deviation;
+  return target.deviation_m.empty() ? deviation_m : target.deviation_m[statistic];
+}
+
+double Problem::aim(std::size_t statistic) const {
+  const std::size_t quantiles = target.share.size();
+  return statistic >= quantiles ? terms[statistic - quantiles].target.mean
+                                : target.elevation_m[statistic];
+}
+
+}  // namespace geo::calibration

@@ -1,0 +1,70 @@
+#include "calibration/seed_planet.hpp"
+
+#include "geo/core/stage.hpp"
+#include "geo/stages/plates.hpp"
+#include "geo/stages/sea_level.hpp"
+
+namespace geo::calibration {
+namespace {
+
+Planet planet_of(std::span<const Parameter> configuration) {
+  Planet planet;
+  for (const Parameter& parameter : planet.parameters()) {
+    parameter.set(find_parameter(configuration, parameter.name)->value());
+  }
+  return planet;
+}
+
+State plates_of(std::span<const Parameter> configuration, std::uint64_t seed, int nx, int ny) {
+  Context context;
+  context.planet = planet_of(configuration);
+  context.seed = seed;
+  context.configuration.assign(configuration.begin(), configuration.end());
+  State state(std::make_shared<const Grid>(Grid::sphere(nx, ny, context.planet.figure())));
+  const auto plates = make_plates_stage();
+  for (const Parameter& parameter : plates->parameters()) {
+    parameter.set(find_parameter(configuration, parameter.name)->value());
+  }
+  StageIo io(state, plates->info());
+  plates->run(io, context);
+  return state;
+}
+
+}  // namespace
+
+SeedPlanet::SeedPlanet(std::span<const Parameter> configuration, std::uint64_t seed, int nx, int ny)
+    : seed_(seed), state_(plates_of(configuration, seed, nx, ny)), coarse_(state_.grid()) {}
+
+void SeedPlanet::find_sea(const Model& model, std::span<const double> elevation_m) {
+  constexpr double kHalfWidth = 0.0025;  // share of the area on either side of the shore
+  const Grid& grid = this->grid();
+  HeldFast::Sea& sea = held_.sea;
+  sea = {};
+  const std::vector<float> values(elevation_m.begin(), elevation_m.end());
+  sea.level_m = sea_level_m(grid, values, model.planet);
+  if (model.planet.sea_level == "volume") {
+    sea.wet.resize(values.size());
+    for (std::size_t c = 0; c < values.size(); ++c) sea.wet[c] = elevation_m[c] < sea.level_m;
+    const double area =
+        area_sum<double>(grid, [&](Index c) { return static_cast<double>(sea.wet[c]); });
+    sea.mean_m =
+        area_sum<double>(grid, [&](Index c) { return sea.wet[c] != 0 ? elevation_m[c] : 0.0; }) /
+        area;
+    sea.asked = model.planet.water_volume_km3;
+    sea.rate = 1e9 / area;
+    return;
+  }
+  const double share = model.planet.ocean_fraction;
+  sea.ranking.emplace(grid, elevation_m);
+  // The level is the height of a cell. In a gap somewhat lower it makes almost the same land, and
+  // no cell stands at the bend between shelf and land, where nothing has a derivative.
+  constexpr double kGap_m = 0.02;
+  constexpr int kCells = 20;
+  sea.level_m = sea.ranking->gap_below(sea.level_m, kGap_m, kCells);
+  sea.window = sea.ranking->window(share, kHalfWidth);
+  sea.mean_m = sea.ranking->mean(sea.window, elevation_m);
+  sea.asked = share;
+  sea.rate = 1.0 / sea.ranking->density(share, kHalfWidth);
+}
+
+}  // namespace geo::calibration

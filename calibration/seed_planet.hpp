@@ -1,0 +1,208 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "calibration/model.hpp"
+#include "calibration/ranking.hpp"
+#include "geo/core/state.hpp"
+#include "geo/kernels/flow_graph.hpp"
+#include "geo/kernels/sea_level.hpp"
+#include "geo/stages/erosion/drainage.hpp"
+#include "geo/stages/erosion/finishing.hpp"
+#include "geo/stages/erosion/ground.hpp"
+#include "geo/stages/erosion/landscape.hpp"
+#include "geo/stages/isostasy/floating_crust.hpp"
+#include "geo/stages/isostasy/rocks.hpp"
+
+namespace geo::calibration {
+
+/// What the forward model gives for one planet.
+template <class V>
+struct Relief {
+  std::vector<V> elevation_m, thickness_m;
+  V erosion_rate_m_yr{0.0};  ///< mean over the land
+  /// Sum of -elevation over the sea times the area, m3.
+  V water_m3{0.0};
+};
+
+/// What is held fast between two routings: where sections, rocks, sea and rivers lie.
+struct HeldFast {
+  std::optional<TectonicFrame> frame;
+  std::vector<float> erodibility;
+  std::vector<std::uint8_t> outlets;
+  std::vector<Drainage> drainage;  ///< one for each routing of the erosion stage
+  /// Sea level as a mean over cells next to it (by share) or over the sea (by volume), and how it
+  /// follows the share or volume that is asked for.
+  struct Sea {
+    std::optional<Ranking> ranking;
+    Ranking::Window window;
+    std::vector<std::uint8_t> wet;
+    double level_m = 0.0, mean_m = 0.0, asked = 0.0, rate = 0.0;
+  } sea;
+};
+
+/// Plates of one seed, and the relief that isostasy and erosion make of them.
+class SeedPlanet {
+ public:
+  /// Grows the plates, with the settings of the configuration.
+  SeedPlanet(std::span<const Parameter> configuration, std::uint64_t seed, int nx, int ny);
+
+  [[nodiscard]] std::uint64_t seed() const { return seed_; }
+  [[nodiscard]] const Grid& grid() const { return state_.grid(); }
+  [[nodiscard]] std::span<const float> continental_fraction() const {
+    return state_.read(field::continental_fraction);
+  }
+  [[nodiscard]] const HeldFast& held() const { return held_; }
+
+  /// The relief with everything routed anew, which is then held fast.
+  [[nodiscard]] Relief<double> route(const Model& model) {
+    return evaluate<double>(model, {}, /*routes=*/true);
+  }
+  /// The relief with all held fast as `route` left it: a smooth function of the parameters. V is
+  /// double, a dual number, or std::complex<double>.
+  template <class V>
+  [[nodiscard]] Relief<V> follow(const Model& model, const Lift<V>& lift) {
+    return evaluate<V>(model, lift, /*routes=*/false);
+  }
+
+ private:
+  template <class V>
+  Relief<V> evaluate(const Model& model, const Lift<V>& lift, bool routes);
+  template <class V>
+  V sea_level(const Model& model, const Lift<V>& lift, std::span<const V> elevation_m, bool finds);
+  void find_sea(const Model& model, std::span<const double> elevation_m);
+
+  std::uint64_t seed_;
+  State state_;
+  CoarseGrid coarse_;
+  NoiseStore noise_;
+  HeldFast held_;
+};
+
+template <class V>
+V SeedPlanet::sea_level(const Model& model, const Lift<V>& lift, std::span<const V> elevation_m,
+                        bool finds) {
+  if (finds) {
+    std::vector<double> values(elevation_m.size());
+    for (std::size_t c = 0; c < values.size(); ++c) values[c] = value_of(elevation_m[c]);
+    find_sea(model, values);
+  }
+  const HeldFast::Sea& sea = held_.sea;
+  V mean(0.0), asked(0.0);
+  if (sea.ranking) {
+    mean = sea.ranking->mean(sea.window, elevation_m);
+    asked = lift(model.planet.ocean_fraction);
+  } else {
+    double area = 0.0;
+    const Grid& grid = this->grid();
+    mean = area_sum<V>(grid, [&](Index c) { return sea.wet[c] != 0 ? elevation_m[c] : V(0.0); });
+    area = area_sum<double>(grid, [&](Index c) { return static_cast<double>(sea.wet[c]); });
+    mean /= area;
+    asked = lift(model.planet.water_volume_km3);
+  }
+  return sea.level_m + (mean - sea.mean_m) + sea.rate * (asked - sea.asked);
+}
+
+template <class V>
+Relief<V> SeedPlanet::evaluate(const Model& model, const Lift<V>& lift, bool routes) {
+  const Grid& grid = this->grid();
+  const auto cells = static_cast<std::size_t>(grid.size());
+  const ErosionParameters& p = model.erosion;
+  Relief<V> relief;
+  relief.elevation_m.resize(cells);
+  relief.thickness_m.resize(cells);
+  std::vector<V> convergent(cells), divergent(cells), transform(cells), weakness(cells),
+      density(cells);
+  std::vector<float> fraction(continental_fraction().begin(), continental_fraction().end());
+  const CrustInputs in{.plate = state_.read(field::plate_id),
+                       .boundary_type = state_.read(field::boundary_type),
+                       .boundary_strength = state_.read(field::boundary_strength),
+                       .age_myr = state_.read(field::crust_age),
+                       .heat = state_.read(field::heat_anomaly),
+                       .velocity_east = state_.read(field::plate_velocity_east),
+                       .velocity_north = state_.read(field::plate_velocity_north)};
+  const Crust<V> crust{.parameters = model.isostasy,
+                       .planet = model.planet,
+                       .seed = seed_,
+                       .grid = grid,
+                       .in = in,
+                       .fraction = fraction,
+                       .convergent = convergent,
+                       .divergent = divergent,
+                       .transform = transform,
+                       .weakness = weakness,
+                       .thickness_m = relief.thickness_m,
+                       .density = density,
+                       .rock = {},
+                       .erodibility = {},
+                       .elevation_m = relief.elevation_m,
+                       .lift = lift,
+                       .noise = &noise_};
+  if (routes) held_.frame = tectonic_frame(model.isostasy, coarse_, in, fraction);
+  float_margins_crust(crust, coarse_, *held_.frame);
+  const std::span<V> z(relief.elevation_m);
+  fill_sea(crust, sea_level<V>(model, lift, z, routes));
+
+  const auto as_floats = [&](std::span<const V> field) {
+    std::vector<float> values(cells);
+    for (std::size_t c = 0; c < cells; ++c) values[c] = static_cast<float>(value_of(field[c]));
+    return values;
+  };
+  if (routes) {
+    std::vector<float> closing = as_floats(convergent), opening = as_floats(divergent),
+                       shear = as_floats(transform), none;
+    std::vector<std::int8_t> rock(cells);
+    held_.erodibility.assign(cells, 0.0F);
+    classify_rock({.parameters = model.isostasy,
+                   .planet = model.planet,
+                   .seed = seed_,
+                   .grid = grid,
+                   .in = in,
+                   .fraction = fraction,
+                   .convergent = closing,
+                   .divergent = opening,
+                   .transform = shear,
+                   .weakness = none,
+                   .thickness_m = none,
+                   .density = none,
+                   .rock = rock,
+                   .erodibility = held_.erodibility,
+                   .elevation_m = none});
+    held_.outlets = find_outlets(grid, as_floats(z));
+    held_.drainage.resize((p.steps + p.route_every - 1) / p.route_every);
+  }
+  std::vector<V> uplift(cells, V(0.0));
+  if (p.uplift_from == "deformation") {
+    add_belt_uplift<V>(p, lift, convergent, divergent, transform, uplift);
+  } else if (p.uplift_from == "boundaries") {
+    add_boundary_uplift<V>(p, lift, in.boundary_type, in.boundary_strength, uplift);
+  }
+  const std::vector<V> erodibility = resolved_erodibility<V>(p, lift, grid, held_.erodibility);
+  Landscape<V> landscape(p, lift, grid, z, uplift, erodibility, held_.outlets);
+  for (std::int64_t step = 0; step < p.steps; ++step) {
+    Drainage& drainage = held_.drainage[step / p.route_every];
+    if (step % p.route_every == 0) {
+      if (routes) drain(p, grid, as_floats(z), landscape.outlets(), drainage);
+      landscape.breach(drainage);
+    }
+    landscape.step(drainage);
+  }
+  inject_noise(p, lift, grid, seed_, z);
+  warp(p, lift, grid, seed_, z);
+  landscape.relax();
+
+  const auto is_land = [&](Index c) { return held_.outlets[c] == 0; };
+  const double land_m2 = area_sum<double>(grid, [&](Index c) { return is_land(c) ? 1.0 : 0.0; });
+  if (p.steps > 0 && land_m2 > 0.0) {
+    const V time_yr = static_cast<double>(p.steps) * lift(p.time_step_yr);
+    relief.erosion_rate_m_yr = landscape.rock().eroded / (land_m2 * time_yr);
+  }
+  relief.water_m3 = area_sum<V>(grid, [&](Index c) { return is_land(c) ? V(0.0) : V(-z[c]); });
+  return relief;
+}
+
+}  // namespace geo::calibration

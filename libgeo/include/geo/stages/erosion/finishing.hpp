@@ -1,0 +1,76 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "geo/core/grid.hpp"
+#include "geo/core/numeric.hpp"
+#include "geo/kernels/noise.hpp"
+#include "geo/stages/erosion.hpp"
+
+namespace geo {
+
+/// Noise that breaks the coherence of channels (blueprint 4.5a). Returns whether there was any.
+template <class V>
+bool inject_noise(const ErosionParameters& p, const Lift<V>& lift, const Grid& grid,
+                  std::uint64_t seed, std::span<V> elevation_m) {
+  if (p.noise_injection_m <= 0.0) return false;
+  constexpr double kFrequency = 48.0;
+  constexpr float kLowest_m = 0.5F;
+  const Noise noise(seed, "erosion.injected");
+  const V amplitude(lift(p.noise_injection_m));
+#pragma omp parallel for schedule(dynamic, 4)
+  for (int j = 0; j < grid.ny(); ++j) {
+    for (int i = 0; i < grid.nx(); ++i) {
+      V& height = elevation_m[grid.cell(i, j)];
+      if (value_of(height) < 0.0) continue;
+      const auto at = grid.unit_vector(i, j);
+      const float bump = noise.value(static_cast<float>(at[0] * kFrequency),
+                                     static_cast<float>(at[1] * kFrequency),
+                                     static_cast<float>(at[2] * kFrequency));
+      height = greater(V(height + amplitude * V(bump)), V(kLowest_m));
+    }
+  }
+  return true;
+}
+
+/// The latest warping of the ground, which rivers have not yet cut through. Returns whether there
+/// was any. Its derivative with respect to the wavelength is a difference, right to some 1e-3.
+template <class V>
+bool warp(const ErosionParameters& p, const Lift<V>& lift, const Grid& grid, std::uint64_t seed,
+          std::span<V> elevation_m) {
+  using Number = Arithmetic<V>;
+  if (p.warping_m <= 0.0 || p.steps == 0) return false;
+  // Shores keep their place: the warping sets in with height.
+  constexpr double kDeviation = 0.19;  // of the fbm below
+  constexpr float kFull_m = 150.0F;
+  const Noise noise(seed, "erosion.warping");
+  const double radius_km = 1e-3 * grid.figure().radius_m;
+  const Number wavelength_km = lift(p.warping_km);
+  const bool wavelength_matters = carries_derivative(wavelength_km);
+  const V amplitude(lift(p.warping_m) / kDeviation);
+#pragma omp parallel for schedule(dynamic, 4)
+  for (int j = 0; j < grid.ny(); ++j) {
+    for (int i = 0; i < grid.nx(); ++i) {
+      V& height = elevation_m[grid.cell(i, j)];
+      if (value_of(height) <= 0.0) continue;
+      const auto at = grid.unit_vector(i, j);
+      const auto swell = [&](double km) { return noise.fbm(at, radius_km / km, 3, 0.5); };
+      V bend(swell(p.warping_km));
+      if (wavelength_matters) {
+        const double step_km = 2e-3 * p.warping_km;
+        const double rate =
+            (swell(p.warping_km + step_km) - swell(p.warping_km - step_km)) / (2.0 * step_km);
+        bend += V(rate * (wavelength_km - p.warping_km));
+      }
+      bend *= amplitude;
+      const V part = lesser(V(height / V(kFull_m)), V(1.0F));
+      height = greater(V(height + part * bend), V(V(0.2F) * height));
+    }
+  }
+  return true;
+}
+
+}  // namespace geo

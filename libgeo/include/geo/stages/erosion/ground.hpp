@@ -1,0 +1,66 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "geo/core/grid.hpp"
+#include "geo/core/numeric.hpp"
+#include "geo/stages/erosion.hpp"
+
+namespace geo {
+
+/// Rock uplift over the belts of deformation (Tectonica blueprint 4.5), m yr-1, added to a field.
+template <class V>
+void add_belt_uplift(const ErosionParameters& p, const Lift<V>& lift, std::span<const V> convergent,
+                     std::span<const V> divergent, std::span<const V> transform,
+                     std::span<V> uplift_m_yr) {
+  const V closing(1e-3 * lift(p.convergent_uplift_mm_yr));
+  const V opening(1e-3 * lift(p.divergent_uplift_mm_yr));
+  const V shearing(1e-3 * lift(p.transform_uplift_mm_yr));
+#pragma omp parallel for schedule(static)
+  for (std::size_t cell = 0; cell < uplift_m_yr.size(); ++cell) {
+    uplift_m_yr[cell] +=
+        closing * convergent[cell] + opening * divergent[cell] + shearing * transform[cell];
+  }
+}
+
+/// Rock uplift on the cells of plate boundaries alone, m yr-1, added to a field.
+template <class V>
+void add_boundary_uplift(const ErosionParameters& p, const Lift<V>& lift,
+                         std::span<const std::int8_t> type, std::span<const float> strength,
+                         std::span<V> uplift_m_yr) {
+  const std::array<V, 4> rate{V(0.0F), V(1e-3 * lift(p.convergent_uplift_mm_yr)),
+                              V(1e-3 * lift(p.divergent_uplift_mm_yr)),
+                              V(1e-3 * lift(p.transform_uplift_mm_yr))};
+#pragma omp parallel for schedule(static)
+  for (std::size_t cell = 0; cell < uplift_m_yr.size(); ++cell) {
+    uplift_m_yr[cell] += rate[type[cell]] * V(strength[cell]);
+  }
+}
+
+/// Erodibility for the cells of this grid; `given` has one value per cell or none at all. A cell's
+/// own hillslopes and brooks rise above its outlet by a height that grows with its size; a grid of
+/// larger cells lacks it, so its rivers must be steeper by as much for the mean height of the land
+/// to be the same.
+template <class V>
+std::vector<V> resolved_erodibility(const ErosionParameters& p, const Lift<V>& lift,
+                                    const Grid& grid, std::span<const float> given) {
+  using std::pow;
+  const V scale(lift(p.erodibility_factor)), everywhere(lift(p.erodibility_yr));
+  std::vector<V> resolved(grid.size());
+#pragma omp parallel for schedule(static)
+  for (int j = 0; j < grid.ny(); ++j) {
+    const double cell_km = 1e-3 * std::sqrt(grid.area_m2(j));
+    const V factor(pow(Arithmetic<V>(cell_km / lift(p.reference_cell_km)),
+                       Arithmetic<V>(-lift(p.subgrid_exponent))));
+    for (Index cell = grid.cell(0, j); cell < grid.cell(0, j) + grid.nx(); ++cell) {
+      resolved[cell] = factor * (given.empty() ? everywhere : V(scale * V(given[cell])));
+    }
+  }
+  return resolved;
+}
+
+}  // namespace geo

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "geo/core/stage.hpp"
+#include "geo/kernels/airy.hpp"
+#include "geo/stages/isostasy.hpp"
+#include "geo/stages/isostasy/swell.hpp"
+
+namespace geo {
+
+/// What the plates gave.
+struct CrustInputs {
+  std::span<const std::int16_t> plate;
+  std::span<const std::int8_t> boundary_type;
+  std::span<const float> boundary_strength, age_myr, heat, velocity_east, velocity_north;
+  /// What the plates' history has made; empty unless crust = "simulated".
+  std::span<const float> made_elevation_m = {};
+};
+
+/// What all parts of the stage work with: its settings, the planet, fields read and written. V is
+/// float in a run; a number that carries derivatives when they are wanted (core/numeric.hpp).
+template <class V>
+struct Crust {
+  const IsostasyParameters& parameters;
+  const Planet& planet;
+  std::uint64_t seed;
+  const Grid& grid;
+  CrustInputs in;
+
+  std::span<float> fraction;
+  std::span<V> convergent, divergent, transform, weakness, thickness_m, density;
+  std::span<std::int8_t> rock;
+  std::span<float> erodibility;
+  std::span<V> elevation_m;
+
+  Lift<V> lift = {};
+  NoiseStore* noise = nullptr;  ///< keeps noise for further planets of this seed and grid
+
+  [[nodiscard]] double radius_km() const { return 1e-3 * grid.figure().radius_m; }
+  [[nodiscard]] BasicColumnDensities<Arithmetic<V>> densities() const {
+    const ColumnDensities& d = parameters.density;
+    return {lift(d.mantle), lift(d.continental_crust), lift(d.oceanic_crust), lift(d.water),
+            lift(d.sediment)};
+  }
+  [[nodiscard]] BasicAiryDatum<Arithmetic<V>> datum() const {
+    return BasicAiryDatum<Arithmetic<V>>(densities());
+  }
+  [[nodiscard]] Swell swell(std::string_view stream, double wavelength_km, int octaves,
+                            double gain) const {
+    return Swell(grid, seed, stream, wavelength_km, octaves, gain, noise);
+  }
+};
+
+}  // namespace geo

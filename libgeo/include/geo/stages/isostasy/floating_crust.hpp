@@ -1,0 +1,39 @@
+#pragma once
+
+#include "geo/stages/isostasy/cross_sections.hpp"
+#include "geo/stages/isostasy/margins_crust.hpp"
+#include "geo/stages/isostasy/stiffness.hpp"
+
+namespace geo {
+
+/// crust = "margins", from what the plates gave to the height of every column above the datum, m.
+template <class V>
+void float_margins_crust(const Crust<V>& crust, const CoarseGrid& coarse,
+                         const TectonicFrame& frame) {
+  Tectonics<V> tectonics = deform(crust, coarse, frame);
+  cut_sections(crust, coarse, frame, tectonics);
+  tectonics.flexure_m = flexure_of_belts_m(crust, coarse.grid(), tectonics);
+  draw_margins_crust(crust, coarse, frame, tectonics);
+}
+
+/// The sea stands at `level_m` from now on; sediment builds its margins up towards it.
+template <class V>
+void fill_sea(const Crust<V>& crust, const V& level_m) {
+  using Number = Arithmetic<V>;
+  const IsostasyParameters& p = crust.parameters;
+  const bool shelves = p.crust != "blueprint" && p.shelf_depth_m > 0.0;
+  const Number shelf_depth_m = crust.lift(p.shelf_depth_m);
+#pragma omp parallel for schedule(static)
+  for (Index cell = 0; cell < crust.grid.size(); ++cell) {
+    V& z = crust.elevation_m[cell];
+    z -= level_m;
+    if (!shelves || value_of(z) >= 0.0) continue;
+    const double on_shelf = smooth_step(0.7, 0.95, static_cast<double>(crust.fraction[cell]));
+    if (on_shelf <= 0.0) continue;
+    const Number deep_m(z);
+    const Number filled = -shelf_depth_m * -expm1_of(Number(deep_m / shelf_depth_m));
+    z = lesser(V(-1e-3F), V(deep_m + on_shelf * (filled - deep_m)));
+  }
+}
+
+}  // namespace geo

@@ -1,0 +1,268 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "geo/kernels/cubic_rows.hpp"
+#include "geo/kernels/ocean_depth.hpp"
+#include "geo/kernels/shapes.hpp"
+#include "geo/stages/isostasy/swell.hpp"
+#include "geo/stages/isostasy/tectonics.hpp"
+
+namespace geo {
+
+/// Columns of continent and of ocean floor, and what stands where they blend.
+template <class V>
+class Columns {
+ public:
+  using Number = Arithmetic<V>;
+
+  explicit Columns(const Crust<V>& crust)
+      : crust_(crust),
+        p_(crust.lift, crust.parameters),
+        density_(crust.densities()),
+        datum_(crust.datum()),
+        is_dry_(crust.parameters.compensation == "airy-dry"),
+        craton_slope_((1.0 - density_.continental_crust / density_.mantle) /
+                      (1e-3 * AiryDatum::kColdLithosphereM)),
+        land_(crust.swell("isostasy.land", 420.0, 7, 0.52)),
+        ranges_(crust.swell("isostasy.ranges", 230.0, 4, 0.55)),
+        hills_(crust.swell("isostasy.hills", 260.0, 6, 0.6)),
+        mounts_(crust.swell("isostasy.seamounts", 330.0, 3, 0.6)) {}
+
+  /// Scratch of one thread: what the coarse grid and the noise say along a row.
+  class Row {
+   public:
+    explicit Row(const Columns& columns)
+        : nx(columns.crust_.grid.nx()),
+          land(columns.land_, nx),
+          ranges(columns.ranges_, nx),
+          hills(columns.hills_, nx),
+          mounts(columns.mounts_, nx),
+          noise_(columns.crust_.grid) {}
+    void read(const Crust<V>& crust, const CubicRows& rows, const TectonicFrame& frame,
+              const Tectonics<V>& tectonics, int j) {
+      const auto see = [&](const auto& field, auto& line, auto& scratch) {
+        line.resize(nx);
+        rows.read(field, j, std::span(line), scratch);
+      };
+      for (const auto seen :
+           {&Tectonics<V>::thickening, &Tectonics<V>::arc, &Tectonics<V>::trench_m,
+            &Tectonics<V>::divergent, &Tectonics<V>::transform, &Tectonics<V>::weakness,
+            &Tectonics<V>::swell_m, &Tectonics<V>::thickness_noise_km, &Tectonics<V>::flexure_m}) {
+        see(tectonics.*seen, from_afar.*seen, scratch_);
+      }
+      see(tectonics.relict, from_afar.relict, plain_scratch_);
+      see(tectonics.ocean_swell, from_afar.ocean_swell, plain_scratch_);
+      see(frame.rift_km, rift_km, plain_scratch_);
+      see(frame.offshore_km, offshore_km, plain_scratch_);
+      see(frame.inland_km, inland_km, plain_scratch_);
+      const std::span<const float> share = crust.fraction.subspan(crust.grid.cell(0, j), nx);
+      const auto& t = from_afar;
+      noise_.choose(j, [&](int i) { return is_rough(share[i], value_of(t.arc[i])); });
+      land.read(noise_);
+      noise_.choose(j, [&](int i) {
+        return share[i] > 0.0F && is_folded(value_of(t.thickening[i]), t.relict[i]);
+      });
+      ranges.read(noise_);
+      noise_.choose(j, [&](int i) { return share[i] < 1.0F; });
+      hills.read(noise_);
+      mounts.read(noise_);
+    }
+
+    int nx;
+    Tectonics<V> from_afar;
+    std::vector<float> rift_km, offshore_km, inland_km;
+    Swell::Line land, ranges, hills, mounts;
+
+   private:
+    NoiseRow noise_;
+    std::vector<V> scratch_;
+    std::vector<float> plain_scratch_;
+  };
+
+  void draw(int j, const Row& row) const {
+    for (int i = 0; i < row.nx; ++i) draw(i, j, row);
+  }
+
+ private:
+  static bool is_rough(double share, double island) { return share > 0.0 || island > 0.02; }
+  static bool is_folded(double belt, double relict) { return belt > 0.01 || relict > 0.02; }
+
+  struct Continent {
+    Number thickness_km, elevation_m;
+  };
+
+  /// The settings as numbers to compute with.
+  struct Settings {
+    Settings(const Lift<V>& lift, const IsostasyParameters& p)
+        : continental_km(lift(p.continental_km)),
+          oceanic_km(lift(p.oceanic_km)),
+          collision_km(lift(p.collision_km)),
+          arc_km(lift(p.arc_km)),
+          rift_km(lift(p.rift_km)),
+          transpression_km(lift(p.transpression_km)),
+          lithosphere(lift(p.lithosphere)),
+          craton_compensation(lift(p.craton_compensation)),
+          ocean_swell_m(lift(p.ocean_swell_m)),
+          margin_tilt_m(lift(p.margin_tilt_m)),
+          margin_tilt_km(lift(p.margin_tilt_km)),
+          relict_km(lift(p.relict_km)),
+          heat_m(lift(p.heat_m)),
+          seamount_m(lift(p.seamount_m)),
+          seafloor_roughness_m(lift(p.seafloor_roughness_m)),
+          land_roughness_m(lift(p.land_roughness_m)),
+          sediment{lift(p.sediment.early_m), p.sediment.early_time_myr, lift(p.sediment.rate_m_myr),
+                   lift(p.sediment.apron_m), lift(p.sediment.apron_length_km)} {}
+    Number continental_km, oceanic_km, collision_km, arc_km, rift_km, transpression_km, lithosphere,
+        craton_compensation, ocean_swell_m, margin_tilt_m, margin_tilt_km, relict_km, heat_m,
+        seamount_m, seafloor_roughness_m, land_roughness_m;
+    BasicDeepSediment<Number> sediment;
+  };
+
+  void draw(int i, int j, const Row& along) const {
+    const Tectonics<V>& row = along.from_afar;
+    const Index cell = crust_.grid.cell(i, j);
+    const double share = crust_.fraction[cell];
+    const Number belt = limited(Number(row.thickening[i]), 0.0, 1.3);
+    const Number island = greater(V(0.0F), row.arc[i]);
+    const Number hot = p_.heat_m * static_cast<double>(crust_.in.heat[cell]);
+    crust_.convergent[cell] = V(limited(Number(share * belt + (1 - share) * island), 0.0, 1.0));
+    crust_.divergent[cell] = limited(row.divergent[i], 0.0, 1.0);
+    crust_.transform[cell] = limited(row.transform[i], 0.0, 1.0);
+    crust_.weakness[cell] = limited(row.weakness[i], 0.0, 1.0);
+
+    const double rough = is_rough(share, value_of(island)) ? along.land[i] : 0.0;
+    Continent land{p_.continental_km, Number(0.0)};
+    if (share > 0.0) land = continent(i, along, belt, hot, rough);
+    if (!crust_.in.made_elevation_m.empty()) {
+      return draw_made(i, cell, along, {share, belt, hot, rough});
+    }
+    Number floor_m(0.0);
+    if (share < 1.0) {
+      floor_m = sea_floor_m(i, along, crust_.in.age_myr[cell], island, rough) +
+                hot * (1.0 - 0.3 * share) - 0.25 * p_.heat_m;
+    }
+    crust_.thickness_m[cell] =
+        V(1e3 * limited(Number(p_.oceanic_km + (land.thickness_km - p_.oceanic_km) * share +
+                               p_.arc_km * island * (1.0 - share)),
+                        3.0, 80.0));
+    crust_.density[cell] =
+        V(density_.oceanic_crust + (density_.continental_crust - density_.oceanic_crust) * share);
+    Number trench_m(0.0);
+    if (share > 0.0) trench_m = Number(row.trench_m[i]) * 0.5 * share;
+    crust_.elevation_m[cell] =
+        V(floor_m + (land.elevation_m - floor_m) * share + trench_m + Number(row.flexure_m[i]));
+  }
+
+  /// A column whose height and thickness plates have made: on top come what is finer than their
+  /// samples, sediment, trenches and warped margins.
+  struct Setting {
+    double share;
+    Number belt, hot;
+    double rough;
+  };
+  void draw_made(int i, Index cell, const Row& along, const Setting& at) const {
+    using std::exp;
+    const Tectonics<V>& row = along.from_afar;
+    const Number tilt_m =
+        p_.margin_tilt_m * exp(-static_cast<double>(along.inland_km[i]) / p_.margin_tilt_km);
+    const Number relief_m =
+        p_.land_roughness_m * (1.0 + 3.0 * at.belt + 1.5 * row.relict[i]) * at.rough;
+    const Number on_land_m = 0.6 * Number(row.swell_m[i]) - tilt_m + relief_m + 0.6 * at.hot;
+    Number at_sea_m(0.0);
+    if (at.share < 1.0) {
+      at_sea_m = floor_cover_m(i, along, crust_.in.age_myr[cell]) + at.hot - 0.25 * p_.heat_m;
+    }
+    crust_.density[cell] = V(density_.oceanic_crust +
+                             (density_.continental_crust - density_.oceanic_crust) * at.share);
+    // Roots of cratons that their lithosphere weighs down: they do not show in the relief.
+    const Number root_m =
+        1e3 * p_.craton_compensation * Number(row.thickness_noise_km[i]) * at.share;
+    crust_.thickness_m[cell] = limited(V(crust_.thickness_m[cell] + V(root_m)), 3000.0, 80000.0);
+    crust_.elevation_m[cell] =
+        V(static_cast<double>(crust_.in.made_elevation_m[cell]) + on_land_m * at.share +
+          at_sea_m * (1.0 - at.share) + Number(row.trench_m[i]) * (1.0 - 0.5 * at.share));
+  }
+
+  [[nodiscard]] Continent continent(int i, const Row& along, const Number& belt, const Number& hot,
+                                    double rough) const {
+    using std::exp;
+    const Tectonics<V>& row = along.from_afar;
+    const Number noise_km = row.thickness_noise_km[i];
+    const double relict = row.relict[i];
+    const double fabric = is_folded(value_of(belt), relict) ? along.ranges[i] : 0.0;
+    const Number thickness_km = p_.continental_km + noise_km +
+                                p_.collision_km * (belt * (1.0 + 0.16 * fabric)) +
+                                p_.relict_km * (relict * (1.0 + 0.3 * fabric)) +
+                                p_.transpression_km * Number(row.transform[i]) -
+                                p_.rift_km * 0.35 * Number(row.divergent[i]);
+    // Thick cratons have thick, heavy roots; belts are warm.
+    const Number lithosphere =
+        p_.lithosphere + p_.craton_compensation * craton_slope_ * noise_km - 0.12 * belt;
+    const Number valley_m =
+        Number(row.divergent[i]) *
+        (-1500.0 * bell(along.rift_km[i], 0.0, 38.0) + 900.0 * bell(along.rift_km[i], 95.0, 55.0));
+    const Number relief_m = p_.land_roughness_m * (1.0 + 3.0 * belt + 1.5 * relict);
+    const Number elevation_m =
+        balanced(
+            datum_.dry_elevation_m(1e3 * thickness_km, density_.continental_crust, lithosphere)) +
+        Number(row.swell_m[i]) + valley_m + relief_m * rough + hot * 0.6 -
+        p_.margin_tilt_m * exp(-static_cast<double>(along.inland_km[i]) / p_.margin_tilt_km);
+    return {thickness_km, elevation_m};
+  }
+
+  /// Floor as deep as it is old, under its sediment, with hills, seamounts, arcs and trenches.
+  [[nodiscard]] Number sea_floor_m(int i, const Row& along, double age_myr, const Number& island,
+                                   double rough) const {
+    const Tectonics<V>& row = along.from_afar;
+    return -ocean_depth_m(std::min(age_myr, 200.0)) + floor_cover_m(i, along, age_myr) +
+           island * (2600.0 + 1500.0 * rough) + Number(row.trench_m[i]);
+  }
+  /// Sediment, swells, hills and seamounts on a floor.
+  [[nodiscard]] Number floor_cover_m(int i, const Row& along, double age_myr) const {
+    const Tectonics<V>& row = along.from_afar;
+    const Number in_trench = limited(Number(-Number(row.trench_m[i]) / 1500.0), 0.0, 1.0);
+    const Number sediment_m =
+        deep_sediment_m(p_.sediment, age_myr, along.offshore_km[i]) * (1.0 - 0.6 * in_trench);
+    const Number buried = 1.0 / (1.0 + sediment_m / 700.0);
+    const double mount = std::max(0.0, along.mounts[i] - 1.9);
+    return datum_.rise_per_sediment() * sediment_m +
+           p_.ocean_swell_m * static_cast<double>(row.ocean_swell[i]) +
+           p_.seafloor_roughness_m * buried * along.hills[i] + p_.seamount_m * std::min(1.5, mount);
+  }
+
+  /// A dry column under the sea, whose water loads it unless the compensation is dry.
+  [[nodiscard]] Number balanced(const Number& dry_m) const {
+    return is_dry_ ? dry_m : datum_.loaded(dry_m);
+  }
+
+  const Crust<V>& crust_;
+  Settings p_;
+  BasicColumnDensities<Number> density_;
+  BasicAiryDatum<Number> datum_;
+  bool is_dry_;
+  Number craton_slope_;
+  Swell land_, ranges_, hills_, mounts_;
+};
+
+/// crust = "margins": thickness, density and height of every column of the full grid, from the
+/// cross sections of margins and belts and the age of the floor.
+template <class V>
+void draw_margins_crust(const Crust<V>& crust, const CoarseGrid& coarse, const TectonicFrame& frame,
+                        const Tectonics<V>& tectonics) {
+  const CubicRows rows(coarse.grid(), crust.grid);
+  const Columns<V> columns(crust);
+#pragma omp parallel
+  {
+    typename Columns<V>::Row row(columns);
+#pragma omp for schedule(dynamic, 4)
+    for (int j = 0; j < crust.grid.ny(); ++j) {
+      row.read(crust, rows, frame, tectonics, j);
+      columns.draw(j, row);
+    }
+  }
+}
+
+}  // namespace geo

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <vector>
+
+#include "geo/kernels/convergent_margins.hpp"
+#include "geo/stages/isostasy/coarse_grid.hpp"
+#include "geo/stages/isostasy/crust.hpp"
+
+namespace geo {
+
+/// Where cells of the coarse grid lie with regard to plate boundaries and coasts of continental
+/// crust. Of the settings, only the lengths over which deformation dies away have a say in it.
+struct TectonicFrame {
+  DeformationSources convergent, divergent, transform;
+  std::vector<float> boundary_km;             // distance to any boundary
+  std::vector<float> rift_km;                 // distance to divergent boundaries
+  std::vector<float> offshore_km, inland_km;  // distance to continental crust, to the ocean's
+  ConvergentMargins margins;                  // of a margins crust alone
+};
+TectonicFrame tectonic_frame(const IsostasyParameters& parameters, const CoarseGrid& coarse,
+                             const CrustInputs& in, std::span<const float> fraction);
+
+/// What plate boundaries do to the crust, and its broad variation, on the coarse grid.
+template <class V>
+struct Tectonics {
+  std::vector<V> convergent, divergent, transform, weakness;  // 0 to 1
+  std::vector<V> thickening, arc, trench_m;                   // cross sections of margins
+  std::vector<V> thickness_noise_km, swell_m, flexure_m;
+  std::vector<float> ocean_swell, relict;
+};
+
+}  // namespace geo

@@ -1,0 +1,31 @@
+#include "geo/stages/erosion/drainage.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "geo/kernels/depressions.hpp"
+#include "geo/kernels/multiple_flow.hpp"
+
+namespace geo {
+
+void drain(const ErosionParameters& p, const Grid& grid, std::span<const float> elevation_m,
+           std::span<const std::uint8_t> outlets, Drainage& drainage) {
+  const bool spread = p.flow_routing == "mfd";
+  drainage.graph = {};
+  Routing routing = route_water(grid, elevation_m, outlets, spread);
+  drainage.graph = std::move(routing.graph);
+  std::vector<double>& area_m2 = drainage.area_m2;
+  area_m2.resize(grid.size());
+#pragma omp parallel for schedule(static)
+  for (int j = 0; j < grid.ny(); ++j) {
+    std::fill_n(area_m2.begin() + grid.cell(0, j), grid.nx(), grid.area_m2(j));
+  }
+  if (spread) {
+    accumulate_flow(grid, routing.filled_m, drainage.graph.receiver,
+                    {FlowMethod::multiple, p.flow_exponent}, area_m2);
+  } else {
+    drainage.graph.accumulate(area_m2);
+  }
+}
+
+}  // namespace geo

@@ -1,0 +1,113 @@
+#include "calibration/target.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "calibration/ranking.hpp"
+#include "calibration/settings.hpp"
+#include "geo/core/error.hpp"
+#include "geo/core/random.hpp"
+#include "geo/io/hypsography.hpp"
+
+namespace geo::calibration {
+namespace {
+
+using testing::HasSubstr;
+
+class TargetFile : public testing::Test {
+ protected:
+  Target read(const std::string& text) {
+    std::ofstream(path_) << text;
+    const Planet planet;
+    return read_target(path_.string(), planet, Grid::sphere(64, 32, planet.figure()), {});
+  }
+  std::string message(const std::string& text) {
+    try {
+      read(text);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+  void TearDown() override { std::filesystem::remove(path_); }
+
+ private:
+  std::filesystem::path path_ =
+      std::filesystem::temp_directory_path() /
+      (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + ".csv");
+};
+
+TEST_F(TargetFile, QuantilesAreMatchedRowByRowWithoutTheExtremes) {
+  const Target target = read("quantile,elevation_m\n0,-5000\n0.25,-4000\n0.75,100\n1,3000\n");
+  EXPECT_EQ(target.share, (std::vector<double>{0.25, 0.75}));
+  EXPECT_EQ(target.elevation_m, (std::vector<double>{-4000, 100}));
+  EXPECT_TRUE(target.deviation_m.empty());
+  EXPECT_NEAR(target.fine_bin_m[500], -4000 + 0.5 * 4100, 5.0);
+}
+
+TEST_F(TargetFile, DeviationsMayStandBesideQuantiles) {
+  const Target target = read("quantile,elevation_m,sigma_m\n0.1,-4000,20\n0.9,500,30\n");
+  EXPECT_EQ(target.deviation_m, (std::vector<double>{20, 30}));
+}
+
+TEST_F(TargetFile, BinsAreAHistogram) {
+  const Target target =
+      read("lower_m,upper_m,fraction\n-5000,-3000,0.5\n-3000,0,0\n0,1000,0.3\n1000,2000,0.2\n");
+  double mean = 0.0;
+  for (const double bin : target.fine_bin_m) mean += bin / kFineBins;
+  EXPECT_NEAR(mean, 0.5 * -4000 + 0.3 * 500 + 0.2 * 1500, 1.0);
+  EXPECT_EQ(target.share.size(), 100U);
+}
+
+TEST_F(TargetFile, BadOnesAreRefusedWithTheirLine) {
+  EXPECT_THAT(message("height\n1\n2\n"), HasSubstr(":1: must be quantile,elevation_m"));
+  EXPECT_THAT(message("quantile,elevation_m\n0.1,5\n0.1,6\n"), HasSubstr(":3: quantiles must"));
+  EXPECT_THAT(message("quantile,elevation_m\n0.1,5\n1.1,6\n"), HasSubstr(":3: a quantile must"));
+  EXPECT_THAT(message("quantile,elevation_m\n0.1,x\n"), HasSubstr(":2: must be numbers"));
+  EXPECT_THAT(message("quantile,elevation_m\n0.1,5\n"), HasSubstr("two rows"));
+  EXPECT_THAT(message("lower_m,upper_m,fraction\n0,1,0.5\n2,3,0.5\n"), HasSubstr(":3: a bin"));
+  EXPECT_THAT(message("lower_m,upper_m,fraction\n0,1,0.5\n1,3,0.2\n"), HasSubstr("sum to 0.7"));
+}
+
+TEST(Ranking, QuantilesAndBinsAreThoseOfTheArea) {
+  const Grid grid = Grid::sphere(64, 32, {6371e3, 0.0});
+  // The sine of latitude is spread evenly over the sphere.
+  std::vector<double> field(grid.size());
+  for (Index c = 0; c < grid.size(); ++c) {
+    field[c] = grid.unit_vector(grid.column(c), grid.row(c))[2];
+  }
+  const Ranking ranking(grid, field);
+  for (const double share : {0.1, 0.37, 0.5, 0.93}) {
+    EXPECT_NEAR(ranking.quantile(share), 2.0 * share - 1.0, 0.06);
+    EXPECT_NEAR(ranking.density(share, 0.1), 0.5, 0.1);
+    const auto window = ranking.window(share, 0.05);
+    EXPECT_NEAR(ranking.mean(window, std::span<const double>(field)), 2.0 * share - 1.0, 0.06);
+  }
+  const auto bins = ranking.bin_means(10);
+  double mean = 0.0;
+  for (const double bin : bins) mean += bin / 10;
+  EXPECT_NEAR(mean, 0.0, 1e-12);
+  EXPECT_NEAR(bins[9], 0.9, 0.01);
+}
+
+TEST(CalibrationSettings, ListsAreRead) {
+  EXPECT_EQ(read_seeds("s", "1-3, 7"), (std::vector<std::int64_t>{1, 2, 3, 7}));
+  EXPECT_TRUE(read_seeds("s", "").empty());
+  EXPECT_THROW((void)read_seeds("s", "3-1"), ConfigurationError);
+  EXPECT_THROW((void)read_seeds("s", "1, 1"), ConfigurationError);
+  EXPECT_THROW((void)read_seeds("s", "one"), ConfigurationError);
+  const auto priors = read_estimates("p", "a.b = 1.5 +- 0.25, c.d = -2e3+-1");
+  ASSERT_EQ(priors.size(), 2U);
+  EXPECT_EQ(priors[1].mean, -2000.0);
+  EXPECT_THROW((void)read_estimates("p", "a.b = 1"), ConfigurationError);
+  EXPECT_THROW((void)read_estimates("p", "a.b = 1 +- 0"), ConfigurationError);
+  EXPECT_EQ(read_ranges("b", "a.b = -1 .. 0.5").front().high, 0.5);
+  EXPECT_THROW((void)read_ranges("b", "a.b = 2 .. 1"), ConfigurationError);
+  EXPECT_THROW((void)read_names("f", "a, a"), ConfigurationError);
+}
+
+}  // namespace
+}  // namespace geo::calibration
