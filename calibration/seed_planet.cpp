@@ -45,10 +45,10 @@ void SeedPlanet::hold_frame(const IsostasyParameters& p, const CrustInputs& in) 
   held_.transform_length_km = p.transform_length_km;
 }
 
-void SeedPlanet::find_sea(const Model& model, std::span<const double> elevation_m) {
+void SeedPlanet::find_sea(const Model& model, std::span<const double> elevation_m,
+                          HeldFast::Sea& sea) const {
   constexpr double kHalfWidth = 0.0025;  // share of the area on either side of the shore
   const Grid& grid = this->grid();
-  HeldFast::Sea& sea = held_.sea;
   sea = {};
   const std::vector<float> values(elevation_m.begin(), elevation_m.end());
   sea.level_m = sea_level_m(grid, values, model.planet);

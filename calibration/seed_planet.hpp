@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -16,6 +17,7 @@
 #include "geo/stages/erosion/ground.hpp"
 #include "geo/stages/erosion/landscape.hpp"
 #include "geo/stages/isostasy/floating_crust.hpp"
+#include "geo/stages/isostasy/freeboard.hpp"
 #include "geo/stages/isostasy/rocks.hpp"
 
 namespace geo::calibration {
@@ -44,6 +46,12 @@ struct HeldFast {
     std::vector<std::uint8_t> wet;
     double level_m = 0.0, mean_m = 0.0, asked = 0.0, rate = 0.0;
   } sea;
+  /// The sea before continents settle, each time they do, and the cells below it.
+  struct Settling {
+    Sea sea;
+    std::vector<std::uint8_t> wet;
+  };
+  std::array<Settling, kSettlings> settlings;
 };
 
 /// Plates of one seed, and the relief that isostasy and erosion make of them.
@@ -74,10 +82,11 @@ class SeedPlanet {
   template <class V>
   Relief<V> evaluate(const Model& model, const Lift<V>& lift, bool routes);
   template <class V>
-  V sea_level(const Model& model, const Lift<V>& lift, std::span<const V> elevation_m, bool finds);
+  V sea_level(const Model& model, const Lift<V>& lift, std::span<const V> elevation_m,
+              HeldFast::Sea& sea, bool finds);
   /// Boundaries and distances from them: costly, and other only when a length of deformation is.
   void hold_frame(const IsostasyParameters& parameters, const CrustInputs& in);
-  void find_sea(const Model& model, std::span<const double> elevation_m);
+  void find_sea(const Model& model, std::span<const double> elevation_m, HeldFast::Sea& sea) const;
 
   std::uint64_t seed_;
   State state_;
@@ -88,13 +97,12 @@ class SeedPlanet {
 
 template <class V>
 V SeedPlanet::sea_level(const Model& model, const Lift<V>& lift, std::span<const V> elevation_m,
-                        bool finds) {
+                        HeldFast::Sea& sea, bool finds) {
   if (finds) {
     std::vector<double> values(elevation_m.size());
     for (std::size_t c = 0; c < values.size(); ++c) values[c] = value_of(elevation_m[c]);
-    find_sea(model, values);
+    find_sea(model, values, sea);
   }
-  const HeldFast::Sea& sea = held_.sea;
   V mean(0.0), asked(0.0);
   if (sea.ranking) {
     mean = sea.ranking->mean(sea.window, elevation_m);
@@ -148,7 +156,17 @@ Relief<V> SeedPlanet::evaluate(const Model& model, const Lift<V>& lift, bool rou
   if (routes) hold_frame(model.isostasy, in);
   float_margins_crust(crust, coarse_, *held_.frame);
   const std::span<V> z(relief.elevation_m);
-  fill_sea(crust, sea_level<V>(model, lift, z, routes));
+  if (settles_continents(model.isostasy, model.planet)) {
+    for (HeldFast::Settling& at : held_.settlings) {
+      const V level_m = sea_level<V>(model, lift, z, at.sea, routes);
+      if (routes) {
+        at.wet.resize(cells);
+        for (std::size_t c = 0; c < cells; ++c) at.wet[c] = value_of(z[c]) < value_of(level_m);
+      }
+      settle_continents(crust, level_m, at.wet);
+    }
+  }
+  fill_sea(crust, sea_level<V>(model, lift, z, held_.sea, routes));
 
   const auto as_floats = [&](std::span<const V> field) {
     std::vector<float> values(cells);

@@ -12,6 +12,7 @@
 #include "geo/core/error.hpp"
 #include "geo/core/vector3.hpp"
 #include "geo/kernels/airy.hpp"
+#include "geo/kernels/area_sum.hpp"
 #include "geo/kernels/quantiles.hpp"
 #include "geo/stages/plates.hpp"
 
@@ -69,6 +70,70 @@ TEST(Isostasy, SeaCoversItsShareOfTheArea) {
       const auto z = p.state.read(field::elevation);
       // A row of cells at the equator is 1e-5 of the planet each.
       EXPECT_NEAR(fraction_below(grid, z, 0.0F), ocean, 1e-4) << parameters.crust;
+    }
+  }
+}
+
+double mean_depth_m(const Planetary& p) {
+  const auto z = p.state.read(field::elevation);
+  const Grid& grid = p.state.grid();
+  const double sea = area_sum<double>(grid, [&](Index c) { return z[c] < 0.0F ? 1.0 : 0.0; });
+  return area_sum<double>(grid, [&](Index c) { return z[c] < 0.0F ? -z[c] : 0.0; }) / sea;
+}
+
+TEST(Isostasy, ContinentsSettleUntilTheSeaIsAsDeepAsAsked) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    for (const double depth_m : {3200.0, 3690.0, 4200.0}) {
+      IsostasyParameters parameters;
+      parameters.shelf_depth_m = 0.0;  // sediment would fill some of it
+      parameters.ocean_depth_m = depth_m;
+      // Where the shore moves onto other crust, the basins are others than before.
+      EXPECT_NEAR(mean_depth_m(planet(256, seed, parameters)), depth_m, 40.0) << "seed " << seed;
+    }
+  }
+}
+
+TEST(Isostasy, ASettledContinentIsAsThickAsItsHeightAsks) {
+  IsostasyParameters free, settled;
+  free.ocean_depth_m = 0.0;
+  const Planetary before = planet(256, 2, free), after = planet(256, 2, settled);
+  const double rise_m = after.budget.at("continental_rise_m");
+  ASSERT_GT(std::abs(rise_m), 10.0);
+  EXPECT_FALSE(before.budget.contains("continental_rise_m"));
+  const double thickening_m =
+      rise_m / (1.0 - settled.density.continental_crust / settled.density.mantle);
+  const auto fraction = before.state.read(field::continental_fraction);
+  const auto thin = before.state.read(field::crust_thickness),
+             thick = after.state.read(field::crust_thickness);
+  for (Index c = 0; c < before.state.grid().size(); ++c) {
+    ASSERT_NEAR(thick[c] - thin[c], thickening_m * fraction[c], 0.1);
+  }
+}
+
+TEST(Isostasy, ASmallSeaSettlesNoContinents) {
+  // It lies on ocean floor alone: how deep it is does not depend on continents.
+  const Planetary p = planet(256, 1, {}, {.ocean_fraction = 0.4});
+  EXPECT_EQ(p.budget.at("continental_rise_m"), 0.0);
+}
+
+TEST(Isostasy, QuietMarginsSlopeSteadilyFromShelfToFloor) {
+  constexpr int kParts = 5;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    const Planetary p = planet(256, seed);
+    const Grid& grid = p.state.grid();
+    const auto z = p.state.read(field::elevation), f = p.state.read(field::continental_fraction),
+               belt = p.state.read(field::convergent_deformation);
+    std::array<double, kParts> sum{}, area{};
+    for (Index c = 0; c < grid.size(); ++c) {
+      if (belt[c] > 0.01F || f[c] <= 0.0F || f[c] >= 1.0F) continue;
+      const int part = static_cast<int>(kParts * f[c]);
+      sum[part] += grid.area_m2(grid.row(c)) * z[c];
+      area[part] += grid.area_m2(grid.row(c));
+    }
+    for (int k = 0; k < kParts; ++k) {
+      const double floor_m = sum[0] / area[0], shelf_m = sum[kParts - 1] / area[kParts - 1];
+      const double even_m = floor_m + (shelf_m - floor_m) * k / (kParts - 1);
+      EXPECT_NEAR(sum[k] / area[k], even_m, 600.0) << "seed " << seed << ", part " << k;
     }
   }
 }

@@ -217,7 +217,8 @@ TEST(Plates, OfManySeedsAndCountsStayInRange) {
       ASSERT_TRUE(type[cell] != 0 || strength[cell] == 0.0F);
     }
     if (parameters.continents == "cratons") {
-      EXPECT_NEAR(area_where(state, [&](Index c) { return fraction[c] > 0.5F; }), 0.38, 0.001);
+      EXPECT_NEAR(area_where(state, [&](Index c) { return fraction[c] > 0.5F; }),
+                  parameters.cratons.share, 0.001);
     }
   }
 }

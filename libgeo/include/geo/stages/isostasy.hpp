@@ -26,6 +26,7 @@ struct IsostasyParameters {
   double deformation_smoothing_km = 30.0;
 
   double continental_km = 36.4;
+  double ocean_depth_m = 3690.0;
   double oceanic_km = 7.0;
   double thickness_noise_km = 4.5;
   double collision_km = 18.5;
@@ -44,7 +45,8 @@ struct IsostasyParameters {
   double relict_km = 7.5;
   double heat_m = 700.0;
   double thermal_coefficient = 0.02;
-  double shelf_depth_m = 130.0;
+  double shelf_depth_m = 100.0;
+  double shelf_edge = 0.85;
   double trench_depth_m = 3000.0;
   double seamount_m = 1800.0;
   double seafloor_roughness_m = 130.0;

@@ -3,6 +3,7 @@
 #include "blueprint_crust.hpp"
 #include "geo/core/error.hpp"
 #include "geo/stages/isostasy/floating_crust.hpp"
+#include "geo/stages/isostasy/freeboard.hpp"
 #include "geo/stages/isostasy/rocks.hpp"
 #include "geo/stages/sea_level.hpp"
 
@@ -58,6 +59,23 @@ void float_crust(const Crust<float>& crust, const Context& context) {
   }
 }
 
+float level_of_sea_m(const Crust<float>& crust) {
+  return static_cast<float>(sea_level_m(crust.grid, crust.elevation_m, crust.planet));
+}
+
+void settle(const Crust<float>& crust, Budget& budget) {
+  std::vector<std::uint8_t> wet(crust.grid.size());
+  double& rise_m = budget["continental_rise_m"];
+  for (int time = 0; time < kSettlings; ++time) {
+    const float level_m = level_of_sea_m(crust);
+#pragma omp parallel for schedule(static)
+    for (Index cell = 0; cell < crust.grid.size(); ++cell) {
+      wet[cell] = crust.elevation_m[cell] < level_m;
+    }
+    rise_m += settle_continents(crust, level_m, wet);
+  }
+}
+
 void report(const Crust<float>& crust, Budget& budget) {
   const Grid& grid = crust.grid;
   double continental = 0.0, volume = 0.0, all_crust = 0.0;
@@ -104,8 +122,8 @@ class IsostasyStage final : public Stage {
     const Crust<float> crust = open_crust(parameters_, io, context);
     float_crust(crust, context);
     context.advance(0.8);
-    const auto level_m =
-        static_cast<float>(sea_level_m(crust.grid, crust.elevation_m, crust.planet));
+    if (settles_continents(parameters_, crust.planet)) settle(crust, context.budget);
+    const float level_m = level_of_sea_m(crust);
     fill_sea(crust, level_m);
     context.budget["sea_level_shift_m"] = level_m;
     classify_rock(crust);

@@ -8,29 +8,13 @@
 #include <vector>
 
 #include "geo/core/numeric.hpp"
+#include "geo/kernels/area_sum.hpp"
 #include "geo/kernels/diffusion.hpp"
 #include "geo/kernels/smoothing.hpp"
 #include "geo/kernels/stream_power.hpp"
 #include "geo/stages/erosion/drainage.hpp"
 
 namespace geo {
-
-/// Sum over rows of area * value(cell), the same for any number of threads.
-template <class Number, class Value>
-Number area_sum(const Grid& grid, Value&& value) {
-  std::vector<Number> rows(grid.ny());
-#pragma omp parallel for schedule(static)
-  for (int j = 0; j < grid.ny(); ++j) {
-    Number sum(0.0);
-    for (Index cell = grid.cell(0, j); cell < grid.cell(0, j) + grid.nx(); ++cell) {
-      sum += value(cell);
-    }
-    rows[j] = sum * grid.area_m2(j);
-  }
-  Number total(0.0);
-  for (const Number& row : rows) total += row;
-  return total;
-}
 
 /// Rock volumes that pass through a landscape, m3.
 template <class Number>
