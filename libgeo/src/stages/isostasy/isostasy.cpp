@@ -5,17 +5,22 @@
 #include "geo/stages/isostasy/floating_crust.hpp"
 #include "geo/stages/isostasy/rocks.hpp"
 #include "geo/stages/sea_level.hpp"
+#include "given_crust.hpp"
 
 namespace geo {
 namespace {
 
-std::span<const float> made_by_plates(const StageIo& io) {
+bool keeps_made_crust(const IsostasyParameters& p) {
+  return p.crust == "simulated" || p.crust == "given";
+}
+
+std::span<const float> made_by_plates(const IsostasyParameters& p, const StageIo& io) {
   const auto elevation_m = io.read_optional(field::crust_elevation);
   const auto thickness_m = io.read_optional(field::crust_thickness);
   if (elevation_m.empty() || thickness_m.empty()) {
-    throw InputError(
-        "isostasy: crust = \"simulated\" needs crust_elevation and crust_thickness, which "
-        "plates.model = \"sphere\" writes");
+    throw InputError("isostasy: crust = \"" + p.crust +
+                     "\" needs crust_elevation and crust_thickness, which plates.model = "
+                     "\"sphere\" and \"hypsography\" write");
   }
   return elevation_m;
 }
@@ -32,8 +37,9 @@ Crust<float> open_crust(const IsostasyParameters& parameters, StageIo& io, const
                  .heat = io.read(field::heat_anomaly),
                  .velocity_east = io.read(field::plate_velocity_east),
                  .velocity_north = io.read(field::plate_velocity_north),
-                 .made_elevation_m = parameters.crust == "simulated" ? made_by_plates(io)
-                                                                     : std::span<const float>{}},
+                 .made_elevation_m = keeps_made_crust(parameters) ? made_by_plates(parameters, io)
+                                                                  : std::span<const float>{},
+                 .has_density = !io.read_optional(field::crust_density).empty()},
           .fraction = io.write(field::continental_fraction),
           .convergent = io.write(field::convergent_deformation),
           .divergent = io.write(field::divergent_deformation),
@@ -53,6 +59,10 @@ void float_crust(const Crust<float>& crust, const Context& context) {
   if (crust.parameters.crust == "blueprint") {
     draw_blueprint_crust(crust, coarse, deform(crust, coarse, frame));
     stiffen_blueprint(crust, coarse);
+  } else if (crust.parameters.crust == "given") {
+    Tectonics<float> tectonics = deform(crust, coarse, frame);
+    cut_sections(crust, coarse, frame, tectonics);
+    take_given_crust(crust, coarse, tectonics);
   } else {
     float_margins_crust(crust, coarse, frame);
   }
@@ -88,7 +98,7 @@ class IsostasyStage final : public Stage {
         {&field::plate_id, &field::continental_fraction, &field::boundary_type,
          &field::boundary_strength, &field::crust_age, &field::heat_anomaly,
          &field::plate_velocity_east, &field::plate_velocity_north},
-        {&field::crust_elevation, &field::crust_thickness},
+        {&field::crust_elevation, &field::crust_thickness, &field::crust_density},
         {&field::convergent_deformation, &field::divergent_deformation,
          &field::transform_deformation, &field::lithospheric_weakness, &field::continental_fraction,
          &field::crust_thickness, &field::crust_density, &field::rock_type, &field::erodibility,

@@ -4,9 +4,10 @@ namespace geo {
 
 std::vector<Parameter> IsostasyParameters::declarations() {
   return {
-      choice("isostasy.crust", crust, {"margins", "blueprint", "simulated"},
+      choice("isostasy.crust", crust, {"margins", "blueprint", "simulated", "given"},
              "crust from cross sections of margins and belts, by the formulas of the Tectonica "
-             "blueprint, or as the plates' history has made it (plates.model = sphere)",
+             "blueprint, as the plates' history has made it (plates.model = sphere) with what is "
+             "finer on top, or as plates gave it to the last metre",
              "tectonica2026"),
       choice("isostasy.compensation", compensation, {"flexural", "airy", "airy-dry"},
              "what carries the relief: an elastic plate, every column by itself with the sea as a "

@@ -21,7 +21,8 @@ template <class V>
 void fill_sea(const Crust<V>& crust, const V& level_m) {
   using Number = Arithmetic<V>;
   const IsostasyParameters& p = crust.parameters;
-  const bool shelves = p.crust != "blueprint" && p.shelf_depth_m > 0.0;
+  const bool shelves =
+      p.crust != "blueprint" && p.crust != "given" && p.shelf_depth_m > 0.0;
   const Number shelf_depth_m = crust.lift(p.shelf_depth_m);
 #pragma omp parallel for schedule(static)
   for (Index cell = 0; cell < crust.grid.size(); ++cell) {
