@@ -32,6 +32,11 @@ const Hypsography& target_of(const Context& context) {
   return context.hypsography;
 }
 
+template <class T>
+void zero(std::span<T> field) {
+  std::fill(field.begin(), field.end(), T{});
+}
+
 /// Steps so steep and so few that places between them would tie.
 bool leaves_ties(const CircleCuts& cuts) {
   constexpr double kCrossings = 12.0, kReach = 8.7;  // of the circles that a place should feel
@@ -122,21 +127,42 @@ void order_cells(const PlatesParameters& parameters, const StageIo& io, const Co
   if (!given.empty()) take_given(parameters.ranking, grid, given, rank);
 }
 
-/// Gives cells heights by their order. The lowest and the highest stand for the curve's ends.
+/// The height below which a share of the area lies.
+double height_at(const Hypsography& target, double share) {
+  const auto above =
+      std::upper_bound(target.fraction.begin() + 1, target.fraction.end() - 1, share);
+  const auto k = above - target.fraction.begin();
+  return std::lerp(
+      target.elevation_m[k - 1], target.elevation_m[k],
+      (share - target.fraction[k - 1]) / (target.fraction[k] - target.fraction[k - 1]));
+}
+
+/// Gives cells heights by their order. Ranks are those of the middles of cells: the lowest and the
+/// highest are moved to the curve's ends.
 void match(const Grid& grid, const Hypsography& target, std::span<float> rank) {
   const auto [least, most] = std::minmax_element(rank.begin(), rank.end());
-  const auto half_share = [&](auto at) {
-    return 0.5 * grid.area_m2(grid.row(static_cast<Index>(at - rank.begin()))) /
-           grid.total_area_m2();
+  const auto whole_share = [&](auto at) {
+    return grid.area_m2(grid.row(static_cast<Index>(at - rank.begin()))) / grid.total_area_m2();
   };
-  const double low = half_share(least), high = 1.0 - half_share(most);
-  std::vector<double> fraction{0.0}, value{target.elevation_m.front()};
+  constexpr double kMore = 0.6, kYetMore = 0.7;  // than half of a cell
+  const double first = whole_share(least), last = whole_share(most);
+  std::vector<double> fraction, value;
+  const auto add = [&](double share, double height_m) {
+    fraction.push_back(share);
+    value.push_back(height_m);
+  };
+  const double low = kYetMore * first, high = 1.0 - kYetMore * last;
+  add(0.0, target.elevation_m.front());
+  add(kMore * first, target.elevation_m.front());
+  add(low, height_at(target, low));
   for (std::size_t k = 0; k < target.fraction.size(); ++k) {
-    fraction.push_back(low + target.fraction[k] * (high - low));
-    value.push_back(target.elevation_m[k]);
+    if (target.fraction[k] > low && target.fraction[k] < high) {
+      add(target.fraction[k], target.elevation_m[k]);
+    }
   }
-  fraction.push_back(1.0);
-  value.push_back(target.elevation_m.back());
+  add(high, height_at(target, high));
+  add(1.0 - kMore * last, target.elevation_m.back());
+  add(1.0, target.elevation_m.back());
   rank_match(grid, {fraction, value}, rank);
 }
 
@@ -180,8 +206,10 @@ void draw_hypsography(const PlatesParameters& parameters, StageIo& io, Context& 
   if (grid.topology() != Topology::sphere) {
     throw InputError("plates: the grid must be a whole sphere");
   }
+  context.advance(0.0);
   const Hypsography& target = target_of(context);
   const auto elevation = io.write(field::crust_elevation);
+  zero(elevation);
   order_cells(parameters, io, context, elevation);
   context.advance(0.6);
   match(grid, target, elevation);
@@ -206,14 +234,14 @@ void draw_hypsography(const PlatesParameters& parameters, StageIo& io, Context& 
     orogeny_age[cell] = is_continent ? kContinent_myr : 0.0F;
   }
   // One plate at rest: no boundary, no orogeny, no heat but the mantle's own, no direction.
-  (void)io.write(field::plate_id);
-  (void)io.write(field::boundary_type);
-  (void)io.write(field::orogeny_type);
+  zero(io.write(field::plate_id));
+  zero(io.write(field::boundary_type));
+  zero(io.write(field::orogeny_type));
   for (const auto* still :
        {&field::plate_velocity_east, &field::plate_velocity_north, &field::boundary_strength,
         &field::heat_anomaly, &field::fold_direction_east, &field::fold_direction_north,
         &field::ridge_direction_east, &field::ridge_direction_north}) {
-    (void)io.write(*still);
+    zero(io.write(*still));
   }
   context.budget["plates"] = 1;
 }
@@ -237,14 +265,9 @@ std::vector<float> hypsographic_heights_m(const PlatesParameters& parameters, co
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::int32_t a, std::int32_t b) { return height[a] < height[b]; });
-  std::size_t segment = 1;
   const double last = std::max(1.0, static_cast<double>(places.size()) - 1.0);
   for (std::size_t k = 0; k < order.size(); ++k) {
-    const double rank = static_cast<double>(k) / last;
-    while (segment + 1 < target.fraction.size() && target.fraction[segment] < rank) ++segment;
-    const double low = target.fraction[segment - 1], high = target.fraction[segment];
-    height[order[k]] = static_cast<float>(std::lerp(
-        target.elevation_m[segment - 1], target.elevation_m[segment], (rank - low) / (high - low)));
+    height[order[k]] = static_cast<float>(height_at(target, static_cast<double>(k) / last));
   }
   return height;
 }
