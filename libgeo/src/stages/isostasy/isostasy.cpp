@@ -6,6 +6,7 @@
 #include "geo/stages/isostasy/rocks.hpp"
 #include "geo/stages/sea_level.hpp"
 #include "given_crust.hpp"
+#include "sea_floor_fabric.hpp"
 
 namespace geo {
 namespace {
@@ -52,8 +53,7 @@ Crust<float> open_crust(const IsostasyParameters& parameters, StageIo& io, const
           .elevation_m = io.write(field::elevation)};
 }
 
-void float_crust(const Crust<float>& crust, const Context& context) {
-  const CoarseGrid coarse(crust.grid);
+void float_crust(const Crust<float>& crust, const CoarseGrid& coarse, const Context& context) {
   const TectonicFrame frame = tectonic_frame(crust.parameters, coarse, crust.in, crust.fraction);
   context.advance(0.3);
   if (crust.parameters.crust == "blueprint") {
@@ -98,7 +98,8 @@ class IsostasyStage final : public Stage {
         {&field::plate_id, &field::continental_fraction, &field::boundary_type,
          &field::boundary_strength, &field::crust_age, &field::heat_anomaly,
          &field::plate_velocity_east, &field::plate_velocity_north},
-        {&field::crust_elevation, &field::crust_thickness, &field::crust_density},
+        {&field::crust_elevation, &field::crust_thickness, &field::crust_density,
+         &field::ridge_direction_east, &field::ridge_direction_north},
         {&field::convergent_deformation, &field::divergent_deformation,
          &field::transform_deformation, &field::lithospheric_weakness, &field::continental_fraction,
          &field::crust_thickness, &field::crust_density, &field::rock_type, &field::erodibility,
@@ -112,12 +113,15 @@ class IsostasyStage final : public Stage {
       throw InputError("isostasy: the grid must be a whole sphere");
     }
     const Crust<float> crust = open_crust(parameters_, io, context);
-    float_crust(crust, context);
+    const CoarseGrid coarse(crust.grid);
+    float_crust(crust, coarse, context);
     context.advance(0.8);
     const auto level_m =
         static_cast<float>(sea_level_m(crust.grid, crust.elevation_m, crust.planet));
     fill_sea(crust, level_m);
     context.budget["sea_level_shift_m"] = level_m;
+    engrave_sea_floor(crust, coarse, io.read_optional(field::ridge_direction_east),
+                      io.read_optional(field::ridge_direction_north));
     classify_rock(crust);
     report(crust, context.budget);
   }
