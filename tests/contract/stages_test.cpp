@@ -82,6 +82,7 @@ std::unique_ptr<Stage> quick(const StageEntry& entry, const std::string& model) 
 State run(const Stage& stage, State& state, std::uint64_t seed = 5) {
   Context context;
   context.seed = seed;
+  context.hypsography = {{0.0, 0.7, 1.0}, {-6000.0, 0.0, 5000.0}};
   StageIo io(state, stage.info());
   stage.run(io, context);
   return io.result();

@@ -88,6 +88,8 @@ const Field<float> ridge_direction_east{
 const Field<float> ridge_direction_north{
     {"ridge_direction_north", "1", "",
      "northward part of the direction of the ridge that made the floor", Type::float32}};
+const Field<float> ranking{
+    {"ranking", "1", "", "what orders places by height, in any unit", Type::float32}};
 const Field<float> convergent_deformation{
     {"convergent_deformation", "1", "",
      "shortening of the crust near convergent boundaries, 0 to 1", Type::float32}};
@@ -244,7 +246,7 @@ const Field<float> settlement_suitability{{"settlement_suitability", "1", "",
                                            Type::float32}};
 
 std::span<const FieldSpec* const> all() {
-  static const std::array<const FieldSpec*, 50> kAll{&plate_id,
+  static const std::array<const FieldSpec*, 51> kAll{&plate_id,
                                                      &continental_fraction,
                                                      &plate_velocity_east,
                                                      &plate_velocity_north,
@@ -259,6 +261,7 @@ std::span<const FieldSpec* const> all() {
                                                      &fold_direction_north,
                                                      &ridge_direction_east,
                                                      &ridge_direction_north,
+&ranking,
                                                      &convergent_deformation,
                                                      &divergent_deformation,
                                                      &transform_deformation,

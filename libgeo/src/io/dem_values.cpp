@@ -43,6 +43,7 @@ std::optional<double> default_fill(nc_type type) {
 }
 
 double factor_to(const std::string& target, const nc::File& file, int variable) {
+  if (target.empty()) return 1.0;
   const auto units = file.text(variable, "units");
   if (!units || units->empty()) return 1.0;  // GDAL and GMT often write none
   const auto factor = conversion_factor(*units, target);

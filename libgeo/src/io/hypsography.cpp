@@ -75,7 +75,41 @@ Hypsography parse(std::string_view text, const std::string& source) {
   return curve;
 }
 
+/// Share of the area below 0 m, and the first entry of the curve that is not.
+struct Shore {
+  double share;
+  std::size_t entry;
+};
+
+Shore shore_of(const Hypsography& curve) {
+  std::size_t at = 0;
+  while (at < curve.elevation_m.size() && curve.elevation_m[at] < 0.0) ++at;
+  if (at == 0) return {0.0, 0};
+  if (at == curve.elevation_m.size()) return {1.0, at};
+  const double low = curve.elevation_m[at - 1], high = curve.elevation_m[at];
+  return {std::lerp(curve.fraction[at - 1], curve.fraction[at], -low / (high - low)), at};
+}
+
 }  // namespace
+
+Hypsography with_ocean_share(Hypsography curve, double share) {
+  const auto [below, entry] = shore_of(curve);
+  if (below <= 0.0 || below >= 1.0) return curve;
+  Hypsography mixed;
+  const auto add = [&](double fraction, double elevation_m) {
+    if (!mixed.fraction.empty() && fraction <= mixed.fraction.back()) return;
+    mixed.fraction.push_back(fraction);
+    mixed.elevation_m.push_back(elevation_m);
+  };
+  for (std::size_t k = 0; k < entry && share > 0.0; ++k) {
+    add(curve.fraction[k] / below * share, curve.elevation_m[k]);
+  }
+  add(share, 0.0);
+  for (std::size_t k = entry; k < curve.fraction.size() && share < 1.0; ++k) {
+    add(1.0 - (1.0 - curve.fraction[k]) / (1.0 - below) * (1.0 - share), curve.elevation_m[k]);
+  }
+  return mixed;
+}
 
 Hypsography read_hypsography(const std::string& name_or_file) {
   if (name_or_file == "earth") return parse(embedded_file("targets/earth.csv"), "earth");

@@ -153,7 +153,7 @@ void RunSession::compute(const RunEvents& events) {
   Context context;
   context.planet = planet_;
   context.seed = static_cast<std::uint64_t>(settings_.seed);
-  context.hypsography = read_hypsography(settings_.hypsography);
+  context.hypsography = hypsography();
   context.events = settings_.events;
   context.on_progress = events.progress;
   context.stop = events.stop;

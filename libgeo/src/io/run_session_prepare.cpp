@@ -142,7 +142,7 @@ void RunSession::prepare() {
   check_events(settings_.events, grid(), planet_);
   read_given_fields();
   if (!settings_.start_frame.empty()) (void)read_checkpoint(settings_.start_frame);
-  (void)read_hypsography(settings_.hypsography);  // refuses a bad one before anything is computed
+  (void)hypsography();  // refuses a bad one before anything is computed
   pipeline_.check(state_->present(), first_, last_);
   config_ = resolved_config();
 }
@@ -374,13 +374,22 @@ bool RunSession::events_are_felt() const {
   return false;
 }
 
+Hypsography RunSession::hypsography() const {
+  Hypsography curve = read_hypsography(settings_.hypsography);
+  if (settings_.hypsography_ocean == "curve" || planet_.sea_level != "fraction") return curve;
+  return with_ocean_share(std::move(curve), planet_.ocean_fraction);
+}
+
 void RunSession::read_given_fields() {
   const auto read = [&](const Field<float>& spec, const std::string& given) {
     if (given.empty() || state_->has(spec) || !is_still_read(spec)) return;
-    state_->set(spec, resample(read_field(given, spec, planet_), state_->grid()));
+    FieldSpec read_as = spec;
+    if (&spec == &field::ranking) read_as.units = "";  // an order has no unit
+    state_->set(spec, resample(read_field(given, read_as, planet_), state_->grid()));
   };
   read(field::erodibility, settings_.erodibility);
   read(field::uplift_rate, settings_.uplift_rate);
+  read(field::ranking, settings_.ranking);
 }
 
 Prediction RunSession::prediction() const {

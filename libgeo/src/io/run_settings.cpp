@@ -33,9 +33,18 @@ std::vector<Parameter> RunSettings::parameters() {
       text("fields.uplift_rate", uplift_rate,
            "FILE[:VARIABLE] with the rock uplift of each place, as a velocity", "design"),
       text("fields.hypsography", hypsography,
-           "what erosion.hypsometry = rank aims at: earth, earth-statistical, or a CSV file with "
-           "columns quantile,elevation_m",
+           "what plates.model = hypsography and erosion.hypsometry = rank aim at: earth, "
+           "earth-statistical, or a CSV file with columns quantile,elevation_m",
            "design"),
+      choice(
+          "fields.hypsography_ocean", hypsography_ocean, {"planet", "curve"},
+          "its parts below and above 0 are mixed so that planet.ocean_fraction lies below (where "
+          "planet.sea_level is fraction), or it is taken as it stands",
+          "davidson2013"),
+      text("fields.ranking", ranking,
+           "FILE[:VARIABLE] of any unit, a mask or a relief, that orders places by height where "
+           "plates follow a hypsography",
+           "davidson2013"),
       text("fields.start_frame", start_frame,
            "frame of an earlier run, from which drifting plates go on, bit for bit", "design"),
       flag("output.vtk", vtk, "write a VTK file beside each NetCDF file", "design"),

@@ -59,6 +59,7 @@ extern const Field<std::int8_t> orogeny_type;
 extern const Field<float> heat_anomaly, crust_elevation, orogeny_age;
 extern const Field<float> fold_direction_east, fold_direction_north;
 extern const Field<float> ridge_direction_east, ridge_direction_north;
+extern const Field<float> ranking;
 extern const Field<float> convergent_deformation, divergent_deformation, transform_deformation;
 extern const Field<float> lithospheric_weakness, crust_thickness, crust_density;
 extern const Field<std::int8_t> rock_type;

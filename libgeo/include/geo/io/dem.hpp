@@ -30,7 +30,8 @@ struct Relief {
 /// index, wrong units, truncated file, irregular axes), IoError when it cannot be opened.
 Relief read_relief(const std::string& file_and_variable, const Planet& planet);
 /// The same for any other field that is given as a raster (`elevation_m` then holds its values in
-/// the units of the vocabulary). Without VARIABLE the one named as the field, else the only raster.
+/// the units of the vocabulary, or of the file where those are empty). Without VARIABLE the one
+/// named as the field, else the only raster.
 Relief read_field(const std::string& file_and_variable, const FieldSpec& spec,
                   const Planet& planet);
 

@@ -12,4 +12,8 @@ namespace geo::io {
 /// Throws InputError, IoError.
 [[nodiscard]] Hypsography read_hypsography(const std::string& name_or_file);
 
+/// The curve with its parts below and above 0 m stretched so that `share` of the area lies below.
+/// 0 and 1 leave one of them; a curve that has but one part stays as it is.
+[[nodiscard]] Hypsography with_ocean_share(Hypsography curve, double share);
+
 }  // namespace geo::io

@@ -86,6 +86,7 @@ class RunSession {
   void begin_with_bare_planet();
   void read_initial_relief();
   void read_given_fields();
+  [[nodiscard]] Hypsography hypsography() const;
   [[nodiscard]] int count_complete_stages() const;
   [[nodiscard]] bool is_complete(int position) const;
   [[nodiscard]] bool is_still_read(const FieldSpec& spec) const;

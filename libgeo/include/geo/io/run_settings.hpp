@@ -30,6 +30,8 @@ struct RunSettings {
   std::string erodibility;  ///< FILE[:VARIABLE]
   std::string uplift_rate;  ///< FILE[:VARIABLE]
   std::string hypsography = "earth";
+  std::string hypsography_ocean = "planet";
+  std::string ranking;  ///< FILE[:VARIABLE]
   std::string start_frame;
 
   bool vtk = true;

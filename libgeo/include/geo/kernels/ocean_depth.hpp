@@ -19,6 +19,19 @@ inline double ocean_depth_m(double age_myr, DepthModel model = DepthModel::gdh1)
   return t < 70.0 ? 2500.0 + 350.0 * std::sqrt(t) : 6400.0 - 3200.0 * std::exp(-t / 62.8);
 }
 
+/// Age at which GDH1 has the floor at a depth, Myr: 0 above the ridges, `oldest_myr` at most.
+inline double ocean_age_of_depth_myr(double depth_m, double oldest_myr) {
+  constexpr double kRidge_m = 2600.0, kYoung = 365.0,
+                   kYoungest_m = 2600.0 + 365.0 * 4.4721359549995794;
+  if (depth_m <= kRidge_m) return 0.0;
+  const double root = (depth_m - kRidge_m) / kYoung;
+  // Between the two branches lies a step of 1 m.
+  if (depth_m < kYoungest_m) return std::fmin(root * root, oldest_myr);
+  const double left = (5651.0 - depth_m) / 2473.0;
+  if (left <= 0.0) return oldest_myr;
+  return std::fmin(std::fmax(20.0, -std::log(left) / 0.0278), oldest_myr);
+}
+
 /// Heat flow through the floor, mW m-2: 510 / sqrt(t) to 55 Myr, then 48 + 96 exp(-0.0278 t)
 /// (Stein & Stein 1992).
 inline double ocean_heat_flow_mw_m2(double age_myr) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "geo/kernels/sphere_mesh.hpp"
 #include "geo/kernels/sphere_state.hpp"
@@ -18,6 +19,9 @@ struct SphereStart {
   double continent_km = 4500.0;     ///< wavelength of continents
   double continental_km = 36.0;     ///< thickness of their crust
   double oldest_floor_myr = 130.0;  ///< of the first sea floor, far from boundaries
+  /// Heights of the samples, m: the highest are the continents, thick as such ground is; the floor
+  /// is as old as it is deep. Empty: low continents from noise, a floor that ages from boundaries.
+  std::vector<float> elevation_m = {};
 };
 
 /// Plates, motion and crust of a seed. Axes are uniform on the sphere, speeds uniform from a fifth

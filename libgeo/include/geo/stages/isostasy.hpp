@@ -50,6 +50,10 @@ struct IsostasyParameters {
   double trench_depth_m = 3000.0;
   double seamount_m = 1800.0;
   double seafloor_roughness_m = 130.0;
+  double fracture_m = 0.0;
+  double fracture_spacing_km = 90.0;
+  double abyssal_hills_m = 0.0;
+  double fabric_age_myr = 45.0;
   double land_roughness_m = 60.0;
   double noise_factor = 1.0;
   DeepSediment sediment;

@@ -6,11 +6,20 @@
 
 #include "geo/core/stage.hpp"
 #include "geo/kernels/continents.hpp"
+#include "geo/kernels/great_circles.hpp"
 #include "geo/kernels/plate_growth.hpp"
 #include "geo/kernels/sphere_start.hpp"
 #include "geo/kernels/sphere_tectonics.hpp"
 
 namespace geo {
+
+/// What orders places by height, where a hypsography gives the heights.
+struct HypsographicRanking {
+  std::string by = "great-circles";
+  CircleCuts cuts{.offset = 0.5};
+  double smoothing_km = 0.0;
+  double roughness = 0.02;
+};
 
 /// Settings of the stage plates, section "plates".
 struct PlatesParameters {
@@ -40,6 +49,10 @@ struct PlatesParameters {
   std::string ocean_floor = "damping";
   SphereSettings sphere;
   SphereStart start;
+
+  // Of the model "hypsography", and of "sphere" that starts from one.
+  std::string first_relief = "noise";
+  HypsographicRanking ranking;
 
   [[nodiscard]] std::vector<Parameter> declarations();
 };

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "geo/core/random.hpp"
+#include "geo/kernels/crust_columns.hpp"
 #include "geo/kernels/noise.hpp"
 #include "geo/kernels/ocean_depth.hpp"
 #include "geo/kernels/sphere_boundaries.hpp"
@@ -102,8 +103,10 @@ class Beginning {
       return;
     }
     const Noise noise(seed_, "plates.continents");
-    const auto height = fbm_at(noise, mesh_.samples().positions(),
-                               settings_.radius_km / start_.continent_km, 8, 0.55);
+    const auto height = !start_.elevation_m.empty()
+                            ? start_.elevation_m
+                            : fbm_at(noise, mesh_.samples().positions(),
+                                     settings_.radius_km / start_.continent_km, 8, 0.55);
     std::vector<float> sorted(height);
     const auto at = std::clamp(n - wanted, 0, n - 1);
     std::nth_element(sorted.begin(), sorted.begin() + at, sorted.end());
@@ -114,6 +117,7 @@ class Beginning {
 
   /// Low, worn continents; floor that ages away from the borders of its plate.
   void draw_relief() {
+    if (!start_.elevation_m.empty()) return take_relief();
     SphereCrust& crust = state_.crust;
     const std::vector<float> boundary_km = distance_to_boundary_km();
     const Noise swell(seed_, "plates.first_relief");
@@ -140,6 +144,25 @@ class Beginning {
               : 1e3 * ridge_profile_km(boundary_km[i],
                                        settings_.ridge_falloff * settings_.radius_km,
                                        settings_.law));
+    }
+  }
+
+  /// A relief that was given, and the crust under it.
+  void take_relief() {
+    SphereCrust& crust = state_.crust;
+    constexpr float kNotFolded_myr = 1000.0F;
+#pragma omp parallel for schedule(static)
+    for (std::int32_t i = 0; i < mesh_.size(); ++i) {
+      const double elevation_m = start_.elevation_m[i];
+      crust.elevation_m[i] = static_cast<float>(elevation_m);
+      if (crust.continental[i] != 0) {
+        crust.thickness_m[i] = static_cast<float>(crust_column(elevation_m).thickness_m);
+        crust.orogeny_age_myr[i] = kNotFolded_myr;
+        continue;
+      }
+      crust.thickness_m[i] = static_cast<float>(1e3 * settings_.oceanic_km);
+      crust.age_myr[i] =
+          static_cast<float>(ocean_age_of_depth_myr(-elevation_m, start_.oldest_floor_myr));
     }
   }
 

@@ -6,17 +6,23 @@
 #include "geo/stages/isostasy/freeboard.hpp"
 #include "geo/stages/isostasy/rocks.hpp"
 #include "geo/stages/sea_level.hpp"
+#include "given_crust.hpp"
+#include "sea_floor_fabric.hpp"
 
 namespace geo {
 namespace {
 
-std::span<const float> made_by_plates(const StageIo& io) {
+bool keeps_made_crust(const IsostasyParameters& p) {
+  return p.crust == "simulated" || p.crust == "given";
+}
+
+std::span<const float> made_by_plates(const IsostasyParameters& p, const StageIo& io) {
   const auto elevation_m = io.read_optional(field::crust_elevation);
   const auto thickness_m = io.read_optional(field::crust_thickness);
   if (elevation_m.empty() || thickness_m.empty()) {
-    throw InputError(
-        "isostasy: crust = \"simulated\" needs crust_elevation and crust_thickness, which "
-        "plates.model = \"sphere\" writes");
+    throw InputError("isostasy: crust = \"" + p.crust +
+                     "\" needs crust_elevation and crust_thickness, which plates.model = "
+                     "\"sphere\" and \"hypsography\" write");
   }
   return elevation_m;
 }
@@ -33,8 +39,9 @@ Crust<float> open_crust(const IsostasyParameters& parameters, StageIo& io, const
                  .heat = io.read(field::heat_anomaly),
                  .velocity_east = io.read(field::plate_velocity_east),
                  .velocity_north = io.read(field::plate_velocity_north),
-                 .made_elevation_m = parameters.crust == "simulated" ? made_by_plates(io)
-                                                                     : std::span<const float>{}},
+                 .made_elevation_m = keeps_made_crust(parameters) ? made_by_plates(parameters, io)
+                                                                  : std::span<const float>{},
+                 .has_density = !io.read_optional(field::crust_density).empty()},
           .fraction = io.write(field::continental_fraction),
           .convergent = io.write(field::convergent_deformation),
           .divergent = io.write(field::divergent_deformation),
@@ -47,13 +54,16 @@ Crust<float> open_crust(const IsostasyParameters& parameters, StageIo& io, const
           .elevation_m = io.write(field::elevation)};
 }
 
-void float_crust(const Crust<float>& crust, const Context& context) {
-  const CoarseGrid coarse(crust.grid);
+void float_crust(const Crust<float>& crust, const CoarseGrid& coarse, const Context& context) {
   const TectonicFrame frame = tectonic_frame(crust.parameters, coarse, crust.in, crust.fraction);
   context.advance(0.3);
   if (crust.parameters.crust == "blueprint") {
     draw_blueprint_crust(crust, coarse, deform(crust, coarse, frame));
     stiffen_blueprint(crust, coarse);
+  } else if (crust.parameters.crust == "given") {
+    Tectonics<float> tectonics = deform(crust, coarse, frame);
+    cut_sections(crust, coarse, frame, tectonics);
+    take_given_crust(crust, coarse, tectonics);
   } else {
     float_margins_crust(crust, coarse, frame);
   }
@@ -106,7 +116,8 @@ class IsostasyStage final : public Stage {
         {&field::plate_id, &field::continental_fraction, &field::boundary_type,
          &field::boundary_strength, &field::crust_age, &field::heat_anomaly,
          &field::plate_velocity_east, &field::plate_velocity_north},
-        {&field::crust_elevation, &field::crust_thickness},
+        {&field::crust_elevation, &field::crust_thickness, &field::crust_density,
+         &field::ridge_direction_east, &field::ridge_direction_north},
         {&field::convergent_deformation, &field::divergent_deformation,
          &field::transform_deformation, &field::lithospheric_weakness, &field::continental_fraction,
          &field::crust_thickness, &field::crust_density, &field::rock_type, &field::erodibility,
@@ -120,12 +131,15 @@ class IsostasyStage final : public Stage {
       throw InputError("isostasy: the grid must be a whole sphere");
     }
     const Crust<float> crust = open_crust(parameters_, io, context);
-    float_crust(crust, context);
+    const CoarseGrid coarse(crust.grid);
+    float_crust(crust, coarse, context);
     context.advance(0.8);
     if (settles_continents(parameters_, crust.planet)) settle(crust, context.budget);
     const float level_m = level_of_sea_m(crust);
     fill_sea(crust, level_m);
     context.budget["sea_level_shift_m"] = level_m;
+    engrave_sea_floor(crust, coarse, io.read_optional(field::ridge_direction_east),
+                      io.read_optional(field::ridge_direction_north));
     classify_rock(crust);
     report(crust, context.budget);
   }

@@ -4,9 +4,10 @@ namespace geo {
 
 std::vector<Parameter> IsostasyParameters::declarations() {
   return {
-      choice("isostasy.crust", crust, {"margins", "blueprint", "simulated"},
+      choice("isostasy.crust", crust, {"margins", "blueprint", "simulated", "given"},
              "crust from cross sections of margins and belts, by the formulas of the Tectonica "
-             "blueprint, or as the plates' history has made it (plates.model = sphere)",
+             "blueprint, as the plates' history has made it (plates.model = sphere) with what is "
+             "finer on top, or as plates gave it to the last metre",
              "tectonica2026"),
       choice("isostasy.compensation", compensation, {"flexural", "airy", "airy-dry"},
              "what carries the relief: an elastic plate, every column by itself with the sea as a "
@@ -90,6 +91,16 @@ std::vector<Parameter> IsostasyParameters::declarations() {
            "turcotte2002"),
       real("isostasy.seafloor_roughness_m", seafloor_roughness_m, "m", 0.0, 5000.0,
            "standard deviation of the hills of young sea floor", "huang1989"),
+      real("isostasy.fracture_m", fracture_m, "m", 0.0, 5000.0,
+           "standard deviation of the relief across fracture zones on new sea floor; 0 draws none",
+           "cortial2019"),
+      real("isostasy.fracture_spacing_km", fracture_spacing_km, "km", 5.0, 1000.0,
+           "distance between fracture zones along a ridge", "cortial2019"),
+      real("isostasy.abyssal_hills_m", abyssal_hills_m, "m", 0.0, 5000.0,
+           "standard deviation of the hills along the ridges that made the floor; 0 draws none",
+           "cortial2019"),
+      real("isostasy.fabric_age_myr", fabric_age_myr, "Myr", 1.0, 1000.0,
+           "age over which fracture zones and these hills fade", "cortial2019"),
       real("isostasy.land_roughness_m", land_roughness_m, "m", 0.0, 5000.0,
            "standard deviation of the noise from which rivers find their ways", "huang1989"),
       real("isostasy.noise_factor", noise_factor, "1", 0.0, 100.0,

@@ -1,15 +1,17 @@
 #include "geo/stages/plates.hpp"
 
 #include "growth.hpp"
+#include "hypsography.hpp"
 #include "sphere.hpp"
 
 namespace geo {
 
 std::vector<Parameter> PlatesParameters::declarations() {
-  return {
-      choice("plates.model", model, {"growth", "sphere"},
-             "how plates come about: they grow as they stand today, or drift, go below each other, "
-             "collide and break on a sphere through time",
+  std::vector<Parameter> rows{
+      choice("plates.model", model, {"growth", "sphere", "hypsography"},
+             "how plates come about: they grow as they stand today, drift, go below each other, "
+             "collide and break on a sphere through time, or there is one at rest whose heights "
+             "follow a hypsography",
              "cortial2019"),
       integer("plates.count", growth.count, "1", 2, 100, "number of plates", "tectonica2026"),
       real("plates.speed_cm_yr", growth.speed_cm_yr, "cm yr-1", 0.1, 50.0,
@@ -167,6 +169,8 @@ std::vector<Parameter> PlatesParameters::declarations() {
       integer("plates.resampling_most", sphere.most_steps, "1", 1, 1000,
               "sphere: most steps between resamplings", "cortial2019"),
   };
+  for (Parameter& row : hypsography_parameters(*this)) rows.push_back(std::move(row));
+  return rows;
 }
 
 namespace {
@@ -181,11 +185,16 @@ class PlatesStage final : public Stage {
         described({&field::crust_elevation, &field::crust_thickness, &field::orogeny_age,
                    &field::fold_direction_east, &field::fold_direction_north,
                    &field::ridge_direction_east, &field::ridge_direction_north});
-    return parameters_.model == "sphere" ? kWithCrust : kSeen;
+    static const StageInfo kFollowing = of_hypsography(kWithCrust);
+    static const StageInfo kStarting = with_ranking(kWithCrust);
+    if (parameters_.model == "hypsography") return kFollowing;
+    if (parameters_.model != "sphere") return kSeen;
+    return parameters_.first_relief == "hypsography" ? kStarting : kWithCrust;
   }
   [[nodiscard]] std::vector<Parameter> parameters() override { return parameters_.declarations(); }
 
   void run(StageIo& io, Context& context) const override {
+    if (parameters_.model == "hypsography") return draw_hypsography(parameters_, io, context);
     parameters_.model == "sphere" ? drift(parameters_, info(), io, context)
                                   : grow(parameters_, io, context);
   }
@@ -203,6 +212,16 @@ class PlatesStage final : public Stage {
     info.writes.insert(info.writes.end(), crust);
     info.feels_events = crust.size() > 0;
     return info;
+  }
+  static StageInfo with_ranking(StageInfo info) {
+    info.optional.push_back(&field::ranking);
+    return info;
+  }
+  /// Densities come with the heights; nothing moves that an event could turn.
+  static StageInfo of_hypsography(StageInfo info) {
+    info.writes.push_back(&field::crust_density);
+    info.feels_events = false;
+    return with_ranking(std::move(info));
   }
 
   PlatesParameters parameters_;

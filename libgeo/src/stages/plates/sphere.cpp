@@ -6,6 +6,7 @@
 
 #include "geo/core/error.hpp"
 #include "geo/kernels/sphere_start.hpp"
+#include "hypsography.hpp"
 #include "sphere_checkpoint.hpp"
 #include "sphere_on_grid.hpp"
 #include "sphere_timeline.hpp"
@@ -92,9 +93,14 @@ namespace {
 constexpr double kDegrees = 57.29577951308232;
 
 SphereState beginning(const PlatesParameters& parameters, const SphereMesh& mesh,
-                      const SphereSettings& settings, const Context& context) {
+                      const SphereSettings& settings, const StageIo& io, const Context& context) {
   if (context.checkpoint == nullptr) {
-    return start_sphere(mesh, start_of(parameters), settings, context.seed);
+    SphereStart start = start_of(parameters);
+    if (parameters.first_relief == "hypsography") {
+      start.elevation_m =
+          hypsographic_heights_m(parameters, io, context, mesh.samples().positions());
+    }
+    return start_sphere(mesh, start, settings, context.seed);
   }
   SphereState state = state_of(*context.checkpoint);
   if (state.crust.size() != mesh.size()) {
@@ -146,7 +152,7 @@ void drift(const PlatesParameters& parameters, const StageInfo& info, StageIo& i
       settings_of(parameters, 1e-3 * io.grid().figure().radius_m, context.seed);
   const FibonacciSphere samples(static_cast<std::int32_t>(parameters.samples));
   const SphereMesh mesh(samples);
-  SphereTectonics model(mesh, settings, beginning(parameters, mesh, settings, context),
+  SphereTectonics model(mesh, settings, beginning(parameters, mesh, settings, io, context),
                         context.seed);
   Books books;
   const auto steps = std::lround(parameters.time_myr / settings.law.step_myr);

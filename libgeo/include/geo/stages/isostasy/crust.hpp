@@ -15,8 +15,9 @@ struct CrustInputs {
   std::span<const std::int16_t> plate;
   std::span<const std::int8_t> boundary_type;
   std::span<const float> boundary_strength, age_myr, heat, velocity_east, velocity_north;
-  /// What the plates' history has made; empty unless crust = "simulated".
+  /// What the plates' history has made; empty unless crust = "simulated" or "given".
   std::span<const float> made_elevation_m = {};
+  bool has_density = false;  ///< crust_density came with it
 };
 
 /// What all parts of the stage work with: its settings, the planet, fields read and written. V is

@@ -22,7 +22,7 @@ void fill_sea(const Crust<V>& crust, const V& level_m) {
   using Number = Arithmetic<V>;
   using std::log;
   const IsostasyParameters& p = crust.parameters;
-  const bool shelves = p.crust != "blueprint" && p.shelf_depth_m > 0.0;
+  const bool shelves = p.crust != "blueprint" && p.crust != "given" && p.shelf_depth_m > 0.0;
   const double whole_shelf = p.shelf_edge + 0.8 * (1.0 - p.shelf_edge);
   const Number shelf_depth_m = crust.lift(p.shelf_depth_m);
 #pragma omp parallel for schedule(static)

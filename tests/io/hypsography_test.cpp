@@ -1,0 +1,52 @@
+#include "geo/io/hypsography.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace geo::io {
+namespace {
+
+double elevation_at(const Hypsography& curve, double fraction) {
+  std::size_t k = 1;
+  while (curve.fraction[k] < fraction) ++k;
+  return std::lerp(
+      curve.elevation_m[k - 1], curve.elevation_m[k],
+      (fraction - curve.fraction[k - 1]) / (curve.fraction[k] - curve.fraction[k - 1]));
+}
+
+TEST(Hypsography, MixesSeaAndLandToAWantedShare) {
+  for (const char* name : {"earth", "earth-statistical"}) {
+    const Hypsography curve = read_hypsography(name);
+    for (const double share : {0.2, 0.71, 0.95}) {
+      const Hypsography mixed = with_ocean_share(curve, share);
+      ASSERT_EQ(mixed.fraction.size(), mixed.elevation_m.size());
+      EXPECT_EQ(mixed.fraction.front(), 0.0);
+      EXPECT_EQ(mixed.fraction.back(), 1.0);
+      for (std::size_t k = 1; k < mixed.fraction.size(); ++k) {
+        ASSERT_GT(mixed.fraction[k], mixed.fraction[k - 1]);
+        ASSERT_GE(mixed.elevation_m[k], mixed.elevation_m[k - 1]);
+      }
+      EXPECT_NEAR(elevation_at(mixed, share), 0.0, 1e-9) << name;
+      // Halfway up the land and halfway down the sea stay what they were.
+      const double below = name == std::string("earth") ? 0.7151 : 0.7817;
+      EXPECT_NEAR(elevation_at(mixed, share + 0.5 * (1.0 - share)),
+                  elevation_at(curve, below + 0.5 * (1.0 - below)), 3.0);
+      EXPECT_NEAR(elevation_at(mixed, 0.5 * share), elevation_at(curve, 0.5 * below), 3.0);
+    }
+  }
+}
+
+TEST(Hypsography, LeavesOneOfThemAtTheEnds) {
+  const Hypsography curve = read_hypsography("earth");
+  EXPECT_EQ(with_ocean_share(curve, 0.0).elevation_m.front(), 0.0);
+  EXPECT_EQ(with_ocean_share(curve, 1.0).elevation_m.back(), 0.0);
+}
+
+TEST(Hypsography, OfOneKindOfGroundStaysAsItIs) {
+  const Hypsography dry{{0.0, 1.0}, {10.0, 4000.0}};
+  EXPECT_EQ(with_ocean_share(dry, 0.5).elevation_m, dry.elevation_m);
+}
+
+}  // namespace
+}  // namespace geo::io
