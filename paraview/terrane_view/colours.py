@@ -4,6 +4,7 @@ import json
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 from paraview import simple
 
 PRESETS = Path(__file__).resolve().parent.parent / "colour_maps" / "terrane.json"
@@ -30,7 +31,7 @@ LOOKS = {
     "boundary_type": Look("Plate boundaries", "boundary_type"),
     "rock_type": Look("Rock", "rock_type"),
     "biome": Look("Biomes", "biome", PALE),
-    "koppen_class": Look("Climate after Köppen and Geiger", "koppen_class", PALE),
+    "koppen_class": Look("Köppen class", "koppen_class", PALE),
     "crust_age": Look("Age of the crust, Myr", "crust_age"),
     "crust_thickness": Look("Thickness of the crust, m", "crust_thickness"),
     "temperature": Look("Temperature, °C", "temperature", PAINTED),
@@ -62,6 +63,7 @@ LOOKS = {
     "basin_id": Look("Drainage basins", sea=PALE),
     "lake_id": Look("Lakes", sea=PALE),
 }
+PLATE_COLOURS = 10
 OLD_CONTINENT = [0.945, 0.935, 0.905]
 
 
@@ -92,7 +94,7 @@ def paint(field, value_range):
     if look.preset:
         preset = presets()[look.preset]
         if "IndexedColors" in preset:
-            paint_classes(lut, preset, value_range)
+            paint_classes(lut, preset)
         else:
             paint_values(lut, preset)
             if field == "crust_age":
@@ -105,11 +107,47 @@ def paint(field, value_range):
     if look.signed:
         low, high = -max(abs(low), abs(high)), max(abs(low), abs(high))
     if look.logarithmic:
-        low = max(low, 1e-5 * high)
+        low = max(low, 1e-4 * high)
+        paint_values(lut, along_logarithm(presets()["precipitation"], low, high))
+        return lut
     lut.ApplyPreset("Cool to Warm" if look.signed else "Viridis (matplotlib)", True)
     lut.RescaleTransferFunction(low, high)
-    lut.UseLogScale = int(look.logarithmic)
     return lut
+
+
+def along_logarithm(preset, low, high):
+    """The colours of a preset, evenly over powers of ten."""
+    colours = [preset["RGBPoints"][i : i + 4][1:] for i in range(0, len(preset["RGBPoints"]), 4)]
+    ratio, last = high / low, len(colours) - 1
+    points = [x for i, c in enumerate(colours) for x in (low * ratio ** (i / last), *c)]
+    return {**preset, "RGBPoints": points, "UseLogScale": 1}
+
+
+def paint_plates(lut, plates):
+    """Colours for the plates that there are, none like its neighbours'."""
+    present, sizes = np.unique(plates, return_counts=True)
+    pairs = set()
+    for shift, axis in ((1, 1), (1, 0)):
+        other = np.roll(plates, shift, axis)
+        differs = plates != other
+        if axis == 0:
+            differs[0] = False
+        both = np.stack([plates[differs], other[differs]], axis=-1)
+        pairs.update(map(tuple, np.unique(both, axis=0).tolist()))
+    neighbours = {plate: set() for plate in present.tolist()}
+    for a, b in pairs:
+        neighbours[a].add(b)
+        neighbours[b].add(a)
+    palette = presets()["plate_id"]["IndexedColors"][: 3 * PLATE_COLOURS]
+    chosen, used = {}, [0] * PLATE_COLOURS
+    for plate in present[np.argsort(-sizes, kind="stable")].tolist():
+        taken = [chosen[n] for n in neighbours[plate] if n in chosen]
+        best = min(range(PLATE_COLOURS), key=lambda i: (taken.count(i), used[i], i))
+        chosen[plate] = best
+        used[best] += 1
+    lut.Annotations = [text for p in sorted(chosen) for text in (str(p), f"plate {p}")]
+    lut.IndexedColors = [x for p in sorted(chosen) for x in palette[3 * chosen[p] :][:3]]
+    lut.IndexedOpacities = [1.0 for _ in chosen]
 
 
 def paint_values(lut, preset):
@@ -117,18 +155,14 @@ def paint_values(lut, preset):
     lut.InterpretValuesAsCategories = 0
     lut.ColorSpace = preset["ColorSpace"]
     lut.RGBPoints = preset["RGBPoints"]
+    lut.UseLogScale = preset.get("UseLogScale", 0)
     lut.NanColor = preset["NanColor"]
 
 
-def paint_classes(lut, preset, value_range):
-    """A colour and a name for each class; of plates those that there are."""
-    pairs = list(zip(preset["Annotations"][::2], preset["Annotations"][1::2]))
-    colours = preset["IndexedColors"]
-    kept = [i for i, (value, _) in enumerate(pairs) if float(value) <= value_range[1]]
-    if len(pairs) <= 40:
-        kept = range(len(pairs))
+def paint_classes(lut, preset):
+    """A colour and a name for each class."""
     lut.InterpretValuesAsCategories = 1
     lut.AnnotationsInitialized = 1
-    lut.Annotations = [text for i in kept for text in pairs[i]]
-    lut.IndexedColors = [number for i in kept for number in colours[3 * i : 3 * i + 3]]
-    lut.IndexedOpacities = [1.0 for _ in kept]
+    lut.Annotations = preset["Annotations"]
+    lut.IndexedColors = preset["IndexedColors"]
+    lut.IndexedOpacities = [1.0 for _ in preset["Annotations"][::2]]

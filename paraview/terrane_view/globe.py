@@ -4,6 +4,7 @@ import math
 from pathlib import Path
 
 from paraview import simple
+from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from . import colours, pipeline, scene
 from .island import IslandView, drape, place_of
@@ -31,6 +32,7 @@ class Globe:
     def __init__(self, folder, drift=False, cells=CELLS_SHOWN, exaggeration=15.0, view=None):
         self.run, self.drift = Run(folder), drift
         self.view = view or simple.GetActiveViewOrCreate("RenderView")
+        scene.clear(self.view)
         scene.prepare(self.view)
         self.scale = exaggeration
         self.island_views = {}
@@ -132,8 +134,9 @@ class Globe:
         if self.drift:
             words = f"'{who}, after %g Myr' % time_value"
         else:
-            names = {self.run.number(name): f"{who}, stage {name}" for name in self.run.stages}
-            words = f"{names!r}.get(int(time_value + 0.5), '')"
+            # ParaView keeps braces for itself.
+            names = [(self.run.number(name), f"{who}, stage {name}") for name in self.run.stages]
+            words = f"dict({names!r}).get(int(time_value + 0.5), '')"
         self.words = scene.caption(self.view, self.parts["relief"].shown, words, "caption")
 
     # What can be changed -----------------------------------------------------------------------
@@ -159,6 +162,8 @@ class Globe:
                 self.show_field(part, field if here else "elevation")
         self.field = field
         lut = colours.paint(field, array.GetRange() if array else (0.0, 1.0))
+        if field == "plate_id":
+            colours.paint_plates(lut, self.plates_of_cells())
         scene.fill_sea(self.parts["sea"].display, colours.look_of(field).sea, field)
         for other in self.bars:
             other.Visibility = 0
@@ -166,6 +171,13 @@ class Globe:
         self.bars = [scene.legend(self.view, lut, title)]
         self.explain_boundaries()
         return self
+
+    def plates_of_cells(self):
+        """Plate of each cell, row by row, at the present time."""
+        reader = self.source.inputs[0]
+        reader.UpdatePipeline(self.time)
+        image = reader.GetClientSideObject().GetOutput()
+        return vtk_to_numpy(image.GetCellData().GetArray("plate_id")).reshape(self.rows, -1)
 
     @staticmethod
     def show_field(part, field):
@@ -235,6 +247,8 @@ class Globe:
         if place is None:
             raise RunError(f"{name}: its files do not say where it lies; make the run again")
         latitude, longitude, width_m = place
+        # The planet's rivers are as wide as its largest islands: here the island has its own.
+        self.parts["rivers"].display.Visibility = 0
         scene.look_at_place(self.view, latitude, longitude, RADIUS_M, width_m, tilt)
         return self
 

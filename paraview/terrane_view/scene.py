@@ -9,7 +9,16 @@ PAPER = [1.0, 1.0, 1.0]
 INK = [0.13, 0.14, 0.17]
 CLEAR_WATER, PALE_WATER = [0.55, 0.74, 0.87], [0.83, 0.89, 0.92]
 ASIDE = 0.28
+MOST_LABEL_POINTS = 330
 TOWARDS_LIGHT = [-0.7, 0.7, 1.2]
+
+
+def clear(view):
+    """Hides what a view shows so far."""
+    simple.HideAll(view)
+    for shown in list(view.Representations):
+        if shown.GetXMLName() == "ScalarBarWidgetRepresentation":
+            shown.Visibility = 0
 
 
 def prepare(view):
@@ -65,13 +74,15 @@ def legend(view, lut, title):
     bar.TextPosition = "Ticks left/bottom, annotations right/top"
     bar.ScalarBarLength, bar.ScalarBarThickness = 0.5, 14
     bar.WindowLocation = "Any Location"
-    bar.Position = [0.86, 0.25]
+    bar.Position = [0.86, 0.32]
     bar.Orientation = "Vertical"
     bar.HorizontalTitle = 1
     bar.DrawNanAnnotation = 0
     bar.Enabled = bar.Visibility = 1
     if lut.InterpretValuesAsCategories:
-        bar.ScalarBarLength, bar.Position = 0.86, [0.8, 0.07]
+        bar.ScalarBarLength, bar.Position = 0.74, [0.77, 0.22]
+        classes = len(lut.Annotations) // 2
+        bar.LabelFontSize = int(np.clip(MOST_LABEL_POINTS / classes, 5, 13))
     else:
         bar.AutomaticLabelFormat = 0
         bar.LabelFormat = bar.RangeLabelFormat = "%g"
@@ -82,7 +93,7 @@ def legend(view, lut, title):
 def small_legend(view, lut, title):
     """A second legend at the lower right, for lines."""
     bar = legend(view, lut, title)
-    bar.ScalarBarLength, bar.Position = 0.16, [0.8, 0.04]
+    bar.ScalarBarLength, bar.Position, bar.LabelFontSize = 0.13, [0.77, 0.04], 12
     return bar
 
 
