@@ -2,9 +2,10 @@
 
 The same file works three ways:
 
-* in ParaView's window, View > Python Shell > Run Script: the globe of the run whose file is open
-  (or of TERRANE_RUN, or of the working folder); the shell then has it as `globe`;
-* as a macro, after `pvbatch terrane_globe.py --install-macro`;
+* as a macro of ParaView's window, after `pvbatch terrane_globe.py --install-macro`: shows the run
+  whose file is open, or that of TERRANE_RUN, or that of the working folder;
+* in View > Python Shell > Run Script, of a ParaView that was started in terrane's folder (or with
+  TERRANE_PARAVIEW, the folder of this file): the same, and the shell has it as `globe`;
 * without a window: `pvbatch terrane_globe.py FOLDER --picture globe.png`, with the options below.
 """
 
@@ -17,14 +18,16 @@ INSTALLED = ""  # the folder of terrane_view, written here when the file becomes
 
 
 def folder_of_package():
-    """Where terrane_view lies."""
+    """Where terrane_view lies. ParaView's window does not tell a script where its file is."""
     places = [INSTALLED, os.environ.get("TERRANE_PARAVIEW", "")]
     if "__file__" in globals():
-        places.append(str(Path(__file__).resolve().parent))
+        places.append(Path(__file__).resolve().parent)
+    places += [Path.cwd(), Path.cwd() / "paraview"]
+    places += [Path(f"{prefix}/share/terrane/paraview") for prefix in ("/usr/local", "/usr")]
     for place in places:
         if place and (Path(place) / "terrane_view").is_dir():
-            return place
-    raise SystemExit("terrane_view not found: set TERRANE_PARAVIEW to terrane's folder paraview")
+            return str(place)
+    raise RuntimeError("terrane_view not found: set TERRANE_PARAVIEW to terrane's folder paraview")
 
 
 sys.path.insert(0, folder_of_package())
@@ -36,7 +39,7 @@ from terrane_view.run import run_folder_of  # noqa: E402
 MACROS = Path("~/.config/ParaView/Macros").expanduser()
 
 
-def read_options(words):
+def read_options(given):
     """The options of the command line."""
     parser = argparse.ArgumentParser(prog="pvbatch terrane_globe.py", description=__doc__)
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
@@ -59,7 +62,11 @@ def read_options(words):
     add("--size", default="1600x1200", help="pixels of pictures (1600x1200)")
     add("--state", help="ParaView state file (.pvsm) to write")
     add("--install-macro", action="store_true", help="make this a macro of ParaView, and end")
-    return parser.parse_args(words)
+    words = list(given)
+    # A latitude may begin with a minus, as options do.
+    for i in [i for i, word in enumerate(words[:-1]) if word == "--centre"]:
+        words[i : i + 2] = [f"--centre={words[i + 1]}", ""]
+    return parser.parse_args([word for word in words if word])
 
 
 def install_macro():
@@ -139,10 +146,9 @@ def main(arguments):
 
 def is_batch():
     """Whether this runs without a window."""
-    return bool(sys.argv and "--dr" not in sys.argv[1:] and Path(sys.argv[0]).name == THIS_FILE)
+    return bool(sys.argv) and Path(sys.argv[0]).name == "terrane_globe.py"
 
 
-THIS_FILE = "terrane_globe.py"
 if is_batch():
     try:
         main(sys.argv[1:])

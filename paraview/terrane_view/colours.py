@@ -63,6 +63,7 @@ LOOKS = {
     "basin_id": Look("Drainage basins", sea=PALE),
     "lake_id": Look("Lakes", sea=PALE),
 }
+PAINT_FOR_THE_SEA = tuple(name for name, look in LOOKS.items() if look.sea == PAINTED)
 PLATE_COLOURS = 10
 OLD_CONTINENT = [0.945, 0.935, 0.905]
 

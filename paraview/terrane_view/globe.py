@@ -40,7 +40,7 @@ class Globe:
         self.source = source
         self.parts = self.make_parts(source)
         warped = [part for part in self.parts.values() if part.warp]
-        simple.GetAnimationScene().UpdateAnimationUsingDataTimeSteps()
+        self.go_to(self.times[-1])
         self.link = pipeline.link_exaggeration(f"exaggeration of {self.run.folder.name}", warped)
         self.field, self.bars = None, []
         self.caption()
@@ -82,7 +82,10 @@ class Globe:
     def make_parts(self, source):
         """Everything that can be shown on the globe."""
         scale, detail = self.scale, RADIUS_M / 1000.0
-        parts = {"relief": pipeline.relief(source, "", scale), "sea": pipeline.sea(source, "")}
+        parts = {
+            "relief": pipeline.relief(source, "", scale),
+            "sea": pipeline.sea(source, "", colours.PAINT_FOR_THE_SEA),
+        }
         parts["boundaries"] = pipeline.boundaries(source, "", scale, 3.2 * detail)
         names, per_unit = ARROWS["plates"]
         per_unit *= RADIUS_M

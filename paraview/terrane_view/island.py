@@ -50,7 +50,7 @@ class IslandView:
         prefix = f"{name}: "
         self.parts = {
             "relief": pipeline.relief(source, prefix, exaggeration, skirt_m=1500.0),
-            "sea": pipeline.sea(source, prefix, exaggeration),
+            "sea": pipeline.sea(source, prefix, colours.PAINT_FOR_THE_SEA, exaggeration),
             "lakes": pipeline.lakes(source, prefix, exaggeration),
             "rivers": pipeline.rivers(source, prefix, exaggeration, lines),
         }

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from paraview import servermanager, simple
 
-from .scripts import filter_script, times_script
+from .scripts import WHOLE_INPUTS, filter_script, times_script
 
 RIVER = [0.16, 0.39, 0.62]
 LAKE = [0.36, 0.58, 0.76]
@@ -42,6 +42,7 @@ class Source:
         made.OutputDataSetType = "vtkPolyData"
         if self.times:
             made.RequestInformationScript = times_script(self.times)
+        made.RequestUpdateExtentScript = WHOLE_INPUTS
         made.Script = filter_script(
             function, stages=tuple(self.stages), factor=self.factor, **settings
         )
@@ -78,11 +79,15 @@ def relief(source, prefix, scale, skirt_m=0.0):
     return Part(smoothly_lit(f"{prefix}relief", warp), warp)
 
 
-def sea(source, prefix, scale=None):
-    """The sea at its level; with a `scale` it has sides down to the ground along its edges."""
+def sea(source, prefix, fields, scale=None):
+    """The sea at its level, with the fields that colour it too.
+
+    With a `scale` it has sides down to the ground along its edges.
+    """
     if scale is None:
-        return Part(source.surface(f"{prefix}sea", "make_sea"))
-    warp = raised(f"{prefix}sea", source.surface(f"{prefix}water", "make_sea", sides=True), scale)
+        return Part(source.surface(f"{prefix}sea", "make_sea", names=fields))
+    shape = source.surface(f"{prefix}water", "make_sea", names=fields, sides=True)
+    warp = raised(f"{prefix}sea", shape, scale)
     return Part(warp, warp)
 
 

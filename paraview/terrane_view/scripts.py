@@ -36,3 +36,13 @@ def times_script(times):
         f"about.Set(keys.TIME_STEPS(), {times!r}, {len(times)})\n"
         f"about.Set(keys.TIME_RANGE(), {[times[0], times[-1]]!r}, 2)\n"
     )
+
+
+WHOLE_INPUTS = """
+from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline as keys
+for i in range(self.GetNumberOfInputConnections(0)):
+    asked = self.GetInputInformation(0, i)
+    if asked.Has(keys.WHOLE_EXTENT()):
+        asked.Set(keys.UPDATE_EXTENT(), asked.Get(keys.WHOLE_EXTENT()), 6)
+"""
+"""Asks each input for all of it: images of several sizes come together."""

@@ -189,6 +189,10 @@ class Blocks:
             function.reduceat(values, self.row_starts, axis=0), self.column_starts, axis=1
         )
 
+    def is_even(self):
+        """Whether all blocks have as many cells."""
+        return self.layout.ny % self.factor == 0 and self.layout.nx % self.factor == 0
+
     def thin(self, name, values):
         """One value a block: of classes the middle one, of rivers the largest, else the mean."""
         if self.factor == 1:
@@ -198,6 +202,9 @@ class Blocks:
             return values[np.ix_(rows, self.column_starts + self.factor // 2)]
         if name in LARGEST_COUNTS:
             return self.reduce(np.maximum, values)
+        if np.isfinite(values.sum()):
+            count = self.factor**2 if self.is_even() else self.reduce(np.add, np.ones_like(values))
+            return (self.reduce(np.add, values) / count).astype(values.dtype)
         known = np.isfinite(values)
         count = self.reduce(np.add, known.astype(np.int32))
         total = self.reduce(np.add, np.where(known, values, 0.0))

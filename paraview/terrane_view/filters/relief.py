@@ -2,7 +2,8 @@
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkFiltersCore import vtkClipPolyData
+from vtkmodules.vtkCommonDataModel import vtkPolyData
+from vtkmodules.vtkFiltersCore import vtkAppendPolyData, vtkCleanPolyData, vtkClipPolyData
 
 from .mesh import (
     HEIGHTS,
@@ -10,6 +11,7 @@ from .mesh import (
     Tile,
     add_array,
     add_up,
+    cell_array,
     cells_of,
     field,
     field_names,
@@ -104,30 +106,51 @@ def cut_out(output, island):
     """Removes what an island covers. An island of unknown place covers nothing."""
     if not isinstance(island, Tile):
         return
-    up = vtk_to_numpy(output.GetPointData().GetNormals())
-    outside = island.distance_outside(up)
-    add_array(output, "outside", outside.astype(np.float32))
-    output.GetPointData().SetActiveScalars("outside")
+    data = output.GetPointData()
+    outside = island.distance_outside(vtk_to_numpy(data.GetNormals())).astype(np.float32)
+    polys = output.GetPolys()
+    corners = vtk_to_numpy(polys.GetConnectivityArray())
+    starts = vtk_to_numpy(polys.GetOffsetsArray())[:-1]
+    sizes = np.diff(vtk_to_numpy(polys.GetOffsetsArray()))
+    least = np.minimum.reduceat(outside[corners], starts)
+    most = np.maximum.reduceat(outside[corners], starts)
+
+    def chosen(faces):
+        kept = np.repeat(faces, sizes)
+        return cell_array(np.append(0, np.cumsum(sizes[faces])), corners[kept])
+
+    edge = vtkPolyData()
+    edge.ShallowCopy(output)
+    edge.SetPolys(chosen((least < 0.0) & (most > 0.0)))
+    output.SetPolys(chosen(least >= 0.0))
+    add_array(edge, "outside", outside)
+    edge.GetPointData().SetActiveScalars("outside")
+    clean = vtkCleanPolyData()
+    clean.PointMergingOff()
+    clean.SetInputData(edge)
     clip = vtkClipPolyData()
-    clip.SetInputData(output)
+    clip.SetInputConnection(clean.GetOutputPort())
     clip.SetValue(0.0)
-    clip.Update()
-    output.ShallowCopy(clip.GetOutput())
-    output.GetPointData().RemoveArray("outside")
+    both = vtkAppendPolyData()
+    both.AddInputData(output)
+    both.AddInputConnection(clip.GetOutputPort())
+    both.Update()
+    output.ShallowCopy(both.GetOutput())
     output.GetPointData().SetActiveScalars("relief")
 
 
-def make_sea(algorithm, stages=(), factor=1, draped=False, sides=False):
+def make_sea(algorithm, stages=(), factor=1, draped=False, names=(), sides=False):
     """Fills the output with the surface of the sea, wherever the ground is below 0.
 
-    With `sides` it reaches down to the ground along the edges of a map.
+    It has the fields of `names` that there are. With `sides` it reaches down to the ground along the edges of a map.
     """
     output = algorithm.GetOutput()
     images = images_of(algorithm, stages)
     layout = layout_of(images[0], draped)
     blocks = Blocks(layout, factor)
     ground = blocks.thin("elevation", heights_of(images, layout))
-    fields = {name: blocks.thin(name, v) for name, v in shown_fields(images).items()}
+    known = shown_fields(images)
+    fields = {name: blocks.thin(name, known[name]) for name in names if name in known}
     fields["relief"] = np.zeros(blocks.shape, np.float32)
     columns, rows, shape = blocks.columns, blocks.rows, blocks.shape
     if sides:
