@@ -86,9 +86,10 @@ def words(text):
 
 def find_folder():
     """The run that is meant where nobody names one."""
-    source = simple.GetActiveSource()
-    name = source.GetProperty("FileName") if source is not None else None
-    for path in [name.GetData() if name else None, os.environ.get("TERRANE_RUN"), os.getcwd()]:
+    named = [simple.GetActiveSource(), *reversed(list(simple.GetSources().values()))]
+    files = [source.GetProperty("FileName") for source in named if source is not None]
+    places = [file.GetData() for file in files if file is not None]
+    for path in [*places, os.environ.get("TERRANE_RUN"), os.getcwd()]:
         path = path[0] if isinstance(path, (list, tuple)) and path else path
         folder = run_folder_of(path) if isinstance(path, str) and path else None
         if folder:

@@ -11,7 +11,7 @@ from .island import IslandView, drape, place_of
 from .pipeline import INK, LAKE, RIVER, Source
 from .run import Run, RunError
 
-RADIUS_M = 6371000.0
+EARTH_RADIUS_M = 6371000.0
 CELLS_SHOWN = 800_000
 ARROWS = {
     "plates": (("plate_velocity_east", "plate_velocity_north"), 0.2 / 100.0),
@@ -36,7 +36,7 @@ class Globe:
         scene.prepare(self.view)
         self.scale = exaggeration
         self.island_views = {}
-        source = self.frames() if drift else self.stages(cells)
+        source = self.frames(cells) if drift else self.stages(cells)
         self.source = source
         self.parts = self.make_parts(source)
         warped = [part for part in self.parts.values() if part.warp]
@@ -47,6 +47,7 @@ class Globe:
         self.show_all()
         self.colour("elevation")
         self.look()
+        simple.SetActiveSource(self.parts["relief"].shown)
 
     # Sources -----------------------------------------------------------------------------------
 
@@ -59,7 +60,7 @@ class Globe:
         islands = tuple(self.islands.values())
         return Source(readers, numbers, factor, islands=islands, times=numbers)
 
-    def frames(self):
+    def frames(self, cells):
         """A reader of the frames of drift."""
         if self.run.frames is None:
             raise RunError(
@@ -68,11 +69,13 @@ class Globe:
             )
         self.islands = {}
         reader = simple.PVDReader(registrationName="drift", FileName=str(self.run.frames))
-        return Source([reader], (), self.choose_factor(reader, CELLS_SHOWN))
+        return Source([reader], (), self.choose_factor(reader, cells))
 
     def choose_factor(self, reader, cells):
-        """How many cells a side are shown as one."""
+        """How many cells a side are shown as one; notes the size of grid and planet."""
         reader.UpdatePipeline()
+        noted = reader.FieldData.GetArray("planet_radius_m")
+        self.radius_m = noted.GetRange()[0] if noted else EARTH_RADIUS_M
         extent = reader.GetDataInformation().GetExtent()
         self.columns, self.rows = extent[1] - extent[0], extent[3] - extent[2]
         return max(1, math.ceil(math.sqrt(self.columns * self.rows / cells) - 1e-9))
@@ -81,23 +84,24 @@ class Globe:
 
     def make_parts(self, source):
         """Everything that can be shown on the globe."""
-        scale, detail = self.scale, RADIUS_M / 1000.0
+        scale, radius_m = self.scale, self.radius_m
+        detail = radius_m / 1000.0
         parts = {
             "relief": pipeline.relief(source, "", scale),
             "sea": pipeline.sea(source, "", colours.PAINT_FOR_THE_SEA),
         }
         parts["boundaries"] = pipeline.boundaries(source, "", scale, 3.2 * detail)
         names, per_unit = ARROWS["plates"]
-        per_unit *= RADIUS_M
-        parts["plates"] = pipeline.arrows(source, "plate ", scale, names, RADIUS_M, per_unit)
+        per_unit *= radius_m
+        parts["plates"] = pipeline.arrows(source, "plate ", scale, names, radius_m, per_unit)
         if self.drift:
             return parts
         parts["lakes"] = pipeline.lakes(source, "", scale)
-        lines = (150e3, 4.5 * detail, 1.2 * detail)
+        lines = (23.5 * detail, 4.5 * detail, 1.2 * detail)
         parts["rivers"] = pipeline.rivers(source, "", scale, lines)
         names, per_unit = ARROWS["wind"]
-        per_unit *= RADIUS_M
-        parts["wind"] = pipeline.arrows(source, "wind ", scale, names, RADIUS_M, per_unit)
+        per_unit *= radius_m
+        parts["wind"] = pipeline.arrows(source, "wind ", scale, names, radius_m, per_unit)
         for name, reader in self.islands.items():
             parts.update(drape(name, reader, scale))
         return parts
@@ -241,7 +245,7 @@ class Globe:
 
     def look(self, latitude=20.0, longitude=0.0, nearness=1.0):
         """Turns the globe, north up."""
-        scene.look_at_globe(self.view, latitude, longitude, RADIUS_M, nearness)
+        scene.look_at_globe(self.view, latitude, longitude, self.radius_m, nearness)
         return self
 
     def look_at_island(self, name="island", tilt=50.0):
@@ -252,7 +256,7 @@ class Globe:
         latitude, longitude, width_m = place
         # The planet's rivers are as wide as its largest islands: here the island has its own.
         self.parts["rivers"].display.Visibility = 0
-        scene.look_at_place(self.view, latitude, longitude, RADIUS_M, width_m, tilt)
+        scene.look_at_place(self.view, latitude, longitude, self.radius_m, width_m, tilt)
         return self
 
     def reader_of(self, name):
