@@ -33,6 +33,7 @@ LOOKS = {
     "biome": Look("Biomes", "biome", PALE),
     "koppen_class": Look("Köppen class", "koppen_class", PALE),
     "crust_age": Look("Age of the crust, Myr", "crust_age"),
+    "ocean_floor_age": Look("Age of the ocean floor, Myr", "crust_age"),
     "crust_thickness": Look("Thickness of the crust, m", "crust_thickness"),
     "temperature": Look("Temperature, °C", "temperature", PAINTED),
     "temperature_range": Look("Warmest minus coldest month, K", sea=PAINTED),
@@ -65,7 +66,7 @@ LOOKS = {
 }
 PAINT_FOR_THE_SEA = tuple(name for name, look in LOOKS.items() if look.sea == PAINTED)
 PLATE_COLOURS = 10
-OLD_CONTINENT = [0.945, 0.935, 0.905]
+CONTINENT = [0.945, 0.935, 0.905]
 
 
 def look_of(field):
@@ -98,9 +99,8 @@ def paint(field, value_range):
             paint_classes(lut, preset)
         else:
             paint_values(lut, preset)
-            if field == "crust_age":
-                lut.UseAboveRangeColor = 1
-                lut.AboveRangeColor = OLD_CONTINENT
+            if field == "ocean_floor_age":
+                lut.NanColor = CONTINENT
         return lut
     low, high = value_range
     if not high > low:

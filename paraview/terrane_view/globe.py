@@ -14,7 +14,7 @@ from .run import Run, RunError
 EARTH_RADIUS_M = 6371000.0
 CELLS_SHOWN = 800_000
 ARROWS = {
-    "plates": (("plate_velocity_east", "plate_velocity_north"), 0.2 / 100.0),
+    "plates": (("plate_velocity_east", "plate_velocity_north"), 0.13 / 100.0),
     "wind": (("wind_east", "wind_north"), 0.15 / 10.0),
 }
 PARTS = ("relief", "sea", "lakes", "rivers", "boundaries", "plates", "wind", "island")

@@ -24,7 +24,8 @@ def filter_script(function, **settings):
     texts = [without_own_imports((folder / f"{m}.py").read_text(encoding="utf-8")) for m in MODULES]
     words = ", ".join(f"{name}={value!r}" for name, value in settings.items())
     # ParaView puts numpy's max, min, sum and others in front of Python's own.
-    return "from builtins import abs, all, any, max, min, round, sum\n\n" + "\n\n".join(texts) + f"\n\n{function}(self, {words})\n"
+    own = "from builtins import abs, all, any, max, min, round, sum"
+    return "\n\n".join([own, *texts, f"{function}(self, {words})"]) + "\n"
 
 
 def times_script(times):

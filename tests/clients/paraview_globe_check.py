@@ -126,8 +126,15 @@ def check_surfaces(folder, _pictures):
                     expect(False, path.name, "lacks", name)
                     continue
                 seen, known = array.GetRange(), (np.nanmin(values), np.nanmax(values))
-                expect(close(seen[0], known[0]) and close(seen[1], known[1]),
-                       path.name, name, "ranges over", seen, "not", known)
+                expect(
+                    close(seen[0], known[0]) and close(seen[1], known[1]),
+                    path.name,
+                    name,
+                    "ranges over",
+                    seen,
+                    "not",
+                    known,
+                )
         simple.Delete(reader)
 
 

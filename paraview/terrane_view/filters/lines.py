@@ -48,6 +48,11 @@ def chosen_rivers(images, layout, spacing_m):
     temperature = latest(images, ["temperature"])
     if temperature is not None:
         rank[temperature.ravel() < ICE_DEG_C] = 0.0
+    if not layout.wraps:
+        # Along the edges of a map water follows the edge.
+        cells = rank.reshape(layout.ny, layout.nx)
+        for edge in (np.s_[:2, :], np.s_[-2:, :], np.s_[:, :2], np.s_[:, -2:]):
+            cells[edge] = 0.0
     lakes = latest(images, ["lake_depth"])
     if lakes is not None:
         wet = lakes.ravel() > 0.0

@@ -203,7 +203,9 @@ class Blocks:
         if name in LARGEST_COUNTS:
             return self.reduce(np.maximum, values)
         if np.isfinite(values.sum()):
-            count = self.factor**2 if self.is_even() else self.reduce(np.add, np.ones_like(values))
+            count = (
+                self.factor**2 if self.is_even() else self.reduce(np.add, np.ones_like(values))
+            )
             return (self.reduce(np.add, values) / count).astype(values.dtype)
         known = np.isfinite(values)
         count = self.reduce(np.add, known.astype(np.int32))

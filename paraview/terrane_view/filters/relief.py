@@ -26,6 +26,7 @@ from .mesh import (
 )
 
 POLES = np.array([[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]])
+OLDEST_FLOOR_MYR = 250.0
 EDGES = (np.s_[0, :], np.s_[-1, :], np.s_[:, 0], np.s_[:, -1])
 
 
@@ -49,11 +50,18 @@ def with_poles(values):
 
 
 def shown_fields(images):
-    """Fields of all stages, each as the newest stage left it."""
+    """Fields of all stages, each as the newest stage left it, and the age of ocean floor alone.
+
+    Older crust at sea is stretched continent: subduction leaves no older floor.
+    """
     fields = {}
     for image in images:
         for name in field_names(image):
             fields[name] = field(image, name)
+    age, continent = fields.get("crust_age"), fields.get("continental_fraction")
+    if age is not None and continent is not None:
+        floor = (continent < 0.5) & (age <= OLDEST_FLOOR_MYR)
+        fields["ocean_floor_age"] = np.where(floor, age, np.float32(np.nan))
     return fields
 
 
@@ -125,11 +133,11 @@ def cut_out(output, island):
     output.SetPolys(chosen(least >= 0.0))
     add_array(edge, "outside", outside)
     edge.GetPointData().SetActiveScalars("outside")
-    clean = vtkCleanPolyData()
-    clean.PointMergingOff()
-    clean.SetInputData(edge)
+    few = vtkCleanPolyData()
+    few.PointMergingOff()
+    few.SetInputData(edge)
     clip = vtkClipPolyData()
-    clip.SetInputConnection(clean.GetOutputPort())
+    clip.SetInputConnection(few.GetOutputPort())
     clip.SetValue(0.0)
     both = vtkAppendPolyData()
     both.AddInputData(output)
@@ -142,7 +150,8 @@ def cut_out(output, island):
 def make_sea(algorithm, stages=(), factor=1, draped=False, names=(), sides=False):
     """Fills the output with the surface of the sea, wherever the ground is below 0.
 
-    It has the fields of `names` that there are. With `sides` it reaches down to the ground along the edges of a map.
+    It has the fields of `names` that there are. With `sides` it reaches down to the ground along
+    the edges of a map.
     """
     output = algorithm.GetOutput()
     images = images_of(algorithm, stages)
