@@ -156,10 +156,11 @@ class Globe:
 
     def colour(self, field):
         """Colours the globe and its islands by a field."""
-        if self.drift and field == "elevation":
-            field = "crust_elevation"
         known = self.fields()
-        if field not in known and field not in ("elevation", "crust_elevation"):
+        if field == "elevation" and field not in known:
+            # Before there is relief there may be that of the plates' history, or plates alone.
+            field = "crust_elevation" if "crust_elevation" in known else "plate_id"
+        if field not in known:
             raise RunError(f"{field}: no field of this stage; there are {', '.join(known)}")
         relief = self.parts["relief"]
         array = relief.shown.PointData.GetArray(field)
@@ -225,7 +226,7 @@ class Globe:
             raise RunError(f"{name}: no stage of this run; there are {', '.join(self.run.stages)}")
         self.go_to(self.run.number(name))
         if self.field not in self.fields():
-            self.colour("elevation" if "elevation" in self.fields() else "plate_id")
+            self.colour("elevation")
         return self
 
     def show(self, *names, visible=True):
