@@ -14,3 +14,5 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/terraneConfigVersion.cmak
 install(FILES ${PROJECT_BINARY_DIR}/terraneConfig.cmake
   ${PROJECT_BINARY_DIR}/terraneConfigVersion.cmake DESTINATION ${package_folder})
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/paraview DESTINATION ${CMAKE_INSTALL_DATADIR}/terrane
+  PATTERN __pycache__ EXCLUDE PATTERN make_colour_maps.py EXCLUDE)

@@ -100,6 +100,26 @@ TEST_F(Run, WritesOnlyWhatWasAskedFor) {
   }
 }
 
+TEST_F(Run, WritesGlobesOnRequest) {
+  const Outcome outcome = run("out", {"--set", "output.globe=true"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::string listed = text_of(folder_ / "out" / "globe.pvd");
+  for (const std::string stage : {"03-erosion", "04-climate", "05-hydrology", "06-biomes"}) {
+    EXPECT_TRUE(there("out/" + stage + ".vtp"));
+    EXPECT_THAT(listed, HasSubstr(stage + ".vtp"));
+  }
+  const auto manifest = manifest_of(folder_ / "out");
+  EXPECT_THAT(manifest.at("stages")[0].at("files").get<std::vector<std::string>>(),
+              Contains("03-erosion.vtp"));
+  EXPECT_FALSE(there("out/07-island.vtp")) << "an island is no globe";
+  // Heights on them may be changed afterwards.
+  const auto before = text_of(folder_ / "out" / "03-erosion.vtp");
+  const Outcome more =
+      terrane({"run", "--resume", "-o", folder_ / "out", "--set", "output.globe_exaggeration=2"});
+  EXPECT_EQ(more.code, 0) << more.err;
+  EXPECT_NE(text_of(folder_ / "out" / "03-erosion.vtp"), before);
+}
+
 TEST_F(Run, DryRunPredictsAndWritesNothing) {
   const auto before = contents_of(folder_.path());
   const Outcome outcome = run("out", {"--dry-run"});

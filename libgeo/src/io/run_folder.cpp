@@ -40,7 +40,7 @@ bool is_stage_file(const fs::path& path) {
   const std::string name = path.filename().string();
   return name.size() > 6 && std::isdigit(static_cast<unsigned char>(name[0])) != 0 &&
          std::isdigit(static_cast<unsigned char>(name[1])) != 0 && name[2] == '-' &&
-         (path.extension() == ".nc" || path.extension() == ".vti");
+         (path.extension() == ".nc" || path.extension() == ".vti" || path.extension() == ".vtp");
 }
 
 }  // namespace
@@ -106,7 +106,7 @@ void RunFolder::open() {
 }
 
 void RunFolder::remove_stage(int number, std::string_view stage) const {
-  for (const std::string_view extension : {".nc", ".vti"}) {
+  for (const std::string_view extension : {".nc", ".vti", ".vtp"}) {
     remove_file(stage_file(number, stage, extension));
   }
 }
@@ -124,6 +124,7 @@ void RunFolder::remove_further_islands() const {
 void RunFolder::remove_summaries() const {
   remove_file(collection());
   remove_file(islands());
+  remove_file(globes());
   remove_file(report());
   std::error_code error;
   if (!fs::is_directory(maps(), error)) return;

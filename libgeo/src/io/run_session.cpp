@@ -17,6 +17,7 @@
 #include "geo/io/island_session.hpp"
 #include "geo/io/run_pictures.hpp"
 #include "geo/io/source_date.hpp"
+#include "globe_files.hpp"
 
 namespace geo::io {
 namespace {
@@ -214,6 +215,9 @@ void RunSession::write_summaries(const RunEvents& events) {
   };
   check_stop();
   if (settings_.vtk) write_collections();
+  if (settings_.globe && !write_globe_files(folder_, manifest_, settings_.globe_exaggeration)) {
+    tell(events.warning, "output.globe: the run covers a part of a planet, there is no globe");
+  }
   if (settings_.maps) {
     tell(events.stage_begins, "maps", static_cast<double>(settings_.map_width_px));
     const auto start = Clock::now();

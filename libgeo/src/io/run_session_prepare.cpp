@@ -19,8 +19,9 @@ namespace geo::io {
 namespace {
 
 // What may differ between a run and its continuation: how far it goes and what else is written.
-constexpr std::string_view kFreeOnResume[] = {"run.to", "output.vtk", "output.maps",
-                                              "output.map_width_px", "output.compression"};
+constexpr std::string_view kFreeOnResume[] = {
+    "run.to",      "output.vtk",          "output.globe",      "output.globe_exaggeration",
+    "output.maps", "output.map_width_px", "output.compression"};
 // The same where stages are computed again behind others that stay.
 constexpr std::string_view kFreeOnPartialOverwrite[] = {"run.from", "run.to"};
 
@@ -393,8 +394,18 @@ void RunSession::read_given_fields() {
 }
 
 Prediction RunSession::prediction() const {
-  return predict(pipeline_, first_, last_, static_cast<double>(grid().size()), request_.threads,
-                 settings_.vtk, settings_.maps ? static_cast<double>(settings_.map_width_px) : 0.0);
+  const auto cells = static_cast<double>(grid().size());
+  const double map_width_px = settings_.maps ? static_cast<double>(settings_.map_width_px) : 0.0;
+  const auto predicted = [&](bool vtk) {
+    return predict(pipeline_, first_, last_, cells, request_.threads, vtk, map_width_px);
+  };
+  Prediction sum = predicted(settings_.vtk);
+  if (settings_.globe) {
+    constexpr double kSurface_bytes = 36.0;  // of a cell: corners and faces
+    sum.disk_bytes += predicted(true).disk_bytes - predicted(false).disk_bytes +
+                      kSurface_bytes * cells * (last_ - first_ + 1);
+  }
+  return sum;
 }
 
 std::vector<std::string_view> RunSession::stages_to_run() const {

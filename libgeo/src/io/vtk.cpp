@@ -1,73 +1,19 @@
-#include <vtkCallbackCommand.h>
-#include <vtkCellData.h>
 #include <vtkDoubleArray.h>
-#include <vtkErrorCode.h>
-#include <vtkExecutive.h>
 #include <vtkFieldData.h>
-#include <vtkFloatArray.h>
 #include <vtkImageData.h>
-#include <vtkInformation.h>
-#include <vtkInformationStringKey.h>
-#include <vtkIntArray.h>
 #include <vtkNew.h>
-#include <vtkShortArray.h>
-#include <vtkSignedCharArray.h>
-#include <vtkSmartPointer.h>
-#include <vtkStringArray.h>
 #include <vtkXMLDataElement.h>
 #include <vtkXMLImageDataWriter.h>
 
 #include <sstream>
 #include <string>
 
-#include "geo/core/error.hpp"
 #include "geo/io/atomic_file.hpp"
 #include "geo/io/stage_file.hpp"
+#include "vtk_parts.hpp"
 
 namespace geo::io {
 namespace {
-
-template <class T>
-struct VtkArray;
-template <>
-struct VtkArray<float> {
-  using type = vtkFloatArray;
-};
-template <>
-struct VtkArray<double> {
-  using type = vtkDoubleArray;
-};
-template <>
-struct VtkArray<std::int8_t> {
-  using type = vtkSignedCharArray;
-};
-template <>
-struct VtkArray<std::int16_t> {
-  using type = vtkShortArray;
-};
-template <>
-struct VtkArray<std::int32_t> {
-  using type = vtkIntArray;
-};
-
-/// A view of a field; VTK neither copies nor frees it.
-vtkSmartPointer<vtkDataArray> view_of(const FieldSpec& spec, const Values& values) {
-  vtkSmartPointer<vtkDataArray> view;
-  std::visit(
-      [&]<class T>(const std::vector<T>& array) {
-        const auto typed = vtkSmartPointer<typename VtkArray<T>::type>::New();
-        constexpr int kKeep = 1;
-        // VTK has no read-only arrays; the writer does not change it.
-        typed->SetArray(const_cast<T*>(array.data()), static_cast<vtkIdType>(array.size()), kKeep);
-        view = typed;
-      },
-      values);
-  view->SetName(std::string(spec.name).c_str());
-  if (!spec.units.empty()) {
-    view->GetInformation()->Set(vtkDataArray::UNITS_LABEL(), std::string(spec.units).c_str());
-  }
-  return view;
-}
 
 /// Cells of a grid as image cells: degrees where rows are parallels, else metres.
 void set_geometry(vtkImageData& image, const Grid& grid) {
@@ -84,19 +30,21 @@ void set_geometry(vtkImageData& image, const Grid& grid) {
   }
 }
 
-void silence(vtkObject& object) {
-  // With an observer VTK keeps its error text off stderr; the error code says it all.
-  const vtkNew<vtkCallbackCommand> nothing;
-  object.AddObserver("ErrorEvent", nothing);
-  object.AddObserver("WarningEvent", nothing);
+void add_numbers(vtkImageData& image, const char* name, std::initializer_list<double> numbers) {
+  const vtkNew<vtkDoubleArray> array;
+  array->SetName(name);
+  for (const double number : numbers) array->InsertNextValue(number);
+  image.GetFieldData()->AddArray(array);
 }
 
-/// Where the file comes from, as a string array of the data set.
-void add_text(vtkImageData& image, const char* name, const std::string& text) {
-  const vtkNew<vtkStringArray> array;
-  array->SetName(name);
-  array->InsertNextValue(text);
-  image.GetFieldData()->AddArray(array);
+/// What lays an image on its planet: the radius, and of an island's map the centre.
+void add_place(vtkImageData& image, const Grid& grid) {
+  if (!grid.is_geographic()) return;
+  add_numbers(image, "planet_radius_m", {grid.figure().radius_m});
+  if (grid.is_projected() && grid.centre()) {
+    add_numbers(image, "projection_centre_deg",
+                {grid.centre()->latitude_deg, grid.centre()->longitude_deg});
+  }
 }
 
 }  // namespace
@@ -105,27 +53,11 @@ void write_vti(const std::filesystem::path& path, const Snapshot& snapshot,
                const Provenance& provenance) {
   const vtkNew<vtkImageData> image;
   set_geometry(*image, *snapshot.grid);
-  for (const auto& [spec, values] : snapshot.fields) {
-    image->GetCellData()->AddArray(view_of(*spec, *values));
-  }
-  add_text(*image, "title", provenance.title);
-  add_text(*image, "source", "terrane " + provenance.version);
-  add_text(*image, "seed", std::to_string(provenance.seed));
-
-  AtomicFile whole(path);
+  add_fields(*image, snapshot);
+  add_provenance(*image, provenance);
+  add_place(*image, *snapshot.grid);
   const vtkNew<vtkXMLImageDataWriter> writer;
-  silence(*writer);
-  silence(*writer->GetExecutive());
-  writer->SetInputData(image);
-  writer->SetFileName(whole.temporary().c_str());
-  writer->SetDataModeToAppended();
-  writer->EncodeAppendedDataOff();
-  writer->SetHeaderTypeToUInt64();
-  writer->SetCompressorTypeToNone();
-  if (writer->Write() == 0 || writer->GetErrorCode() != vtkErrorCode::NoError) {
-    whole.fail(vtkErrorCode::GetStringFromErrorCode(writer->GetErrorCode()));
-  }
-  whole.commit();
+  write_whole(*writer, *image, path);
 }
 
 void write_pvd(const std::filesystem::path& path, const std::vector<std::filesystem::path>& files,

@@ -21,6 +21,7 @@ class RunFolder {
   [[nodiscard]] std::filesystem::path report() const { return path_ / "report.html"; }
   [[nodiscard]] std::filesystem::path collection() const { return path_ / "planet.pvd"; }
   [[nodiscard]] std::filesystem::path islands() const { return path_ / "island.pvd"; }
+  [[nodiscard]] std::filesystem::path globes() const { return path_ / "globe.pvd"; }
   /// "03-erosion.nc"; `extension` with its dot.
   [[nodiscard]] std::filesystem::path stage_file(int number, std::string_view stage,
                                                  std::string_view extension) const;

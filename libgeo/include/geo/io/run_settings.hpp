@@ -35,6 +35,8 @@ struct RunSettings {
   std::string start_frame;
 
   bool vtk = true;
+  bool globe = false;
+  double globe_exaggeration = 15.0;
   bool maps = true;
   std::int64_t map_width_px = 1800;
   std::int64_t compression = 1;
