@@ -9,6 +9,7 @@
 #include "geo/kernels/plate_growth.hpp"
 #include "geo/kernels/sphere_start.hpp"
 #include "geo/kernels/sphere_tectonics.hpp"
+#include "geo/stages/raster_parameters.hpp"
 
 namespace geo {
 
@@ -40,6 +41,9 @@ struct PlatesParameters {
   std::string ocean_floor = "damping";
   SphereSettings sphere;
   SphereStart start;
+
+  // Of the model "raster".
+  RasterParameters raster;
 
   [[nodiscard]] std::vector<Parameter> declarations();
 };

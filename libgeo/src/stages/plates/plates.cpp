@@ -1,15 +1,17 @@
 #include "geo/stages/plates.hpp"
 
 #include "growth.hpp"
+#include "raster.hpp"
 #include "sphere.hpp"
 
 namespace geo {
 
 std::vector<Parameter> PlatesParameters::declarations() {
-  return {
-      choice("plates.model", model, {"growth", "sphere"},
+  std::vector<Parameter> all{
+      choice("plates.model", model, {"growth", "sphere", "raster"},
              "how plates come about: they grow as they stand today, or drift, go below each other, "
-             "collide and break on a sphere through time",
+             "collide and break on a sphere through time, or drift and collide as height maps on a "
+             "torus",
              "cortial2019"),
       integer("plates.count", growth.count, "1", 2, 100, "number of plates", "tectonica2026"),
       real("plates.speed_cm_yr", growth.speed_cm_yr, "cm yr-1", 0.1, 50.0,
@@ -167,6 +169,8 @@ std::vector<Parameter> PlatesParameters::declarations() {
       integer("plates.resampling_most", sphere.most_steps, "1", 1, 1000,
               "sphere: most steps between resamplings", "cortial2019"),
   };
+  for (Parameter& own : raster_declarations(raster)) all.push_back(std::move(own));
+  return all;
 }
 
 namespace {
@@ -177,21 +181,29 @@ class PlatesStage final : public Stage {
 
   [[nodiscard]] const StageInfo& info() const override {
     static const StageInfo kSeen = described({});
-    static const StageInfo kWithCrust =
-        described({&field::crust_elevation, &field::crust_thickness, &field::orogeny_age,
-                   &field::fold_direction_east, &field::fold_direction_north,
-                   &field::ridge_direction_east, &field::ridge_direction_north});
-    return parameters_.model == "sphere" ? kWithCrust : kSeen;
+    static const StageInfo kDrifting = with_crust(true), kRaster = with_crust(false);
+    return parameters_.model == "growth"   ? kSeen
+           : parameters_.model == "raster" ? kRaster
+                                           : kDrifting;
   }
   [[nodiscard]] std::vector<Parameter> parameters() override { return parameters_.declarations(); }
 
   void run(StageIo& io, Context& context) const override {
-    parameters_.model == "sphere" ? drift(parameters_, info(), io, context)
-                                  : grow(parameters_, io, context);
+    if (parameters_.model == "sphere") return drift(parameters_, info(), io, context);
+    if (parameters_.model == "raster") return collide_rasters(parameters_, io, context);
+    grow(parameters_, io, context);
   }
 
  private:
   /// Models with a history also write the crust that it made.
+  static StageInfo with_crust(bool feels_events) {
+    StageInfo info =
+        described({&field::crust_elevation, &field::crust_thickness, &field::orogeny_age,
+                   &field::fold_direction_east, &field::fold_direction_north,
+                   &field::ridge_direction_east, &field::ridge_direction_north});
+    info.feels_events = feels_events;
+    return info;
+  }
   static StageInfo described(std::initializer_list<const FieldSpec*> crust) {
     StageInfo info{"plates",
                    "tectonic plates, their motion, boundaries, sea floor and continents",
@@ -201,7 +213,6 @@ class PlatesStage final : public Stage {
                     &field::plate_velocity_north, &field::boundary_type, &field::boundary_strength,
                     &field::crust_age, &field::orogeny_type, &field::heat_anomaly}};
     info.writes.insert(info.writes.end(), crust);
-    info.feels_events = crust.size() > 0;
     return info;
   }
 

@@ -1,0 +1,174 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "geo/kernels/raster_tectonics.hpp"
+#include "raster_blocks.hpp"
+
+namespace geo {
+
+/// Lays all plates on a row of the world, in their order, and settles who is on top.
+void RasterTectonics::meet_along(int world_row) {
+  const int columns = settings_.world.columns;
+  const auto owner =
+      std::span(owner_).subspan(static_cast<std::size_t>(world_row) * columns, columns);
+  std::fill(owner.begin(), owner.end(), std::int16_t{-1});
+  Row& events = rows_[world_row];
+  for (std::size_t p = 0; p < plates_.size(); ++p) {
+    RasterPlate& plate = plates_[p];
+    if (!plate.alive) continue;
+    const int local = plate.local_row(world_row);
+    if (local < 0) continue;
+    const auto [begin, end] = plate.reach(local);
+    if (begin >= end) continue;
+    constexpr float kLeast = std::numeric_limits<float>::min();  // crust, however little
+    const auto heights = plate.heights(local);
+    const auto lay = [&, p](int i, int column) {
+      if (!(heights[i] >= kLeast)) return;
+      if (owner[column] < 0) {
+        owner[column] = static_cast<std::int16_t>(p);
+      } else {
+        meet(static_cast<int>(p), plate.place(i, local), column, world_row, events);
+      }
+    };
+    int column = settings_.world.column(plate.first_column() + begin);
+    for (int i = begin; i < end;) {
+      if (i + kRasterBlock > end || column + kRasterBlock > columns) {
+        lay(i++, column++);
+        if (column == columns) column = 0;
+        continue;
+      }
+      // Most blocks are all this plate's or all another's.
+      const int crust = count_from(&heights[i], kLeast);
+      if (crust == kRasterBlock && count_owned(&owner[column]) == 0) {
+        for (int k = 0; k < kRasterBlock; ++k) owner[column + k] = static_cast<std::int16_t>(p);
+      } else if (crust != 0) {
+        for (int k = 0; k < kRasterBlock; ++k) lay(i + k, column + k);
+      }
+      i += kRasterBlock;
+      column += kRasterBlock;
+      if (column == columns) column = 0;
+    }
+  }
+  for (int column = 0; column < columns; ++column) {
+    if (column + kRasterBlock <= columns && count_owned(&owner[column]) == kRasterBlock) {
+      column += kRasterBlock - 1;
+    } else if (owner[column] < 0) {
+      events.gaps.push_back(column);
+    }
+  }
+}
+
+/// A plate comes to a cell where another one is on top.
+void RasterTectonics::meet(int plate, std::int32_t place, int column, int world_row, Row& events) {
+  std::int16_t& owner = owner_[static_cast<std::size_t>(world_row) * settings_.world.columns +
+                               static_cast<std::size_t>(column)];
+  const int other = owner;
+  const std::int32_t other_place = plates_[other].find(column, world_row);
+  float& height = plates_[plate].height(place);
+  float& top = plates_[other].height(other_place);
+  constexpr float kSame = 1e-6F;
+  const bool top_floats = std::abs(top - height) < kSame
+                              ? plates_[other].born(other_place) >= plates_[plate].born(place)
+                              : top > height;
+  if (height < 1.0F && top_floats) {
+    subduct(plate, other, height, column, world_row, events);
+    if (!(height > 0.0F)) return;
+  } else if (top < 1.0F) {
+    subduct(other, plate, top, column, world_row, events);
+    if (!(top > 0.0F)) {
+      owner = static_cast<std::int16_t>(plate);
+      return;
+    }
+  }
+  fold(plate, place, other, other_place, column, world_row, events);
+}
+
+void RasterTectonics::subduct(int below, int above, float& height, int column, int row,
+                              Row& events) {
+  const auto floor = static_cast<float>(settings_.ocean_crust);
+  const float before = height, after = std::max(0.0F, before - floor);
+  // Water on top is what melts the mantle: the deeper what goes down, the more comes up.
+  const auto melt =
+      static_cast<float>(settings_.melting_ratio) * (before - after) * (1.0F - before);
+  height = after;
+  trench_[static_cast<std::size_t>(row) * settings_.world.columns + column] =
+      static_cast<std::int32_t>(budget_.steps);
+  events.subductions.push_back({column, static_cast<std::int16_t>(below),
+                                static_cast<std::int16_t>(above), before, after, melt});
+}
+
+void RasterTectonics::fold(int a, std::int32_t place_a, int b, std::int32_t place_b, int column,
+                           int row, Row& events) {
+  struct Side {
+    int plate;
+    std::int32_t place, continent, area;
+  };
+  const auto side = [&](int number, std::int32_t place) {
+    const RasterPlate& plate = plates_[number];
+    const std::int32_t continent =
+        plate.continents().at(plate.local_column(column), plate.local_row(row));
+    return Side{number, place, continent, continent < 0 ? 0 : plate.continents().area[continent]};
+  };
+  Side small = side(a, place_a), large = side(b, place_b);
+  if (small.area > large.area) std::swap(small, large);
+  RasterPlate& from = plates_[small.plate];
+  RasterPlate& to = plates_[large.plate];
+  const auto ratio = static_cast<float>(
+      own(small.plate, &RasterPlateSettings::folding_ratio, settings_.folding_ratio));
+  const float before = from.height(small.place), other_before = to.height(large.place);
+  const float moved = ratio * before, after = before - moved, other_after = other_before + moved;
+  float& born = to.born(large.place);
+  born = (other_before * born + moved * from.born(small.place)) / other_after;
+  from.height(small.place) = after;
+  to.height(large.place) = other_after;
+  if (other_after >= 1.0F) {
+    to.folded(large.place) = static_cast<std::int32_t>(2 * budget_.steps + 1);
+  }
+  events.folds.push_back({column, static_cast<std::int16_t>(small.plate),
+                          static_cast<std::int16_t>(large.plate), before, after, other_before,
+                          other_after, small.continent, large.continent});
+  owner_[static_cast<std::size_t>(row) * settings_.world.columns + column] =
+      static_cast<std::int16_t>(large.plate);
+}
+
+RasterMap RasterTectonics::map(bool visible) const {
+  const RasterWorld& world = settings_.world;
+  RasterMap map;
+  map.crust.resize(world.size());
+  map.plate = owner_;
+#pragma omp parallel for schedule(dynamic, 8)
+  for (int y = 0; y < world.rows; ++y) {
+    const std::size_t first = static_cast<std::size_t>(y) * world.columns;
+    for (const RasterPlate& plate : plates_) {
+      const int local = plate.alive ? plate.local_row(y) : -1;
+      if (local < 0) continue;
+      const auto [begin, end] = plate.reach(local);
+      for (int i = begin; i < end; ++i) {
+        const RasterCrust crust = plate.crust(plate.place(i, local));
+        if (!(crust.height > 0.0F)) continue;
+        RasterCrust& all = map.crust[first + world.column(plate.first_column() + i)];
+        const float sum = all.height + crust.height;
+        all.born = (all.height * all.born + crust.height * crust.born) / sum;
+        all.folded = std::max(all.folded, crust.folded);
+        all.height = sum;
+      }
+    }
+    if (!visible) continue;
+    for (int x = 0; x < world.columns; ++x) {
+      RasterCrust& cell = map.crust[first + x];
+      if (!(cell.height < 1.0F)) continue;
+      const auto now = static_cast<double>(budget_.steps);
+      const double young = 1.0 - (now - cell.born) / std::max(1, settings_.buoyant_steps);
+      const double rise = settings_.buoyancy * settings_.ocean_crust * std::clamp(young, 0.0, 1.0);
+      const std::int32_t last = trench_[first + x];
+      const double fresh =
+          last < 0 ? 0.0 : 1.0 - (now - last) / std::max(1, settings_.trench_steps);
+      cell.height += static_cast<float>(rise - settings_.trench * std::clamp(fresh, 0.0, 1.0));
+    }
+  }
+  if (visible) map.trench = trench_;
+  return map;
+}
+
+}  // namespace geo

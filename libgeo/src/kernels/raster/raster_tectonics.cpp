@@ -1,0 +1,339 @@
+#include "geo/kernels/raster_tectonics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "geo/core/error.hpp"
+#include "geo/core/random.hpp"
+#include "geo/kernels/raster_start.hpp"
+
+namespace geo {
+
+RasterTectonics::RasterTectonics(const RasterSettings& settings, std::uint64_t seed)
+    : settings_(settings), seed_(seed) {
+  const RasterWorld& world = settings_.world;
+  if (world.columns < 16 || world.rows < 16) {
+    throw ConfigurationError("raster plates: a world of " + std::to_string(world.columns) + " x " +
+                             std::to_string(world.rows) + " cells; at least 16 x 16");
+  }
+  trench_.assign(world.size(), -1);
+  rows_.resize(world.rows);
+  std::vector<RasterCrust> crust = start_raster(world, settings_.sea_share, settings_.ocean_crust,
+                                                settings_.continents_across, seed_);
+  for (const RasterCrust& cell : crust) budget_.start += cell.height;
+  divide(std::move(crust));
+}
+
+double RasterTectonics::own(int plate, double RasterPlateSettings::*value, double common) const {
+  if (plate >= static_cast<int>(settings_.own.size())) return common;
+  const double of_plate = settings_.own[plate].*value;
+  return std::isnan(of_plate) ? common : of_plate;
+}
+
+/// Cuts the crust of the world into new plates with new motion.
+void RasterTectonics::divide(std::vector<RasterCrust> crust) {
+  const RasterWorld& world = settings_.world;
+  plates_.clear();
+  owner_ = grow_raster_plates(world, settings_.plates, seed_, budget_.cycles);
+  // Columns and rows that a plate has cells in; the widest gap round the torus is left out.
+  const auto count = static_cast<std::size_t>(settings_.plates);
+  std::vector<std::uint8_t> in_column(count * world.columns), in_row(count * world.rows);
+  for (int y = 0; y < world.rows; ++y) {
+    for (int x = 0; x < world.columns; ++x) {
+      const std::size_t plate = owner_[static_cast<std::size_t>(y) * world.columns + x];
+      in_column[plate * world.columns + x] = 1;
+      in_row[plate * world.rows + y] = 1;
+    }
+  }
+  const auto extent = [](std::span<const std::uint8_t> used) {
+    const int n = static_cast<int>(used.size());
+    int gap = 0, after = 0, run = 0;
+    for (int k = 0; k < 2 * n; ++k) {
+      run = used[k % n] != 0 ? 0 : run + 1;
+      if (run > gap && run <= n) {
+        gap = run;
+        after = (k + 1) % n;
+      }
+    }
+    return std::pair(after, n - gap);
+  };
+  const RandomStream random(seed_, "raster.motion");
+  for (int p = 0; p < settings_.plates; ++p) {
+    RasterPlate& plate = plates_.emplace_back(world);
+    const auto [left, columns] = extent(
+        std::span(in_column).subspan(p * static_cast<std::size_t>(world.columns), world.columns));
+    const auto [top, rows] =
+        extent(std::span(in_row).subspan(p * static_cast<std::size_t>(world.rows), world.rows));
+    plate.open(left, top, columns, rows);
+    plate.centre_x = left + 0.5 * columns;
+    plate.centre_y = top + 0.5 * rows;
+    const std::uint64_t draw = 8 * static_cast<std::uint64_t>(budget_.cycles);
+    const double angle = 2.0 * std::numbers::pi * random.uniform(p, draw);
+    const double spread = settings_.speed_spread;
+    const double speed = settings_.speed * own(p, &RasterPlateSettings::speed, 1.0) *
+                         random.uniform(p, draw + 1, 1.0 - spread, 1.0 + spread);
+    plate.east = speed * std::cos(angle);
+    plate.north = speed * std::sin(angle);
+    plate.spin = settings_.spin * random.uniform(p, draw + 2, -1.0, 1.0);
+  }
+  for (int y = 0; y < world.rows; ++y) {
+    for (int x = 0; x < world.columns; ++x) {
+      const std::size_t cell = static_cast<std::size_t>(y) * world.columns + x;
+      RasterPlate& plate = plates_[owner_[cell]];
+      plate.set(plate.claim(x, y), crust[cell]);
+    }
+  }
+  for (RasterPlate& plate : plates_) plate.tighten();
+  previous_ = owner_;
+  ++budget_.cycles;
+  peak_momentum_ = 0.0;
+  cycle_step_ = quiet_ = 0;
+}
+
+/// Whether the cycle has come to its end.
+bool RasterTectonics::is_over() {
+  double speed = 0.0, momentum = 0.0;
+  int alive = 0;
+  for (const RasterPlate& plate : plates_) {
+    if (!plate.alive) continue;
+    const double own_speed = std::hypot(plate.east, plate.north);
+    speed += own_speed;
+    momentum += own_speed * plate.mass;
+    ++alive;
+  }
+  peak_momentum_ = std::max(peak_momentum_, momentum);
+  return alive < 2 || speed < settings_.restart_speed * settings_.speed * alive ||
+         momentum < settings_.restart_momentum * peak_momentum_ ||
+         quiet_ > settings_.restart_quiet || cycle_step_ >= settings_.cycle_steps;
+}
+
+bool RasterTectonics::advance() {
+  if (over_) return false;
+  if (is_over()) {
+    if (budget_.cycles >= settings_.cycles) {
+      over_ = true;
+      return false;
+    }
+    divide(map(false).crust);
+    return true;
+  }
+  ++budget_.steps;
+  ++cycle_step_;
+  move();
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int p = 0; p < static_cast<int>(plates_.size()); ++p) {
+    if (plates_[p].alive) plates_[p].find_continents(settings_.continent_steps);
+  }
+  std::swap(owner_, previous_);
+#pragma omp parallel for schedule(dynamic, 8)
+  for (int row = 0; row < settings_.world.rows; ++row) meet_along(row);
+  raise_arcs();
+  slow_down();
+  fill_gaps();
+  return true;
+}
+
+void RasterTectonics::move() {
+  constexpr int kTighten = 32;
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int p = 0; p < static_cast<int>(plates_.size()); ++p) {
+    RasterPlate& plate = plates_[p];
+    if (!plate.alive) continue;
+    const auto period = static_cast<std::int64_t>(
+        own(p, &RasterPlateSettings::erosion_steps, settings_.erosion_steps));
+    if (period > 0 && budget_.steps % period == 0) plate.erode(settings_.erosion);
+    if (budget_.steps % kTighten == 0) plate.tighten();
+    // A rigid turn about the centre and a path that bends with it: motion about a pole.
+    const double c = std::cos(plate.spin), s = std::sin(plate.spin);
+    const double east = c * plate.east - s * plate.north;
+    plate.north = s * plate.east + c * plate.north;
+    plate.east = east;
+    plate.x += plate.east;
+    plate.y += plate.north;
+    plate.angle += plate.spin;
+    plate.settle();
+  }
+}
+
+/// Magma of what went down rises inland, along the motion of the lower plate as the upper one sees
+/// it, with some scatter; where the upper plate ends, at its edge.
+void RasterTectonics::raise_arcs() {
+  const RandomStream random(seed_, "raster.arcs");
+  const RasterWorld& world = settings_.world;
+  const auto scatter = [](std::uint32_t word) {
+    const double u = 2.0 * word * 0x1.0p-32 - 1.0;
+    return u * u * u;
+  };
+  const auto now = static_cast<float>(budget_.steps);
+  for (int y = 0; y < world.rows; ++y) {
+    for (const Subduction& event : rows_[y].subductions) {
+      RasterPlate& below = plates_[event.below];
+      RasterPlate& above = plates_[event.above];
+      below.note(event.before, event.after);
+      budget_.subducted += static_cast<double>(event.before) - event.after;
+      if (!(event.melt > 0.0F)) continue;
+      double dx = below.east, dy = below.north;
+      if (dx * above.east + dy * above.north > 0.0) {
+        dx -= above.east;
+        dy -= above.north;
+      }
+      const double reach = settings_.arc_cells / settings_.speed;
+      const std::int32_t cell = y * world.columns + event.column;
+      const auto words = random.words(budget_.steps, cell);
+      const double sx = settings_.arc_scatter_cells * scatter(words[0]);
+      const double sy = settings_.arc_scatter_cells * scatter(words[1]);
+      const int to_x = static_cast<int>(std::floor(event.column + reach * dx + sx));
+      const int to_y = static_cast<int>(std::floor(y + reach * dy + sy));
+      std::int32_t place = above.find(to_x, to_y);
+      if (place < 0 || !(above.height(place) > 0.0F)) place = above.find(event.column, y);
+      if (place < 0 || !(above.height(place) > 0.0F)) continue;
+      const float before = above.height(place), after = before + event.melt;
+      above.born(place) = (before * above.born(place) + event.melt * now) / after;
+      above.height(place) = after;
+      if (after >= 1.0F) above.folded(place) = static_cast<std::int32_t>(2 * budget_.steps);
+      above.note(before, after);
+      budget_.melted += static_cast<double>(after) - before;
+    }
+    rows_[y].subductions.clear();
+  }
+}
+
+/// Books of folding: friction, and how far which continents overlap.
+void RasterTectonics::slow_down() {
+  std::vector<Overlap> overlaps;
+  std::size_t last = 0;
+  bool met = false;
+  std::vector<double> folded(plates_.size(), 0.0);
+  for (Row& row : rows_) {
+    for (const Fold& event : row.folds) {
+      met = true;
+      RasterPlate& from = plates_[event.from];
+      RasterPlate& to = plates_[event.to];
+      from.note(event.before, event.after);
+      to.note(event.other_before, event.other_after);
+      const double moved = static_cast<double>(event.before) - event.after;
+      budget_.folded += moved;
+      folded[event.from] += moved;
+      folded[event.to] += moved;
+      if (event.continent < 0 || event.other < 0) continue;
+      Overlap key{event.from, event.to, event.continent, event.other, 0};
+      const auto same = [&](const Overlap& o) {
+        return o.a == key.a && o.b == key.b && o.continent_a == key.continent_a &&
+               o.continent_b == key.continent_b;
+      };
+      if (last >= overlaps.size() || !same(overlaps[last])) {
+        last = static_cast<std::size_t>(std::find_if(overlaps.begin(), overlaps.end(), same) -
+                                        overlaps.begin());
+        if (last == overlaps.size()) overlaps.push_back(key);
+      }
+      ++overlaps[last].cells;
+    }
+    row.folds.clear();
+  }
+  for (std::size_t p = 0; p < plates_.size(); ++p) {
+    RasterPlate& plate = plates_[p];
+    const double speed = std::hypot(plate.east, plate.north);
+    if (!(plate.mass > 0.0) || speed == 0.0) continue;
+    const double loss = settings_.friction * settings_.speed * folded[p] / plate.mass;
+    const double left = std::max(0.0, 1.0 - loss / speed);
+    plate.east *= left;
+    plate.north *= left;
+  }
+  quiet_ = met ? 0 : quiet_ + 1;
+  merge_continents(overlaps);
+}
+
+void RasterTectonics::merge_continents(std::span<const Overlap> overlaps) {
+  for (const Overlap& overlap : overlaps) {
+    const auto& small = plates_[overlap.a].continents();
+    const auto& large = plates_[overlap.b].continents();
+    // One of both may have gone to another plate within this step.
+    const std::int32_t area = small.area[overlap.continent_a];
+    if (area == 0 || large.area[overlap.continent_b] == 0) continue;
+    const double relative =
+        own(overlap.a, &RasterPlateSettings::overlap_relative, settings_.overlap_relative);
+    if (static_cast<double>(overlap.cells) >= settings_.overlap_cells ||
+        static_cast<double>(overlap.cells) >= relative * area) {
+      merge(overlap);
+    }
+  }
+}
+
+/// The smaller continent moves to the larger one's plate. Momentum goes with it.
+void RasterTectonics::merge(const Overlap& overlap) {
+  const RasterWorld& world = settings_.world;
+  RasterPlate& from = plates_[overlap.a];
+  RasterPlate& to = plates_[overlap.b];
+  RasterContinents& continents = from.continents();
+  double moved = 0.0;
+  const int rows = static_cast<int>(continents.row_begin.size()) - 1;
+  for (int j = 0; j < rows; ++j) {
+    const int y = world.row(continents.top + j + from.shift_y());
+    for (int k = continents.row_begin[j]; k < continents.row_begin[j + 1]; ++k) {
+      const RasterContinents::Run run = continents.runs[k];
+      if (run.continent != overlap.continent_a) continue;
+      for (int i = run.begin; i < run.end; ++i) {
+        const int x = world.column(continents.left + i + from.shift_x());
+        const std::int32_t place = from.find(x, y);
+        if (place < 0 || !(from.height(place) > 0.0F)) continue;
+        const std::int32_t at = to.claim(x, y);
+        const RasterCrust source = from.crust(place), target = to.crust(at);
+        const float sum = target.height + source.height;
+        to.set(at, {sum, (target.height * target.born + source.height * source.born) / sum,
+                    std::max(target.folded, source.folded)});
+        from.set(place, {});
+        to.note(target.height, sum);
+        moved += source.height;
+        std::int16_t& owner = owner_[static_cast<std::size_t>(y) * world.columns + x];
+        if (owner == overlap.a) owner = overlap.b;
+      }
+    }
+  }
+  from.mass -= moved;
+  from.forget_continents();
+  to.forget_continents();
+  continents.area[overlap.continent_a] = 0;
+  budget_.merged += moved;
+  ++budget_.mergers;
+  if (moved <= 0.0 || to.mass <= 0.0) return;
+  const double share = moved / to.mass;
+  to.east += share * (from.east - to.east);
+  to.north += share * (from.north - to.north);
+}
+
+void RasterTectonics::fill_gaps() {
+  const RasterWorld& world = settings_.world;
+  const auto floor = static_cast<float>(settings_.ocean_crust);
+  for (int y = 0; y < world.rows; ++y) {
+    for (const std::int32_t x : rows_[y].gaps) {
+      const std::size_t cell = static_cast<std::size_t>(y) * world.columns + x;
+      int plate = previous_[cell];
+      for (int k = 0; !plates_[plate].alive; ++k) plate = k;
+      const std::int32_t place = plates_[plate].claim(x, y);
+      const float before = plates_[plate].height(place);
+      plates_[plate].set(place, {floor, static_cast<float>(budget_.steps), 0});
+      plates_[plate].note(before, floor);
+      owner_[cell] = static_cast<std::int16_t>(plate);
+      budget_.created += static_cast<double>(floor) - before;
+    }
+    rows_[y].gaps.clear();
+  }
+}
+
+double RasterTectonics::mass() const {
+  double sum = 0.0;
+  for (const RasterPlate& plate : plates_) {
+    for (int j = 0; j < plate.rows(); ++j) {
+      for (const float height : plate.heights(j)) sum += height;
+    }
+  }
+  return sum;
+}
+
+double RasterTectonics::progress() const {
+  const double cycle = static_cast<double>(cycle_step_) / std::max(1, settings_.cycle_steps);
+  return std::min(1.0, (budget_.cycles - 1 + cycle) / settings_.cycles);
+}
+
+}  // namespace geo
