@@ -77,6 +77,7 @@ class RasterPlate {
   double x = 0.0, y = 0.0;                ///< shift of the frame
   double east = 0.0, north = 0.0;         ///< velocity of the centre
   double spin = 0.0, angle = 0.0;         ///< of the turn about the centre
+  double curve = 0.0;                     ///< turn of the velocity beside that
   double centre_x = 0.0, centre_y = 0.0;  ///< of that turn, in the frame
   double mass = 0.0;                      ///< sum of heights, kept up to date
   bool alive = true;
@@ -119,10 +120,20 @@ class RasterPlate {
   [[nodiscard]] RasterCrust crust(std::int32_t place) const {
     return {height_[place], born_[place], folded_[place]};
   }
+  /// Changes a cell, and the count of crust about it.
   void set(std::int32_t place, const RasterCrust& crust) {
+    std::uint8_t& count = filled_[block_of(place)];
+    count = static_cast<std::uint8_t>(count + static_cast<int>(crust.height > 0.0F) -
+                                      static_cast<int>(height_[place] > 0.0F));
     height_[place] = crust.height;
     born_[place] = crust.born;
     folded_[place] = crust.folded;
+  }
+  /// Cells of a row that are counted together: most such blocks are all crust or have none.
+  static constexpr int kBlock = 16;
+  /// How many cells with crust each block of a row of the map has.
+  [[nodiscard]] const std::uint8_t* filled(int local) const {
+    return &filled_[static_cast<std::size_t>(local) * blocks()];
   }
   /// Columns of a row of the map outside which there is no crust.
   struct Reach {
@@ -156,6 +167,11 @@ class RasterPlate {
   }
 
  private:
+  [[nodiscard]] int blocks() const { return (columns_ + kBlock - 1) / kBlock; }
+  [[nodiscard]] std::size_t block_of(std::int32_t place) const {
+    const std::int32_t row = place / columns_;
+    return static_cast<std::size_t>(row) * blocks() + (place - row * columns_) / kBlock;
+  }
   /// A map that holds the crust of the present one at other places of the frame.
   template <class Place>
   void rearrange(int left, int top, int columns, int rows, Place&& place_of);
@@ -168,6 +184,7 @@ class RasterPlate {
   double map_angle_ = 0.0, base_angle_ = 0.0;  // of the map, and that at which it was as made
   std::vector<float> height_, born_;
   std::vector<std::int32_t> folded_;
+  std::vector<std::uint8_t> filled_;
   std::vector<Reach> reach_;
   RasterContinents continents_;
   bool continents_known_ = false, land_changed_ = false;

@@ -39,6 +39,7 @@ struct RasterSettings {
   double arc_scatter_cells = 3.0;
   double friction = 2.0;           ///< of folded crust over a plate's mass, in new plates' speed
   double spin = 0.0;               ///< fastest turn of a new plate, radians per step
+  double curve = 0.0;              ///< fastest turn of a new plate's direction, radians per step
   double restart_speed = 0.2;      ///< mean speed, over that of new plates, that ends a cycle
   double restart_momentum = 0.15;  ///< sum of momenta over its peak that ends a cycle
   int restart_quiet = 10;          ///< steps without continents meeting that end a cycle
@@ -140,7 +141,7 @@ class RasterTectonics {
   [[nodiscard]] bool is_over();
   void meet_along(int world_row);
   void meet(int plate, std::int32_t place, int column, int world_row, Row& events);
-  void subduct(int below, int above, float& height, int column, int row, Row& events);
+  void subduct(int below, int above, std::int32_t place, int column, int row, Row& events);
   void fold(int a, std::int32_t place_a, int b, std::int32_t place_b, int column, int row,
             Row& events);
   void raise_arcs();
@@ -159,6 +160,7 @@ class RasterTectonics {
   double peak_momentum_ = 0.0;
   int cycle_step_ = 0, quiet_ = 0;
   bool over_ = false;
+  bool pays_ = true;  // to wait for other threads in each step: not on small maps
 };
 
 }  // namespace geo

@@ -1,23 +1,33 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
+
+#include "geo/kernels/raster_plate.hpp"
 
 namespace geo {
 
-/// Cells of a row that are looked at together: most of them are alike.
-inline constexpr int kRasterBlock = 32;
-
-/// How many of a block's heights are above a level, or at it.
+/// How many of twice a block's heights are at a level or above it.
+inline constexpr int kHeights = 2 * RasterPlate::kBlock;
 inline int count_from(const float* heights, float level) {
   int count = 0;
-  for (int k = 0; k < kRasterBlock; ++k) count += static_cast<int>(heights[k] >= level);
+  for (int k = 0; k < kHeights; ++k) count += static_cast<int>(heights[k] >= level);
   return count;
 }
-/// How many of a block's cells have an owner.
-inline int count_owned(const std::int16_t* owner) {
-  std::int16_t count = 0;
-  for (int k = 0; k < kRasterBlock; ++k) count += static_cast<std::int16_t>(owner[k] >= 0);
-  return count;
-}
+
+/// Owners of a block's cells, four to a word; a free cell has all its bits set, -1.
+struct BlockOwners {
+  explicit BlockOwners(const std::int16_t* owner) {
+    static_assert(RasterPlate::kBlock == 16);
+    std::memcpy(word, owner, sizeof word);
+  }
+  [[nodiscard]] bool all_free() const {
+    return (word[0] & word[1] & word[2] & word[3]) == ~std::uint64_t{0};
+  }
+  [[nodiscard]] bool none_free() const {
+    return ((word[0] | word[1] | word[2] | word[3]) & 0x8000'8000'8000'8000U) == 0;
+  }
+  std::uint64_t word[4];
+};
 
 }  // namespace geo

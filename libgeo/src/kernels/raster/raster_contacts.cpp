@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "geo/kernels/raster_tectonics.hpp"
 #include "raster_blocks.hpp"
@@ -14,6 +13,7 @@ void RasterTectonics::meet_along(int world_row) {
       std::span(owner_).subspan(static_cast<std::size_t>(world_row) * columns, columns);
   std::fill(owner.begin(), owner.end(), std::int16_t{-1});
   Row& events = rows_[world_row];
+  int owned = 0;
   for (std::size_t p = 0; p < plates_.size(); ++p) {
     RasterPlate& plate = plates_[p];
     if (!plate.alive) continue;
@@ -21,41 +21,39 @@ void RasterTectonics::meet_along(int world_row) {
     if (local < 0) continue;
     const auto [begin, end] = plate.reach(local);
     if (begin >= end) continue;
-    constexpr float kLeast = std::numeric_limits<float>::min();  // crust, however little
     const auto heights = plate.heights(local);
-    const auto lay = [&, p](int i, int column) {
-      if (!(heights[i] >= kLeast)) return;
-      if (owner[column] < 0) {
-        owner[column] = static_cast<std::int16_t>(p);
-      } else {
-        meet(static_cast<int>(p), plate.place(i, local), column, world_row, events);
-      }
-    };
-    int column = settings_.world.column(plate.first_column() + begin);
-    for (int i = begin; i < end;) {
-      if (i + kRasterBlock > end || column + kRasterBlock > columns) {
-        lay(i++, column++);
-        if (column == columns) column = 0;
+    const std::uint8_t* filled = plate.filled(local);
+    // Blocks of the plate's row; the world's edge may cut one in two.
+    for (int block = begin / RasterPlate::kBlock; block * RasterPlate::kBlock < end; ++block) {
+      if (filled[block] == 0) continue;
+      const int first = block * RasterPlate::kBlock;
+      const int last = std::min(first + RasterPlate::kBlock, plate.columns());
+      int column = settings_.world.column(plate.first_column() + first);
+      if (filled[block] == RasterPlate::kBlock && column + RasterPlate::kBlock <= columns &&
+          BlockOwners(&owner[column]).all_free()) {
+        std::fill_n(&owner[column], RasterPlate::kBlock, static_cast<std::int16_t>(p));
+        owned += RasterPlate::kBlock;
         continue;
       }
-      // Most blocks are all this plate's or all another's.
-      const int crust = count_from(&heights[i], kLeast);
-      if (crust == kRasterBlock && count_owned(&owner[column]) == 0) {
-        for (int k = 0; k < kRasterBlock; ++k) owner[column + k] = static_cast<std::int16_t>(p);
-      } else if (crust != 0) {
-        for (int k = 0; k < kRasterBlock; ++k) lay(i + k, column + k);
+      for (int i = first; i < last; ++i, column = column + 1 == columns ? 0 : column + 1) {
+        if (!(heights[i] > 0.0F)) continue;
+        if (owner[column] < 0) {
+          owner[column] = static_cast<std::int16_t>(p);
+          ++owned;
+        } else {
+          meet(static_cast<int>(p), plate.place(i, local), column, world_row, events);
+        }
       }
-      i += kRasterBlock;
-      column += kRasterBlock;
-      if (column == columns) column = 0;
     }
   }
-  for (int column = 0; column < columns; ++column) {
-    if (column + kRasterBlock <= columns && count_owned(&owner[column]) == kRasterBlock) {
-      column += kRasterBlock - 1;
-    } else if (owner[column] < 0) {
-      events.gaps.push_back(column);
+  for (int column = 0; owned < columns && column < columns; ++column) {
+    if (column + RasterPlate::kBlock <= columns && BlockOwners(&owner[column]).none_free()) {
+      column += RasterPlate::kBlock - 1;
+      continue;
     }
+    if (owner[column] >= 0) continue;
+    events.gaps.push_back(column);
+    ++owned;
   }
 }
 
@@ -65,17 +63,17 @@ void RasterTectonics::meet(int plate, std::int32_t place, int column, int world_
                                static_cast<std::size_t>(column)];
   const int other = owner;
   const std::int32_t other_place = plates_[other].find(column, world_row);
-  float& height = plates_[plate].height(place);
-  float& top = plates_[other].height(other_place);
+  const float& height = plates_[plate].height(place);
+  const float& top = plates_[other].height(other_place);
   constexpr float kSame = 1e-6F;
   const bool top_floats = std::abs(top - height) < kSame
                               ? plates_[other].born(other_place) >= plates_[plate].born(place)
                               : top > height;
   if (height < 1.0F && top_floats) {
-    subduct(plate, other, height, column, world_row, events);
+    subduct(plate, other, place, column, world_row, events);
     if (!(height > 0.0F)) return;
   } else if (top < 1.0F) {
-    subduct(other, plate, top, column, world_row, events);
+    subduct(other, plate, other_place, column, world_row, events);
     if (!(top > 0.0F)) {
       owner = static_cast<std::int16_t>(plate);
       return;
@@ -84,14 +82,16 @@ void RasterTectonics::meet(int plate, std::int32_t place, int column, int world_
   fold(plate, place, other, other_place, column, world_row, events);
 }
 
-void RasterTectonics::subduct(int below, int above, float& height, int column, int row,
+void RasterTectonics::subduct(int below, int above, std::int32_t place, int column, int row,
                               Row& events) {
   const auto floor = static_cast<float>(settings_.ocean_crust);
-  const float before = height, after = std::max(0.0F, before - floor);
+  RasterCrust crust = plates_[below].crust(place);
+  const float before = crust.height, after = std::max(0.0F, before - floor);
   // Water on top is what melts the mantle: the deeper what goes down, the more comes up.
   const auto melt =
       static_cast<float>(settings_.melting_ratio) * (before - after) * (1.0F - before);
-  height = after;
+  crust.height = after;
+  plates_[below].set(place, crust);
   trench_[static_cast<std::size_t>(row) * settings_.world.columns + column] =
       static_cast<std::int32_t>(budget_.steps);
   events.subductions.push_back({column, static_cast<std::int16_t>(below),

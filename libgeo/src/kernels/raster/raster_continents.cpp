@@ -66,11 +66,11 @@ void RasterPlate::find_continents(int steps) {
       }
     };
     int i = reach.begin;
-    for (; i + kRasterBlock <= reach.end; i += kRasterBlock) {
+    for (; i + kHeights <= reach.end; i += kHeights) {
       // Most blocks are all land or all sea.
       const int land = count_from(&cells[i], 1.0F);
-      if (land == (begin >= 0 ? kRasterBlock : 0)) continue;
-      for (int k = 0; k < kRasterBlock; ++k) look(i + k);
+      if (land == (begin >= 0 ? kHeights : 0)) continue;
+      for (int k = 0; k < kHeights; ++k) look(i + k);
     }
     for (; i < reach.end; ++i) look(i);
     if (begin >= 0) open_run(begin, reach.end);

@@ -16,12 +16,13 @@ void RasterPlate::open(int world_column, int world_row, int columns, int rows) {
   height_.assign(cells, 0.0F);
   born_.assign(cells, 0.0F);
   folded_.assign(cells, 0);
+  filled_.assign(static_cast<std::size_t>(blocks()) * rows_, 0);
   reach_.assign(rows_, {columns_, 0});
   continents_known_ = false;
 }
 
 std::int32_t RasterPlate::claim(int world_column, int world_row) {
-  constexpr int kMargin = 12;
+  constexpr int kMargin = 24;
   int column = local_column(world_column), row = world_.row(world_row - shift_y_ - top_);
   if (column >= columns_ || row >= rows_) {
     int left = left_, top = top_, columns = columns_, rows = rows_;
@@ -77,6 +78,7 @@ void RasterPlate::tighten() {
     height_ = {};
     born_ = {};
     folded_ = {};
+    filled_ = {};
     reach_ = {};
     columns_ = rows_ = 0;
     return;

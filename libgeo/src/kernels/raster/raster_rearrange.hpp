@@ -16,7 +16,7 @@ void RasterPlate::rearrange(int left, int top, int columns, int rows, Place&& pl
     for (int j = 0; j < rows_; ++j) {
       for (int i = reach_[j].begin; i < reach_[j].end; ++i) {
         const std::int32_t from = place(i, j);
-        if (values[from] == 0) continue;
+        if (!(height_[from] > 0.0F)) continue;
         int column = 0, row = 0;
         place_of(i, j, column, row);
         column = world_.column(column - left);
@@ -28,14 +28,20 @@ void RasterPlate::rearrange(int left, int top, int columns, int rows, Place&& pl
     }
     values = std::move(moved);
   };
-  move(height_);
   move(born_);
   move(folded_);
+  move(height_);  // the last, since it tells where crust is
   reach_ = std::move(reach);
   left_ = left;
   top_ = top;
   columns_ = columns;
   rows_ = rows;
+  filled_.assign(static_cast<std::size_t>(blocks()) * rows_, 0);
+  for (int j = 0; j < rows_; ++j) {
+    for (int i = reach_[j].begin; i < reach_[j].end; ++i) {
+      if (height_[place(i, j)] > 0.0F) ++filled_[block_of(place(i, j))];
+    }
+  }
   continents_known_ = false;
 }
 

@@ -17,6 +17,8 @@ RasterTectonics::RasterTectonics(const RasterSettings& settings, std::uint64_t s
     throw ConfigurationError("raster plates: a world of " + std::to_string(world.columns) + " x " +
                              std::to_string(world.rows) + " cells; at least 16 x 16");
   }
+  constexpr std::int32_t kPays = 1'000'000;  // cells
+  pays_ = world.size() >= kPays;
   trench_.assign(world.size(), -1);
   rows_.resize(world.rows);
   std::vector<RasterCrust> crust = start_raster(world, settings_.sea_share, settings_.ocean_crust,
@@ -76,6 +78,7 @@ void RasterTectonics::divide(std::vector<RasterCrust> crust) {
     plate.east = speed * std::cos(angle);
     plate.north = speed * std::sin(angle);
     plate.spin = settings_.spin * random.uniform(p, draw + 2, -1.0, 1.0);
+    plate.curve = settings_.curve * random.uniform(p, draw + 3, -1.0, 1.0);
   }
   for (int y = 0; y < world.rows; ++y) {
     for (int x = 0; x < world.columns; ++x) {
@@ -121,12 +124,12 @@ bool RasterTectonics::advance() {
   ++budget_.steps;
   ++cycle_step_;
   move();
-#pragma omp parallel for schedule(dynamic, 1)
+#pragma omp parallel for schedule(dynamic, 1) if (pays_)
   for (int p = 0; p < static_cast<int>(plates_.size()); ++p) {
     if (plates_[p].alive) plates_[p].find_continents(settings_.continent_steps);
   }
   std::swap(owner_, previous_);
-#pragma omp parallel for schedule(dynamic, 8)
+#pragma omp parallel for schedule(dynamic, 8) if (pays_)
   for (int row = 0; row < settings_.world.rows; ++row) meet_along(row);
   raise_arcs();
   slow_down();
@@ -136,7 +139,7 @@ bool RasterTectonics::advance() {
 
 void RasterTectonics::move() {
   constexpr int kTighten = 32;
-#pragma omp parallel for schedule(dynamic, 1)
+#pragma omp parallel for schedule(dynamic, 1) if (pays_)
   for (int p = 0; p < static_cast<int>(plates_.size()); ++p) {
     RasterPlate& plate = plates_[p];
     if (!plate.alive) continue;
@@ -144,8 +147,8 @@ void RasterTectonics::move() {
         own(p, &RasterPlateSettings::erosion_steps, settings_.erosion_steps));
     if (period > 0 && budget_.steps % period == 0) plate.erode(settings_.erosion);
     if (budget_.steps % kTighten == 0) plate.tighten();
-    // A rigid turn about the centre and a path that bends with it: motion about a pole.
-    const double c = std::cos(plate.spin), s = std::sin(plate.spin);
+    // With a spin, the path bends as the plate turns: motion about a pole.
+    const double c = std::cos(plate.spin + plate.curve), s = std::sin(plate.spin + plate.curve);
     const double east = c * plate.east - s * plate.north;
     plate.north = s * plate.east + c * plate.north;
     plate.east = east;
@@ -157,7 +160,7 @@ void RasterTectonics::move() {
 }
 
 /// Magma of what went down rises inland, along the motion of the lower plate as the upper one sees
-/// it, with some scatter; where the upper plate ends, at its edge.
+/// it, with some scatter; where the upper plate has no crust it stays below.
 void RasterTectonics::raise_arcs() {
   const RandomStream random(seed_, "raster.arcs");
   const RasterWorld& world = settings_.world;
@@ -185,8 +188,7 @@ void RasterTectonics::raise_arcs() {
       const double sy = settings_.arc_scatter_cells * scatter(words[1]);
       const int to_x = static_cast<int>(std::floor(event.column + reach * dx + sx));
       const int to_y = static_cast<int>(std::floor(y + reach * dy + sy));
-      std::int32_t place = above.find(to_x, to_y);
-      if (place < 0 || !(above.height(place) > 0.0F)) place = above.find(event.column, y);
+      const std::int32_t place = above.find(to_x, to_y);
       if (place < 0 || !(above.height(place) > 0.0F)) continue;
       const float before = above.height(place), after = before + event.melt;
       above.born(place) = (before * above.born(place) + event.melt * now) / after;
