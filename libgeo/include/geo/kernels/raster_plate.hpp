@@ -104,36 +104,35 @@ class RasterPlate {
   /// Column of the world at the first one of the map.
   [[nodiscard]] int first_column() const { return world_.column(left_ + shift_x_); }
   [[nodiscard]] int first_row() const { return world_.row(top_ + shift_y_); }
-  [[nodiscard]] std::span<float> heights(int local) {
-    return std::span(height_).subspan(static_cast<std::size_t>(local) * columns_, columns_);
+  [[nodiscard]] std::span<const RasterCrust> row(int local) const {
+    return std::span(crust_).subspan(static_cast<std::size_t>(local) * columns_, columns_);
   }
-  [[nodiscard]] std::span<const float> heights(int local) const {
-    return std::span(height_).subspan(static_cast<std::size_t>(local) * columns_, columns_);
-  }
-  /// Place of a cell of the map in its arrays.
+  /// Place of a cell of the map in its array.
   [[nodiscard]] std::int32_t place(int column, int local) const {
     return local * columns_ + column;
   }
-  [[nodiscard]] float& height(std::int32_t place) { return height_[place]; }
-  [[nodiscard]] float& born(std::int32_t place) { return born_[place]; }
-  [[nodiscard]] std::int32_t& folded(std::int32_t place) { return folded_[place]; }
-  [[nodiscard]] RasterCrust crust(std::int32_t place) const {
-    return {height_[place], born_[place], folded_[place]};
-  }
-  /// Changes a cell, and the count of crust about it.
+  [[nodiscard]] const RasterCrust& crust(std::int32_t place) const { return crust_[place]; }
+  /// Changes a cell.
   void set(std::int32_t place, const RasterCrust& crust) {
-    std::uint8_t& count = filled_[block_of(place)];
-    count = static_cast<std::uint8_t>(count + static_cast<int>(crust.height > 0.0F) -
-                                      static_cast<int>(height_[place] > 0.0F));
-    height_[place] = crust.height;
-    born_[place] = crust.born;
-    folded_[place] = crust.folded;
+    const float before = crust_[place].height, after = crust.height;
+    crust_[place] = crust;
+    const bool comes = (before > 0.0F) != (after > 0.0F);
+    const bool lands = (before >= 1.0F) != (after >= 1.0F);
+    if (!comes && !lands) return;
+    const std::int32_t row = place / columns_, column = place - row * columns_;
+    Block& block = blocks_[static_cast<std::size_t>(row) * blocks() + column / kBlock];
+    const auto bit = static_cast<std::uint16_t>(1U << (column % kBlock));
+    if (comes) block.crust ^= bit;
+    if (lands) block.land ^= bit;
   }
-  /// Cells of a row that are counted together: most such blocks are all crust or have none.
+  /// Which of 16 cells of a row have crust and are land, one bit each, so that crust itself is only
+  /// looked at where plates meet.
+  struct Block {
+    std::uint16_t crust = 0, land = 0;
+  };
   static constexpr int kBlock = 16;
-  /// How many cells with crust each block of a row of the map has.
-  [[nodiscard]] const std::uint8_t* filled(int local) const {
-    return &filled_[static_cast<std::size_t>(local) * blocks()];
+  [[nodiscard]] const Block* blocks(int local) const {
+    return &blocks_[static_cast<std::size_t>(local) * blocks()];
   }
   /// Columns of a row of the map outside which there is no crust.
   struct Reach {
@@ -168,10 +167,7 @@ class RasterPlate {
 
  private:
   [[nodiscard]] int blocks() const { return (columns_ + kBlock - 1) / kBlock; }
-  [[nodiscard]] std::size_t block_of(std::int32_t place) const {
-    const std::int32_t row = place / columns_;
-    return static_cast<std::size_t>(row) * blocks() + (place - row * columns_) / kBlock;
-  }
+  void mark_blocks();
   /// A map that holds the crust of the present one at other places of the frame.
   template <class Place>
   void rearrange(int left, int top, int columns, int rows, Place&& place_of);
@@ -182,9 +178,8 @@ class RasterPlate {
   int left_ = 0, top_ = 0, columns_ = 0, rows_ = 0;  // in the frame
   int shift_x_ = 0, shift_y_ = 0;
   double map_angle_ = 0.0, base_angle_ = 0.0;  // of the map, and that at which it was as made
-  std::vector<float> height_, born_;
-  std::vector<std::int32_t> folded_;
-  std::vector<std::uint8_t> filled_;
+  std::vector<RasterCrust> crust_;
+  std::vector<Block> blocks_;
   std::vector<Reach> reach_;
   RasterContinents continents_;
   bool continents_known_ = false, land_changed_ = false;

@@ -17,9 +17,9 @@ struct RasterParameters {
   double drift = 1.0 / 512.0;  ///< of a new plate in a step
   double arc_distance = 10.0 / 512.0;
   double overlap_absolute = 4.0;  ///< of the map's area
-  double spin_deg_myr = 0.0;
+  double spin_deg_myr = 0.0, curve_deg_myr = 0.0;
   std::string plate_speed, plate_folding, plate_overlap, plate_erosion;
-  RasterScale scale;
+  double median_land_m = 300.0;
   double polar_circle_deg = 52.0;
 };
 

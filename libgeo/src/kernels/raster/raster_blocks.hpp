@@ -7,14 +7,6 @@
 
 namespace geo {
 
-/// How many of twice a block's heights are at a level or above it.
-inline constexpr int kHeights = 2 * RasterPlate::kBlock;
-inline int count_from(const float* heights, float level) {
-  int count = 0;
-  for (int k = 0; k < kHeights; ++k) count += static_cast<int>(heights[k] >= level);
-  return count;
-}
-
 /// Owners of a block's cells, four to a word; a free cell has all its bits set, -1.
 struct BlockOwners {
   explicit BlockOwners(const std::int16_t* owner) {

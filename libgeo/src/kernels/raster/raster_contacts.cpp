@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "geo/kernels/raster_tectonics.hpp"
@@ -21,27 +22,26 @@ void RasterTectonics::meet_along(int world_row) {
     if (local < 0) continue;
     const auto [begin, end] = plate.reach(local);
     if (begin >= end) continue;
-    const auto heights = plate.heights(local);
-    const std::uint8_t* filled = plate.filled(local);
-    // Blocks of the plate's row; the world's edge may cut one in two.
+    const RasterPlate::Block* blocks = plate.blocks(local);
     for (int block = begin / RasterPlate::kBlock; block * RasterPlate::kBlock < end; ++block) {
-      if (filled[block] == 0) continue;
+      std::uint32_t crust = blocks[block].crust;
+      if (crust == 0) continue;
       const int first = block * RasterPlate::kBlock;
-      const int last = std::min(first + RasterPlate::kBlock, plate.columns());
-      int column = settings_.world.column(plate.first_column() + first);
-      if (filled[block] == RasterPlate::kBlock && column + RasterPlate::kBlock <= columns &&
+      const int column = settings_.world.column(plate.first_column() + first);
+      if (crust == 0xFFFFU && column + RasterPlate::kBlock <= columns &&
           BlockOwners(&owner[column]).all_free()) {
         std::fill_n(&owner[column], RasterPlate::kBlock, static_cast<std::int16_t>(p));
         owned += RasterPlate::kBlock;
         continue;
       }
-      for (int i = first; i < last; ++i, column = column + 1 == columns ? 0 : column + 1) {
-        if (!(heights[i] > 0.0F)) continue;
-        if (owner[column] < 0) {
-          owner[column] = static_cast<std::int16_t>(p);
+      for (; crust != 0; crust &= crust - 1) {
+        const int k = std::countr_zero(crust);
+        const int at = column + k < columns ? column + k : column + k - columns;
+        if (owner[at] < 0) {
+          owner[at] = static_cast<std::int16_t>(p);
           ++owned;
         } else {
-          meet(static_cast<int>(p), plate.place(i, local), column, world_row, events);
+          meet(static_cast<int>(p), plate.place(first + k, local), at, world_row, events);
         }
       }
     }
@@ -63,18 +63,17 @@ void RasterTectonics::meet(int plate, std::int32_t place, int column, int world_
                                static_cast<std::size_t>(column)];
   const int other = owner;
   const std::int32_t other_place = plates_[other].find(column, world_row);
-  const float& height = plates_[plate].height(place);
-  const float& top = plates_[other].height(other_place);
+  const RasterCrust& crust = plates_[plate].crust(place);
+  const RasterCrust& top = plates_[other].crust(other_place);
   constexpr float kSame = 1e-6F;
-  const bool top_floats = std::abs(top - height) < kSame
-                              ? plates_[other].born(other_place) >= plates_[plate].born(place)
-                              : top > height;
-  if (height < 1.0F && top_floats) {
+  const bool top_floats = std::abs(top.height - crust.height) < kSame ? top.born >= crust.born
+                                                                      : top.height > crust.height;
+  if (crust.height < 1.0F && top_floats) {
     subduct(plate, other, place, column, world_row, events);
-    if (!(height > 0.0F)) return;
-  } else if (top < 1.0F) {
+    if (!(crust.height > 0.0F)) return;
+  } else if (top.height < 1.0F) {
     subduct(other, plate, other_place, column, world_row, events);
-    if (!(top > 0.0F)) {
+    if (!(top.height > 0.0F)) {
       owner = static_cast<std::int16_t>(plate);
       return;
     }
@@ -116,15 +115,15 @@ void RasterTectonics::fold(int a, std::int32_t place_a, int b, std::int32_t plac
   RasterPlate& to = plates_[large.plate];
   const auto ratio = static_cast<float>(
       own(small.plate, &RasterPlateSettings::folding_ratio, settings_.folding_ratio));
-  const float before = from.height(small.place), other_before = to.height(large.place);
+  RasterCrust source = from.crust(small.place), target = to.crust(large.place);
+  const float before = source.height, other_before = target.height;
   const float moved = ratio * before, after = before - moved, other_after = other_before + moved;
-  float& born = to.born(large.place);
-  born = (other_before * born + moved * from.born(small.place)) / other_after;
-  from.height(small.place) = after;
-  to.height(large.place) = other_after;
-  if (other_after >= 1.0F) {
-    to.folded(large.place) = static_cast<std::int32_t>(2 * budget_.steps + 1);
-  }
+  target.born = (other_before * target.born + moved * source.born) / other_after;
+  source.height = after;
+  target.height = other_after;
+  if (other_after >= 1.0F) target.folded = static_cast<std::int32_t>(2 * budget_.steps + 1);
+  from.set(small.place, source);
+  to.set(large.place, target);
   events.folds.push_back({column, static_cast<std::int16_t>(small.plate),
                           static_cast<std::int16_t>(large.plate), before, after, other_before,
                           other_after, small.continent, large.continent});

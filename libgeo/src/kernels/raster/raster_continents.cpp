@@ -1,8 +1,8 @@
 #include <algorithm>
+#include <bit>
 #include <numeric>
 
 #include "geo/kernels/raster_plate.hpp"
-#include "raster_blocks.hpp"
 
 namespace geo {
 namespace {
@@ -47,33 +47,24 @@ void RasterPlate::find_continents(int steps) {
       runs[a].end < runs[b].end ? ++a : ++b;
     }
   };
-  const auto open_run = [&](int begin, int end) {
+  const auto add_run = [&](int begin, int end) {
     parent.push_back(static_cast<std::int32_t>(runs.size()));
     runs.push_back({begin, end, -1});
   };
   for (int j = 0; j < rows_; ++j) {
-    const auto cells = heights(j);
-    const Reach reach = reach_[j];
+    const Block* along = blocks(j);
     int begin = -1;
-    const auto look = [&](int i) {
-      const bool land = cells[i] >= 1.0F;
-      if (land == (begin >= 0)) return;
-      if (land) {
-        begin = i;
-      } else {
-        open_run(begin, i);
-        begin = -1;
+    for (int block = reach_[j].begin / kBlock; block * kBlock < reach_[j].end; ++block) {
+      // Bits that differ from the one before them: where land begins or ends.
+      const std::uint32_t land = along[block].land;
+      std::uint32_t steps = (land ^ (land << 1 | (begin >= 0 ? 1U : 0U))) & 0xFFFFU;
+      for (; steps != 0; steps &= steps - 1) {
+        const int i = block * kBlock + std::countr_zero(steps);
+        if (begin >= 0) add_run(begin, i);
+        begin = begin >= 0 ? -1 : i;
       }
-    };
-    int i = reach.begin;
-    for (; i + kHeights <= reach.end; i += kHeights) {
-      // Most blocks are all land or all sea.
-      const int land = count_from(&cells[i], 1.0F);
-      if (land == (begin >= 0 ? kHeights : 0)) continue;
-      for (int k = 0; k < kHeights; ++k) look(i + k);
     }
-    for (; i < reach.end; ++i) look(i);
-    if (begin >= 0) open_run(begin, reach.end);
+    if (begin >= 0) add_run(begin, columns_);
     row_begin.push_back(static_cast<std::int32_t>(runs.size()));
     if (round_x && row_begin[j + 1] - row_begin[j] > 1 && runs[row_begin[j]].begin == 0 &&
         runs.back().end == columns_) {

@@ -12,13 +12,23 @@ void RasterPlate::open(int world_column, int world_row, int columns, int rows) {
   top_ = world_.row(world_row - shift_y_);
   columns_ = std::min(columns, world_.columns);
   rows_ = std::min(rows, world_.rows);
-  const std::size_t cells = static_cast<std::size_t>(columns_) * rows_;
-  height_.assign(cells, 0.0F);
-  born_.assign(cells, 0.0F);
-  folded_.assign(cells, 0);
-  filled_.assign(static_cast<std::size_t>(blocks()) * rows_, 0);
+  crust_.assign(static_cast<std::size_t>(columns_) * rows_, {});
+  blocks_.assign(static_cast<std::size_t>(blocks()) * rows_, {});
   reach_.assign(rows_, {columns_, 0});
   continents_known_ = false;
+}
+
+void RasterPlate::mark_blocks() {
+  blocks_.assign(static_cast<std::size_t>(blocks()) * rows_, {});
+  for (int j = 0; j < rows_; ++j) {
+    for (int i = reach_[j].begin; i < reach_[j].end; ++i) {
+      const float height = crust_[place(i, j)].height;
+      Block& block = blocks_[static_cast<std::size_t>(j) * blocks() + i / kBlock];
+      const auto bit = static_cast<std::uint16_t>(1U << (i % kBlock));
+      if (height > 0.0F) block.crust |= bit;
+      if (height >= 1.0F) block.land |= bit;
+    }
+  }
 }
 
 std::int32_t RasterPlate::claim(int world_column, int world_row) {
@@ -59,14 +69,14 @@ void RasterPlate::tighten() {
   int first_row = rows_, last_row = -1, first_column = columns_, last_column = -1;
   double sum = 0.0;
   for (int j = 0; j < rows_; ++j) {
-    const auto cells = heights(j);
+    const auto cells = row(j);
     Reach& reach = reach_[j];
     int begin = reach.begin, end = reach.end;
-    while (begin < end && !(cells[begin] > 0.0F)) ++begin;
-    while (end > begin && !(cells[end - 1] > 0.0F)) --end;
+    while (begin < end && !(cells[begin].height > 0.0F)) ++begin;
+    while (end > begin && !(cells[end - 1].height > 0.0F)) --end;
     reach = begin < end ? Reach{begin, end} : Reach{columns_, 0};
     if (begin >= end) continue;
-    for (int i = begin; i < end; ++i) sum += cells[i];
+    for (int i = begin; i < end; ++i) sum += cells[i].height;
     first_row = std::min(first_row, j);
     last_row = j;
     first_column = std::min(first_column, begin);
@@ -75,10 +85,8 @@ void RasterPlate::tighten() {
   mass = sum;
   if (last_row < 0) {
     alive = false;
-    height_ = {};
-    born_ = {};
-    folded_ = {};
-    filled_ = {};
+    crust_ = {};
+    blocks_ = {};
     reach_ = {};
     columns_ = rows_ = 0;
     return;
@@ -91,14 +99,14 @@ void RasterPlate::tighten() {
 
 void RasterPlate::erode(double strength) {
   if (columns_ == 0) return;
-  std::vector<float> change(height_.size(), 0.0F);
+  std::vector<float> change(crust_.size(), 0.0F);
   const bool round_x = columns_ == world_.columns, round_y = rows_ == world_.rows;
   const auto share = static_cast<float>(0.25 * strength);
   for (int j = 0; j < rows_; ++j) {
     const Reach reach = reach_[j];
     for (int i = reach.begin; i < reach.end; ++i) {
       const std::size_t at = static_cast<std::size_t>(j) * columns_ + i;
-      const float height = height_[at];
+      const float height = crust_[at].height;
       if (!(height > 1.0F)) continue;
       std::size_t below[4];
       float flux[4], all = 0.0F;
@@ -107,7 +115,7 @@ void RasterPlate::erode(double strength) {
         if (!there) return;
         const std::size_t next = static_cast<std::size_t>((row + rows_) % rows_) * columns_ +
                                  (column + columns_) % columns_;
-        const float other = height_[next];
+        const float other = crust_[next].height;
         if (!(other > 0.0F) || other >= height) return;
         below[count] = next;
         flux[count] = share * (height - other);
@@ -126,11 +134,12 @@ void RasterPlate::erode(double strength) {
     }
   }
   double sum = 0.0;
-  for (std::size_t k = 0; k < height_.size(); ++k) {
-    height_[k] = std::max(0.0F, height_[k] + change[k]);
-    sum += height_[k];
+  for (std::size_t k = 0; k < crust_.size(); ++k) {
+    crust_[k].height = std::max(0.0F, crust_[k].height + change[k]);
+    sum += crust_[k].height;
   }
   mass = sum;
+  mark_blocks();
   continents_known_ = false;
 }
 

@@ -10,8 +10,11 @@
 namespace geo {
 namespace {
 
-double filling(double height, double ocean_crust) {
-  return std::clamp((height - ocean_crust) / (1.0 - ocean_crust), 0.0, 1.0);
+/// Of the rise of land with its crust: plains flatter, belts higher.
+constexpr double kSteepening = 1.5;
+
+double filling(double height, double ocean_crust, double sea_height) {
+  return std::clamp((height - ocean_crust) / (sea_height - ocean_crust), 0.0, 1.0);
 }
 
 /// Unit vectors across the gradient of a field, after smoothing over some cells.
@@ -51,6 +54,24 @@ std::array<double, 4> spline_weights(double t) {
 
 }  // namespace
 
+void fit_scale(std::vector<float> heights, double ocean_share, double median_land_m,
+               RasterScale& scale) {
+  constexpr double kLeast = 0.2;  // above bare floor, which has no shore
+  std::sort(heights.begin(), heights.end());
+  const auto size = static_cast<double>(heights.size());
+  if (heights.empty()) return;
+  if (ocean_share < 1.0) {
+    const auto place = static_cast<std::size_t>(std::clamp(ocean_share, 0.0, 1.0) * size);
+    scale.sea_height = std::max<double>(kLeast, heights[std::min(place, heights.size() - 1)]);
+  }
+  const auto shore =
+      std::upper_bound(heights.begin(), heights.end(), static_cast<float>(scale.sea_height));
+  if (shore == heights.end()) return;
+  const double median = *(shore + (heights.end() - shore) / 2) - scale.sea_height;
+  scale.half_height = std::max(
+      1e-3, median * std::pow(1e3 * scale.summit_km / median_land_m - 1.0, 1.0 / kSteepening));
+}
+
 double raster_age_myr(double steps, const RasterScale& scale) {
   const double age = std::max(0.0, steps * scale.step_myr);
   return scale.oldest_floor_myr * std::tanh(age / scale.oldest_floor_myr);
@@ -58,17 +79,17 @@ double raster_age_myr(double steps, const RasterScale& scale) {
 
 double raster_elevation_m(double height, double age_myr, double ocean_crust,
                           const RasterScale& scale) {
-  if (height >= 1.0) {
-    const double x = height - 1.0;
-    return 1e3 * scale.summit_km * x / (x + scale.half_height);
+  if (height >= scale.sea_height) {
+    const double x = std::pow((height - scale.sea_height) / scale.half_height, kSteepening);
+    return 1e3 * scale.summit_km * x / (1.0 + x);
   }
-  return -ocean_depth_m(age_myr) * (1.0 - filling(height, ocean_crust));
+  return -ocean_depth_m(age_myr) * (1.0 - filling(height, ocean_crust, scale.sea_height));
 }
 
 double raster_thickness_m(double height, double ocean_crust, const RasterScale& scale) {
-  const double t = filling(height, ocean_crust);
+  const double t = filling(height, ocean_crust, scale.sea_height);
   const double shore_m = 1e3 * (scale.oceanic_km + t * (scale.shore_km - scale.oceanic_km));
-  if (height < 1.0) return shore_m;
+  if (height < scale.sea_height) return shore_m;
   return shore_m + scale.rebound * raster_elevation_m(height, 0.0, ocean_crust, scale);
 }
 
@@ -81,8 +102,8 @@ RasterRelief raster_relief(const RasterTectonics& model, const RasterScale& scal
   relief.world = world;
   relief.plate = map.plate;
   const std::size_t n = map.crust.size();
-  for (auto* field :
-       {&relief.elevation_m, &relief.thickness_m, &relief.age_myr, &relief.orogeny_age_myr}) {
+  for (auto* field : {&relief.height, &relief.elevation_m, &relief.thickness_m, &relief.age_myr,
+                      &relief.orogeny_age_myr}) {
     field->resize(n);
   }
   relief.orogeny.resize(n);
@@ -91,12 +112,13 @@ RasterRelief raster_relief(const RasterTectonics& model, const RasterScale& scal
   for (std::size_t k = 0; k < n; ++k) {
     const RasterCrust& crust = map.crust[k];
     const double age = raster_age_myr(now - crust.born, scale);
+    relief.height[k] = crust.height;
     relief.age_myr[k] = static_cast<float>(age);
     relief.elevation_m[k] =
         static_cast<float>(raster_elevation_m(crust.height, age, ocean_crust, scale));
     relief.thickness_m[k] =
         static_cast<float>(raster_thickness_m(crust.height, ocean_crust, scale));
-    const bool land = crust.height >= 1.0F;
+    const bool land = crust.height >= scale.sea_height;
     const bool has_folds = land && crust.folded > 0;
     // Ground that never folded is older than the model's time.
     constexpr double kShield_myr = 1000.0;

@@ -189,11 +189,13 @@ void RasterTectonics::raise_arcs() {
       const int to_x = static_cast<int>(std::floor(event.column + reach * dx + sx));
       const int to_y = static_cast<int>(std::floor(y + reach * dy + sy));
       const std::int32_t place = above.find(to_x, to_y);
-      if (place < 0 || !(above.height(place) > 0.0F)) continue;
-      const float before = above.height(place), after = before + event.melt;
-      above.born(place) = (before * above.born(place) + event.melt * now) / after;
-      above.height(place) = after;
-      if (after >= 1.0F) above.folded(place) = static_cast<std::int32_t>(2 * budget_.steps);
+      if (place < 0 || !(above.crust(place).height > 0.0F)) continue;
+      RasterCrust crust = above.crust(place);
+      const float before = crust.height, after = before + event.melt;
+      crust.born = (before * crust.born + event.melt * now) / after;
+      crust.height = after;
+      if (after >= 1.0F) crust.folded = static_cast<std::int32_t>(2 * budget_.steps);
+      above.set(place, crust);
       above.note(before, after);
       budget_.melted += static_cast<double>(after) - before;
     }
@@ -278,7 +280,7 @@ void RasterTectonics::merge(const Overlap& overlap) {
       for (int i = run.begin; i < run.end; ++i) {
         const int x = world.column(continents.left + i + from.shift_x());
         const std::int32_t place = from.find(x, y);
-        if (place < 0 || !(from.height(place) > 0.0F)) continue;
+        if (place < 0 || !(from.crust(place).height > 0.0F)) continue;
         const std::int32_t at = to.claim(x, y);
         const RasterCrust source = from.crust(place), target = to.crust(at);
         const float sum = target.height + source.height;
@@ -313,7 +315,7 @@ void RasterTectonics::fill_gaps() {
       int plate = previous_[cell];
       for (int k = 0; !plates_[plate].alive; ++k) plate = k;
       const std::int32_t place = plates_[plate].claim(x, y);
-      const float before = plates_[plate].height(place);
+      const float before = plates_[plate].crust(place).height;
       plates_[plate].set(place, {floor, static_cast<float>(budget_.steps), 0});
       plates_[plate].note(before, floor);
       owner_[cell] = static_cast<std::int16_t>(plate);
@@ -327,7 +329,7 @@ double RasterTectonics::mass() const {
   double sum = 0.0;
   for (const RasterPlate& plate : plates_) {
     for (int j = 0; j < plate.rows(); ++j) {
-      for (const float height : plate.heights(j)) sum += height;
+      for (const RasterCrust& crust : plate.row(j)) sum += crust.height;
     }
   }
   return sum;

@@ -63,7 +63,7 @@ void RasterPlate::turn_map() {
   int most_x = std::numeric_limits<int>::min(), most_y = most_x;
   for (int j = 0; j < rows_; ++j) {
     for (int i = reach_[j].begin; i < reach_[j].end; ++i) {
-      if (!(height_[place(i, j)] > 0.0F)) continue;
+      if (!(crust_[place(i, j)].height > 0.0F)) continue;
       int column = 0, row = 0;
       place_of(i, j, column, row);
       least_x = std::min(least_x, column);

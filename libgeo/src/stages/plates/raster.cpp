@@ -50,7 +50,9 @@ RasterSettings settings_of(const PlatesParameters& parameters, double width_km) 
   s.arc_cells = p.arc_distance * width;
   s.arc_scatter_cells = 0.3 * s.arc_cells;
   s.overlap_cells = p.overlap_absolute * width * static_cast<double>(p.rows);
-  s.spin = p.spin_deg_myr * parameters.sphere.law.step_myr * std::numbers::pi / 180.0;
+  const double radians = parameters.sphere.law.step_myr * std::numbers::pi / 180.0;
+  s.spin = p.spin_deg_myr * radians;
+  s.curve = p.curve_deg_myr * radians;
   read_own("plates.plate_speed", p.plate_speed, 0.0, 10.0, &RasterPlateSettings::speed, s.own);
   read_own("plates.plate_folding", p.plate_folding, 0.0, 1.0, &RasterPlateSettings::folding_ratio,
            s.own);
@@ -79,6 +81,10 @@ void report(const RasterTectonics& model, Budget& budget) {
 
 }  // namespace
 
+double wanted_ocean(const Context& context) {
+  return context.planet.sea_level == "fraction" ? context.planet.ocean_fraction : 1.0;
+}
+
 void collide_rasters(const PlatesParameters& parameters, StageIo& io, Context& context) {
   const Grid& grid = io.grid();
   if (grid.topology() == Topology::plane) {
@@ -90,17 +96,17 @@ void collide_rasters(const PlatesParameters& parameters, StageIo& io, Context& c
                                    : 2e-3 * std::numbers::pi * grid.figure().radius_m;
   RasterTectonics model(settings_of(parameters, width_km), context.seed);
   while (model.advance()) {
-    constexpr int kTold = 8;
+    constexpr int kTold = 32;
     if (model.steps() % kTold == 0) context.advance(0.8 * model.progress());
   }
   report(model, context.budget);
-  RasterScale scale = parameters.raster.scale;
+  RasterScale scale;
   scale.cell_km = width_km / static_cast<double>(parameters.raster.columns);
   scale.step_myr = parameters.sphere.law.step_myr;
   scale.summit_km = parameters.sphere.law.summit_km;
   scale.oldest_floor_myr = parameters.oldest_floor_myr;
   context.advance(0.8);
-  on_torus ? lay_on_torus(parameters, model, scale, io)
+  on_torus ? lay_on_torus(parameters, model, scale, io, context)
            : lay_on_sphere(parameters, model, scale, io, context);
 }
 

@@ -11,6 +11,9 @@ namespace geo {
 /// or taken as they are where the grid is a torus itself.
 void collide_rasters(const PlatesParameters& parameters, StageIo& io, Context& context);
 
+/// Share of the planet that is to be ocean; 1 where sea level follows from elsewhere.
+[[nodiscard]] double wanted_ocean(const Context& context);
+
 /// Declarations of the model's own parameters.
 [[nodiscard]] std::vector<Parameter> raster_declarations(RasterParameters& parameters);
 

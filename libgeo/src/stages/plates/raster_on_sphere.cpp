@@ -7,6 +7,7 @@
 
 #include "geo/kernels/noise.hpp"
 #include "geo/kernels/sphere_tectonics.hpp"
+#include "raster.hpp"
 #include "sphere_on_grid.hpp"
 
 namespace geo {
@@ -30,6 +31,9 @@ class Charts {
         circle_rad_(polar_circle_deg * kPi / 180.0),
         bend_(seed, "raster.polar_circle") {}
 
+  /// The row of the tile that lies on the equator.
+  void shift(double row) { middle_ = row; }
+
   /// How much of a place is the cap's, 0 to 1.
   [[nodiscard]] double cap_share(const Vector3& at) const {
     constexpr double kBend_rad = 0.16, kHalfWidth_rad = 0.06;
@@ -46,20 +50,20 @@ class Charts {
     const Vector3 east{-s, c, 0.0}, north = cross(at, east);
     if (chart == kBelt) {
       return {0.5 * world_.columns + longitude * per_radian_,
-              0.5 * world_.rows + std::asin(std::clamp(at[2], -1.0, 1.0)) * per_radian_, east,
-              north};
+              middle_ + std::asin(std::clamp(at[2], -1.0, 1.0)) * per_radian_, east, north};
     }
     // Seen from above the pole; turned about at the south, so that the tile is not mirrored.
     const double side = chart == kNorth ? 1.0 : -1.0;
     const double far = std::sqrt(2.0 * std::max(0.0, 1.0 - side * at[2])) * per_radian_;
     const Vector3 out = scaled(north, -side), around = scaled(east, side);
-    return {(chart == kNorth ? 0.25 : 0.75) * world_.columns + far * c, side * far * s,
-            add(scaled(out, c), around, -side * s), add(scaled(out, side * s), around, c)};
+    return {(chart == kNorth ? 0.25 : 0.75) * world_.columns + far * c,
+            middle_ + 0.5 * world_.rows + side * far * s, add(scaled(out, c), around, -side * s),
+            add(scaled(out, side * s), around, c)};
   }
 
  private:
   RasterWorld world_;
-  double per_radian_, circle_rad_;
+  double per_radian_, circle_rad_, middle_ = 0.0;
   Noise bend_;
 };
 
@@ -93,13 +97,17 @@ class RotationFit {
 class Laying {
  public:
   Laying(const PlatesParameters& p, const RasterTectonics& model, const RasterScale& scale,
-         const Grid& grid, const SphereMesh& mesh, std::uint64_t seed)
+         const Grid& grid, const SphereMesh& mesh, const Context& context)
       : model_(model),
         scale_(scale),
         grid_(grid),
         mesh_(mesh),
-        relief_(raster_relief(model, scale)),
-        charts_(relief_.world, p.raster.polar_circle_deg, seed) {}
+        charts_(model.settings().world, p.raster.polar_circle_deg, context.seed) {
+    relief_ = raster_relief(model, scale_);
+    shift_tile(wanted_ocean(context));
+    fit_scale(heights(1), wanted_ocean(context), p.raster.median_land_m, scale_);
+    relief_ = raster_relief(model, scale_);
+  }
 
   [[nodiscard]] SphereState state() const {
     SphereState state;
@@ -112,22 +120,60 @@ class Laying {
   }
 
  private:
+  /// The planet shows a part of the tile: the one, along y, whose share of land is nearest to what
+  /// is wanted.
+  void shift_tile(double ocean_share) {
+    constexpr int kShifts = 32, kStride = 41;
+    double best = 2.0;
+    int choice = 0;
+    for (int k = 0; k < kShifts; ++k) {
+      charts_.shift(static_cast<double>(k) * model_.settings().world.rows / kShifts);
+      const std::vector<float> some = heights(kStride);
+      const auto sea = std::count_if(some.begin(), some.end(), [](float h) { return h < 1.0F; });
+      const double off = std::abs(static_cast<double>(sea) / static_cast<double>(some.size()) -
+                                  std::min(ocean_share, 0.71));
+      if (off >= best) continue;
+      best = off;
+      choice = k;
+    }
+    charts_.shift(static_cast<double>(choice) * model_.settings().world.rows / kShifts);
+  }
+  /// Of the map, blended, at every so many samples.
+  [[nodiscard]] std::vector<float> heights(int stride) const {
+    std::vector<float> heights(mesh_.size() / stride);
+#pragma omp parallel for schedule(static)
+    for (std::size_t k = 0; k < heights.size(); ++k) {
+      const Vector3 at =
+          grid_.to_axis(mesh_.samples().position(static_cast<std::int32_t>(k) * stride));
+      heights[k] = static_cast<float>(blended(relief_.height, at, charts_.cap_share(at)));
+    }
+    return heights;
+  }
+  [[nodiscard]] double blended(const std::vector<float>& values, const Vector3& at,
+                               double cap) const {
+    double sum = 0.0;
+    for (const int chart :
+         {static_cast<int>(kBelt), static_cast<int>(at[2] > 0.0 ? kNorth : kSouth)}) {
+      const double weight = chart == kBelt ? 1.0 - cap : cap;
+      if (weight <= 0.0) continue;
+      const ChartPlace place = charts_.place(chart, at);
+      sum += weight * smooth_value(model_.settings().world, values, place.column, place.row);
+    }
+    return sum;
+  }
+
   void lay(std::int32_t i, SphereCrust& crust) const {
     constexpr double kContinental_m = 12e3;
     const Vector3 at = grid_.to_axis(mesh_.samples().position(i));
     const double cap = charts_.cap_share(at);
     const int polar = at[2] > 0.0 ? kNorth : kSouth;
     const int main = cap > 0.5 ? polar : kBelt;
-    double elevation = 0.0, thickness = 0.0;
-    for (const int chart : {static_cast<int>(kBelt), polar}) {
-      const double weight = chart == kBelt ? 1.0 - cap : cap;
-      if (weight <= 0.0) continue;
-      const ChartPlace place = charts_.place(chart, at);
-      elevation +=
-          weight * smooth_value(relief_.world, relief_.elevation_m, place.column, place.row);
-      thickness +=
-          weight * smooth_value(relief_.world, relief_.thickness_m, place.column, place.row);
-    }
+    // Metres from the smooth height, not smooth metres: shores stay where the height is the sea's.
+    const double height = blended(relief_.height, at, cap);
+    const double age = blended(relief_.age_myr, at, cap);
+    const double ocean_crust = model_.settings().ocean_crust;
+    const double elevation = raster_elevation_m(height, age, ocean_crust, scale_);
+    const double thickness = raster_thickness_m(height, ocean_crust, scale_);
     const ChartPlace place = charts_.place(main, at);
     const std::size_t cell = cell_of(place);
     crust.plate[i] = static_cast<std::int16_t>(main * static_cast<int>(model_.plates().size()) +
@@ -202,7 +248,7 @@ class Laying {
   }
 
   const RasterTectonics& model_;
-  const RasterScale& scale_;
+  RasterScale scale_;
   const Grid& grid_;
   const SphereMesh& mesh_;
   RasterRelief relief_;
@@ -212,13 +258,13 @@ class Laying {
 }  // namespace
 
 void lay_on_sphere(const PlatesParameters& parameters, const RasterTectonics& model,
-                   const RasterScale& scale, StageIo& io, const Context& context) {
+                   RasterScale scale, StageIo& io, const Context& context) {
   const FibonacciSphere samples(static_cast<std::int32_t>(parameters.samples));
   const SphereMesh mesh(samples);
   SphereSettings settings = parameters.sphere;
   settings.radius_km = 1e-3 * io.grid().figure().radius_m;
   SphereTectonics planet(mesh, settings,
-                         Laying(parameters, model, scale, io.grid(), mesh, context.seed).state(),
+                         Laying(parameters, model, scale, io.grid(), mesh, context).state(),
                          context.seed);
   // Small pieces that charts and grid cut off join their neighbours.
   planet.finish();

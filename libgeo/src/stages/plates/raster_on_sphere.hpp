@@ -17,6 +17,6 @@ namespace geo {
 /// A plate of the belt and one of a cap are different plates. Each gets the rotation about an axis
 /// that comes nearest to its velocities (least squares), so that plates of the planet are rigid.
 void lay_on_sphere(const PlatesParameters& parameters, const RasterTectonics& model,
-                   const RasterScale& scale, StageIo& io, const Context& context);
+                   RasterScale scale, StageIo& io, const Context& context);
 
 }  // namespace geo

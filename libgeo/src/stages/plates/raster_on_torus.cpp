@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geo/kernels/plate_boundaries.hpp"
+#include "raster.hpp"
 
 namespace geo {
 namespace {
@@ -78,8 +79,11 @@ class TorusBoundaries {
 }  // namespace
 
 void lay_on_torus(const PlatesParameters& parameters, const RasterTectonics& model,
-                  const RasterScale& scale, StageIo& io) {
+                  RasterScale scale, StageIo& io, const Context& context) {
   const Grid& grid = io.grid();
+  std::vector<float> heights;
+  for (const RasterCrust& crust : model.map(false).crust) heights.push_back(crust.height);
+  fit_scale(std::move(heights), wanted_ocean(context), parameters.raster.median_land_m, scale);
   const RasterRelief relief = raster_relief(model, scale);
   const RasterWorld& world = relief.world;
   const TorusBoundaries boundaries(parameters, model, relief, scale);
@@ -119,8 +123,10 @@ void lay_on_torus(const PlatesParameters& parameters, const RasterTectonics& mod
       north[cell] = static_cast<float>(mm_yr * v.y);
       type[cell] = static_cast<std::int8_t>(boundaries.at(of).type);
       strength[cell] = static_cast<float>(boundaries.at(of).strength);
-      elevation[cell] = value(relief.elevation_m);
-      thickness[cell] = value(relief.thickness_m);
+      const double height = value(relief.height), floor = model.settings().ocean_crust;
+      elevation[cell] =
+          static_cast<float>(raster_elevation_m(height, value(relief.age_myr), floor, scale));
+      thickness[cell] = static_cast<float>(raster_thickness_m(height, floor, scale));
       fraction[cell] = static_cast<float>(
           std::clamp((thickness[cell] - 1e3 * scale.oceanic_km) / 15e3, 0.0, 1.0));
       const bool land = fraction[cell] >= 0.5F;

@@ -8,6 +8,6 @@ namespace geo {
 /// Writes a raster world to the fields of a torus, a seamless tile: the map's sides are the grid's.
 /// East is along x.
 void lay_on_torus(const PlatesParameters& parameters, const RasterTectonics& model,
-                  const RasterScale& scale, StageIo& io);
+                  RasterScale scale, StageIo& io, const Context& context);
 
 }  // namespace geo
