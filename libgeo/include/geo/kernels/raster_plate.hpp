@@ -112,6 +112,10 @@ class RasterPlate {
     return local * columns_ + column;
   }
   [[nodiscard]] const RasterCrust& crust(std::int32_t place) const { return crust_[place]; }
+  /// Says that a cell will be asked for soon, so that memory can begin to bring it.
+  void expect(std::int32_t place) const {
+    if (place >= 0) __builtin_prefetch(&crust_[place], 1);
+  }
   /// Changes a cell.
   void set(std::int32_t place, const RasterCrust& crust) {
     const float before = crust_[place].height, after = crust.height;

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "geo/core/random.hpp"
 #include "geo/kernels/raster_plate.hpp"
 
 namespace geo {
@@ -116,6 +117,7 @@ class RasterTectonics {
     std::int32_t column;
     std::int16_t below, above;
     float before, after, melt;
+    std::int32_t target;  ///< in the upper plate's map, of what rises
   };
   struct Fold {
     std::int32_t column;
@@ -123,8 +125,13 @@ class RasterTectonics {
     float before, after, other_before, other_after;
     std::int32_t continent, other;
   };
+  struct Meeting {
+    std::int32_t column, place, other_place;
+    std::int16_t plate, other;
+  };
   /// What happened along a row of the world.
   struct Row {
+    std::vector<Meeting> meetings;
     std::vector<Subduction> subductions;
     std::vector<Fold> folds;
     std::vector<std::int32_t> gaps;
@@ -140,10 +147,12 @@ class RasterTectonics {
   void move();
   [[nodiscard]] bool is_over();
   void meet_along(int world_row);
-  void meet(int plate, std::int32_t place, int column, int world_row, Row& events);
+  void meet(const Meeting& meeting, int world_row, Row& events);
   void subduct(int below, int above, std::int32_t place, int column, int row, Row& events);
   void fold(int a, std::int32_t place_a, int b, std::int32_t place_b, int column, int row,
             Row& events);
+  [[nodiscard]] std::int32_t arc_place(const Subduction& event, int row,
+                                       const RandomStream& random) const;
   void raise_arcs();
   void slow_down();
   void merge_continents(std::span<const Overlap> overlaps);

@@ -41,10 +41,18 @@ void RasterTectonics::meet_along(int world_row) {
           owner[at] = static_cast<std::int16_t>(p);
           ++owned;
         } else {
-          meet(static_cast<int>(p), plate.place(first + k, local), at, world_row, events);
+          const std::int16_t other = owner[at];
+          const Meeting meeting{at, plate.place(first + k, local),
+                                plates_[other].find(at, world_row), static_cast<std::int16_t>(p),
+                                other};
+          plate.expect(meeting.place);
+          plates_[other].expect(meeting.other_place);
+          events.meetings.push_back(meeting);
         }
       }
     }
+    for (const Meeting& meeting : events.meetings) meet(meeting, world_row, events);
+    events.meetings.clear();
   }
   for (int column = 0; owned < columns && column < columns; ++column) {
     if (column + RasterPlate::kBlock <= columns && BlockOwners(&owner[column]).none_free()) {
@@ -58,11 +66,10 @@ void RasterTectonics::meet_along(int world_row) {
 }
 
 /// A plate comes to a cell where another one is on top.
-void RasterTectonics::meet(int plate, std::int32_t place, int column, int world_row, Row& events) {
+void RasterTectonics::meet(const Meeting& meeting, int world_row, Row& events) {
+  const auto [column, place, other_place, plate, other] = meeting;
   std::int16_t& owner = owner_[static_cast<std::size_t>(world_row) * settings_.world.columns +
                                static_cast<std::size_t>(column)];
-  const int other = owner;
-  const std::int32_t other_place = plates_[other].find(column, world_row);
   const RasterCrust& crust = plates_[plate].crust(place);
   const RasterCrust& top = plates_[other].crust(other_place);
   constexpr float kSame = 1e-6F;
@@ -74,7 +81,7 @@ void RasterTectonics::meet(int plate, std::int32_t place, int column, int world_
   } else if (top.height < 1.0F) {
     subduct(other, plate, other_place, column, world_row, events);
     if (!(top.height > 0.0F)) {
-      owner = static_cast<std::int16_t>(plate);
+      owner = plate;
       return;
     }
   }
@@ -94,7 +101,7 @@ void RasterTectonics::subduct(int below, int above, std::int32_t place, int colu
   trench_[static_cast<std::size_t>(row) * settings_.world.columns + column] =
       static_cast<std::int32_t>(budget_.steps);
   events.subductions.push_back({column, static_cast<std::int16_t>(below),
-                                static_cast<std::int16_t>(above), before, after, melt});
+                                static_cast<std::int16_t>(above), before, after, melt, -1});
 }
 
 void RasterTectonics::fold(int a, std::int32_t place_a, int b, std::int32_t place_b, int column,

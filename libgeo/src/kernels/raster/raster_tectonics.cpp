@@ -159,43 +159,50 @@ void RasterTectonics::move() {
   }
 }
 
-/// Magma of what went down rises inland, along the motion of the lower plate as the upper one sees
-/// it, with some scatter; where the upper plate has no crust it stays below.
-void RasterTectonics::raise_arcs() {
-  const RandomStream random(seed_, "raster.arcs");
-  const RasterWorld& world = settings_.world;
+/// Where magma of what went down rises: inland, along the motion of the lower plate as the upper
+/// one sees it, with some scatter.
+std::int32_t RasterTectonics::arc_place(const Subduction& event, int row,
+                                        const RandomStream& random) const {
+  const RasterPlate& below = plates_[event.below];
+  const RasterPlate& above = plates_[event.above];
   const auto scatter = [](std::uint32_t word) {
     const double u = 2.0 * word * 0x1.0p-32 - 1.0;
     return u * u * u;
   };
+  double dx = below.east, dy = below.north;
+  if (dx * above.east + dy * above.north > 0.0) {
+    dx -= above.east;
+    dy -= above.north;
+  }
+  const double reach = settings_.speed > 0.0 ? settings_.arc_cells / settings_.speed : 0.0;
+  const auto words = random.words(budget_.steps, row * settings_.world.columns + event.column);
+  const double sx = settings_.arc_scatter_cells * scatter(words[0]);
+  const double sy = settings_.arc_scatter_cells * scatter(words[1]);
+  return above.find(static_cast<int>(std::floor(event.column + reach * dx + sx)),
+                    static_cast<int>(std::floor(row + reach * dy + sy)));
+}
+
+/// Takes what went down off the books and lets its magma rise; where the upper plate has no crust
+/// it stays below.
+void RasterTectonics::raise_arcs() {
+  const RandomStream random(seed_, "raster.arcs");
   const auto now = static_cast<float>(budget_.steps);
-  for (int y = 0; y < world.rows; ++y) {
-    for (const Subduction& event : rows_[y].subductions) {
-      RasterPlate& below = plates_[event.below];
-      RasterPlate& above = plates_[event.above];
-      below.note(event.before, event.after);
+  for (int y = 0; y < settings_.world.rows; ++y) {
+    for (Subduction& event : rows_[y].subductions) {
+      plates_[event.below].note(event.before, event.after);
       budget_.subducted += static_cast<double>(event.before) - event.after;
-      if (!(event.melt > 0.0F)) continue;
-      double dx = below.east, dy = below.north;
-      if (dx * above.east + dy * above.north > 0.0) {
-        dx -= above.east;
-        dy -= above.north;
-      }
-      const double reach = settings_.arc_cells / settings_.speed;
-      const std::int32_t cell = y * world.columns + event.column;
-      const auto words = random.words(budget_.steps, cell);
-      const double sx = settings_.arc_scatter_cells * scatter(words[0]);
-      const double sy = settings_.arc_scatter_cells * scatter(words[1]);
-      const int to_x = static_cast<int>(std::floor(event.column + reach * dx + sx));
-      const int to_y = static_cast<int>(std::floor(y + reach * dy + sy));
-      const std::int32_t place = above.find(to_x, to_y);
-      if (place < 0 || !(above.crust(place).height > 0.0F)) continue;
-      RasterCrust crust = above.crust(place);
+      if (event.melt > 0.0F) event.target = arc_place(event, y, random);
+      plates_[event.above].expect(event.target);
+    }
+    for (const Subduction& event : rows_[y].subductions) {
+      RasterPlate& above = plates_[event.above];
+      if (event.target < 0 || !(above.crust(event.target).height > 0.0F)) continue;
+      RasterCrust crust = above.crust(event.target);
       const float before = crust.height, after = before + event.melt;
       crust.born = (before * crust.born + event.melt * now) / after;
       crust.height = after;
       if (after >= 1.0F) crust.folded = static_cast<std::int32_t>(2 * budget_.steps);
-      above.set(place, crust);
+      above.set(event.target, crust);
       above.note(before, after);
       budget_.melted += static_cast<double>(after) - before;
     }
@@ -310,6 +317,11 @@ void RasterTectonics::fill_gaps() {
   const RasterWorld& world = settings_.world;
   const auto floor = static_cast<float>(settings_.ocean_crust);
   for (int y = 0; y < world.rows; ++y) {
+    for (const std::int32_t x : rows_[y].gaps) {
+      const RasterPlate& plate =
+          plates_[previous_[static_cast<std::size_t>(y) * world.columns + x]];
+      if (plate.alive) plate.expect(plate.find(x, y));
+    }
     for (const std::int32_t x : rows_[y].gaps) {
       const std::size_t cell = static_cast<std::size_t>(y) * world.columns + x;
       int plate = previous_[cell];
