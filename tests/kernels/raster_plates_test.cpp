@@ -117,7 +117,7 @@ TEST(RasterPlates, ErosionOnlyLevelsLand) {
   for (int y = 0; y < 64; ++y) {
     for (int x = 0; x < 64; ++x) {
       const float height = x < 20 ? 0.3F : 1.2F + static_cast<float>((x * 7 + y * 13) % 11);
-      plate.set(plate.claim(x, y), {height, 0.0F, 0});
+      plate.set(plate.claim(x, y), {height, 0, 0});
       before += height;
     }
   }
@@ -172,7 +172,7 @@ TEST(RasterPlates, ContinentsAreTheConnectedLandOfAPlateAcrossTheWrap) {
   };
   for (int y = 0; y < 40; ++y) {
     for (int x = 0; x < 48; ++x) {
-      plate.set(plate.claim(x, y), {land(x, y) ? 1.5F : 0.1F, 0.0F, 0});
+      plate.set(plate.claim(x, y), {land(x, y) ? 1.5F : 0.1F, 0, 0});
     }
   }
   plate.find_continents(1);

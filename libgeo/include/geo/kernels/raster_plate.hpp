@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -7,11 +9,21 @@
 
 namespace geo {
 
-/// Crust of one cell of a raster plate.
+/// Crust of one cell of a raster plate, 8 bytes.
 struct RasterCrust {
-  float height = 0.0F;      ///< amount of crust; 0 none, from 1 on it is land
-  float born = 0.0F;        ///< step at which it came into being, the mean of what piled up there
-  std::int32_t folded = 0;  ///< step of its last orogeny, twice, plus 1 if two continents met
+  float height = 0.0F;       ///< amount of crust; 0 none, from 1 on it is land
+  std::int16_t born = 0;     ///< step at which it came into being, the mean of what piled up there
+  std::uint16_t folded = 0;  ///< step of its last orogeny, twice, plus 1 if two continents met
+
+  /// The later of two orogenies, and the mean age by amounts.
+  void add(const RasterCrust& other) {
+    const float sum = height + other.height;
+    const float mean =
+        (height * static_cast<float>(born) + other.height * static_cast<float>(other.born)) / sum;
+    born = static_cast<std::int16_t>(std::lround(mean));
+    folded = std::max(folded, other.folded);
+    height = sum;
+  }
 };
 
 /// Sides of the world, in cells. Opposite ones meet.

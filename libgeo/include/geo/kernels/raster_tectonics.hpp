@@ -93,7 +93,7 @@ struct RasterMap {
 /// the number of threads. Cost: linear in cells and steps.
 class RasterTectonics {
  public:
-  /// Throws ConfigurationError on sides below 16 cells or more than 32 767 plates.
+  /// Throws ConfigurationError on sides below 16 cells, more than 32 767 plates or 32 000 steps.
   RasterTectonics(const RasterSettings& settings, std::uint64_t seed);
 
   /// One step, or the division into new plates. False when the last cycle is over.

@@ -124,11 +124,11 @@ void RasterTectonics::fold(int a, std::int32_t place_a, int b, std::int32_t plac
       own(small.plate, &RasterPlateSettings::folding_ratio, settings_.folding_ratio));
   RasterCrust source = from.crust(small.place), target = to.crust(large.place);
   const float before = source.height, other_before = target.height;
-  const float moved = ratio * before, after = before - moved, other_after = other_before + moved;
-  target.born = (other_before * target.born + moved * source.born) / other_after;
+  const float moved = ratio * before, after = before - moved;
+  target.add({moved, source.born, 0});
   source.height = after;
-  target.height = other_after;
-  if (other_after >= 1.0F) target.folded = static_cast<std::int32_t>(2 * budget_.steps + 1);
+  const float other_after = target.height;
+  if (other_after >= 1.0F) target.folded = static_cast<std::uint16_t>(2 * budget_.steps + 1);
   from.set(small.place, source);
   to.set(large.place, target);
   events.folds.push_back({column, static_cast<std::int16_t>(small.plate),
@@ -154,10 +154,7 @@ RasterMap RasterTectonics::map(bool visible) const {
         const RasterCrust crust = plate.crust(plate.place(i, local));
         if (!(crust.height > 0.0F)) continue;
         RasterCrust& all = map.crust[first + world.column(plate.first_column() + i)];
-        const float sum = all.height + crust.height;
-        all.born = (all.height * all.born + crust.height * crust.born) / sum;
-        all.folded = std::max(all.folded, crust.folded);
-        all.height = sum;
+        all.add(crust);
       }
     }
     if (!visible) continue;

@@ -89,7 +89,7 @@ std::vector<RasterCrust> start_raster(const RasterWorld& world, double sea_share
   const float least = *low, range = std::max(1e-6F, *high - *low);
   std::vector<RasterCrust> crust(noise.size());
   // Floor of the first map is no longer young.
-  constexpr float kBorn = -60.0F;
+  constexpr std::int16_t kBorn = -60;
   for (std::size_t k = 0; k < noise.size(); ++k) {
     crust[k].height =
         noise[k] >= sea ? 1.0F + (noise[k] - least) / range : static_cast<float>(ocean_crust);

@@ -17,6 +17,12 @@ RasterTectonics::RasterTectonics(const RasterSettings& settings, std::uint64_t s
     throw ConfigurationError("raster plates: a world of " + std::to_string(world.columns) + " x " +
                              std::to_string(world.rows) + " cells; at least 16 x 16");
   }
+  constexpr std::int64_t kMostSteps = 32'000;  // as cells count them
+  if (std::int64_t{settings_.cycles} * settings_.cycle_steps > kMostSteps) {
+    throw ConfigurationError("raster plates: " + std::to_string(settings_.cycles) + " cycles of " +
+                             std::to_string(settings_.cycle_steps) +
+                             " steps; at most 32000 steps in all");
+  }
   constexpr std::int32_t kPays = 1'000'000;  // cells
   pays_ = world.size() >= kPays;
   trench_.assign(world.size(), -1);
@@ -186,7 +192,7 @@ std::int32_t RasterTectonics::arc_place(const Subduction& event, int row,
 /// it stays below.
 void RasterTectonics::raise_arcs() {
   const RandomStream random(seed_, "raster.arcs");
-  const auto now = static_cast<float>(budget_.steps);
+  const auto now = static_cast<std::int16_t>(budget_.steps);
   for (int y = 0; y < settings_.world.rows; ++y) {
     for (Subduction& event : rows_[y].subductions) {
       plates_[event.below].note(event.before, event.after);
@@ -198,10 +204,10 @@ void RasterTectonics::raise_arcs() {
       RasterPlate& above = plates_[event.above];
       if (event.target < 0 || !(above.crust(event.target).height > 0.0F)) continue;
       RasterCrust crust = above.crust(event.target);
-      const float before = crust.height, after = before + event.melt;
-      crust.born = (before * crust.born + event.melt * now) / after;
-      crust.height = after;
-      if (after >= 1.0F) crust.folded = static_cast<std::int32_t>(2 * budget_.steps);
+      const float before = crust.height;
+      crust.add({event.melt, now, 0});
+      const float after = crust.height;
+      if (after >= 1.0F) crust.folded = static_cast<std::uint16_t>(2 * budget_.steps);
       above.set(event.target, crust);
       above.note(before, after);
       budget_.melted += static_cast<double>(after) - before;
@@ -289,12 +295,13 @@ void RasterTectonics::merge(const Overlap& overlap) {
         const std::int32_t place = from.find(x, y);
         if (place < 0 || !(from.crust(place).height > 0.0F)) continue;
         const std::int32_t at = to.claim(x, y);
-        const RasterCrust source = from.crust(place), target = to.crust(at);
-        const float sum = target.height + source.height;
-        to.set(at, {sum, (target.height * target.born + source.height * source.born) / sum,
-                    std::max(target.folded, source.folded)});
+        const RasterCrust source = from.crust(place);
+        RasterCrust target = to.crust(at);
+        const float before = target.height;
+        target.add(source);
+        to.set(at, target);
         from.set(place, {});
-        to.note(target.height, sum);
+        to.note(before, target.height);
         moved += source.height;
         std::int16_t& owner = owner_[static_cast<std::size_t>(y) * world.columns + x];
         if (owner == overlap.a) owner = overlap.b;
@@ -328,7 +335,7 @@ void RasterTectonics::fill_gaps() {
       for (int k = 0; !plates_[plate].alive; ++k) plate = k;
       const std::int32_t place = plates_[plate].claim(x, y);
       const float before = plates_[plate].crust(place).height;
-      plates_[plate].set(place, {floor, static_cast<float>(budget_.steps), 0});
+      plates_[plate].set(place, {floor, static_cast<std::int16_t>(budget_.steps), 0});
       plates_[plate].note(before, floor);
       owner_[cell] = static_cast<std::int16_t>(plate);
       budget_.created += static_cast<double>(floor) - before;
