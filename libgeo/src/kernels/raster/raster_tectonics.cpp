@@ -1,7 +1,9 @@
 #include "geo/kernels/raster_tectonics.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "geo/core/error.hpp"
@@ -219,6 +221,7 @@ void RasterTectonics::raise_arcs() {
 /// Books of folding: friction, and how far which continents overlap.
 void RasterTectonics::slow_down() {
   std::vector<Overlap> overlaps;
+  std::map<std::array<std::int32_t, 4>, std::size_t> number;
   std::size_t last = 0;
   bool met = false;
   std::vector<double> folded(plates_.size(), 0.0);
@@ -240,9 +243,10 @@ void RasterTectonics::slow_down() {
                o.continent_b == key.continent_b;
       };
       if (last >= overlaps.size() || !same(overlaps[last])) {
-        last = static_cast<std::size_t>(std::find_if(overlaps.begin(), overlaps.end(), same) -
-                                        overlaps.begin());
-        if (last == overlaps.size()) overlaps.push_back(key);
+        const auto [at, is_new] =
+            number.try_emplace({key.a, key.b, key.continent_a, key.continent_b}, overlaps.size());
+        last = at->second;
+        if (is_new) overlaps.push_back(key);
       }
       ++overlaps[last].cells;
     }
