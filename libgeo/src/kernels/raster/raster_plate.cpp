@@ -32,18 +32,19 @@ void RasterPlate::mark_blocks() {
 }
 
 std::int32_t RasterPlate::claim(int world_column, int world_row) {
-  constexpr int kMargin = 24;
+  // A share of the world, so that finer maps do not grow more often.
+  const int margin = std::max(16, std::max(world_.columns, world_.rows) / 24);
   int column = local_column(world_column), row = world_.row(world_row - shift_y_ - top_);
   if (column >= columns_ || row >= rows_) {
     int left = left_, top = top_, columns = columns_, rows = rows_;
     if (column >= columns_) {
       const int beyond = column - columns_ + 1, before = world_.columns - column;
-      columns = std::min(world_.columns, columns_ + kMargin + std::min(beyond, before));
+      columns = std::min(world_.columns, columns_ + margin + std::min(beyond, before));
       if (before < beyond) left = world_.column(left_ - (columns - columns_));
     }
     if (row >= rows_) {
       const int beyond = row - rows_ + 1, before = world_.rows - row;
-      rows = std::min(world_.rows, rows_ + kMargin + std::min(beyond, before));
+      rows = std::min(world_.rows, rows_ + margin + std::min(beyond, before));
       if (before < beyond) top = world_.row(top_ - (rows - rows_));
     }
     resize(left, top, columns, rows);
