@@ -110,7 +110,6 @@ void run(const CalibrateOptions& options) {
                                           .overwrite = options.overwrite},
                                          {.info = [](std::string_view text) { log_info(text); },
                                           .iteration = [&](const auto& step) { log(step); },
-                                          .progress = {},
                                           .stop = &stop_requested()});
   } catch (const geo::Interrupted&) {
     throw geo::Error(

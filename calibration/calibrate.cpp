@@ -24,9 +24,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kStateFile = "calibration.state.json";
-constexpr std::string_view kResultFile = "calibration.json";
-
 class Calibration {
  public:
   Calibration(const Request& request, const Watch& watch)
@@ -53,6 +50,7 @@ class Calibration {
                     problem_.free.size(), seeds_.size(), size_.nx, size_.ny));
     Objective objective(problem_, request_.configuration, seeds_, size_.nx, size_.ny, watch_.stop);
     describe(objective);
+    if (request_.overwrite) remove_results(folder_.path());
     fit_from_all_starts(objective);
     const Eigen::VectorXd best = choose_best();
     judge(objective, best);
@@ -92,8 +90,9 @@ class Calibration {
     const auto own = settings.parameters();
     std::string text = io::write_config(request_.configuration, "", request_.events) +
                        io::write_config(own, "") + request_.target;
-    for (const double elevation_m : problem_.target.elevation_m)
-      text += fmt::format(" {}", elevation_m);
+    const Target& target = problem_.target;
+    text += fmt::format(" {} {}", fmt::join(target.elevation_m, " "),
+                        fmt::join(target.deviation_m, " "));
     return io::digest_of(std::string_view(text));
   }
 
@@ -218,13 +217,11 @@ class Calibration {
             if (!now.ended) write_checkpoint(checkpoint_, state_file());
             if (watch_.iteration) watch_.iteration(iteration);
           });
-      Start start{values_at(points[n]), values_at(state.x), state.cost, state.converged,
-                  state.iteration};
+      Start start{values_at(points[n]), values_at(state.x), state.cost,
+                  state.converged,      state.iteration,    state.ending};
       checkpoint_.starts.push_back(start);
-      fits_.push_back(state);
       write_checkpoint(checkpoint_, state_file());
     }
-    if (fits_.empty()) fits_.push_back(checkpoint_.state);
   }
 
   [[nodiscard]] std::vector<double> values_at(const Eigen::VectorXd& x) const {
@@ -240,10 +237,7 @@ class Calibration {
         std::min_element(checkpoint_.starts.begin(), checkpoint_.starts.end(),
                          [](const Start& a, const Start& b) { return a.cost < b.cost; });
     result_.converged = best->converged;
-    result_.ending = checkpoint_.state.ending;
-    for (const FitState& fit : fits_) {
-      if (fit.cost == best->cost) result_.ending = fit.ending;
-    }
+    result_.ending = best->ending;
     Eigen::VectorXd x(problem_.free.size());
     for (std::size_t i = 0; i < problem_.free.size(); ++i) {
       x[Eigen::Index(i)] = problem_.free[i].to_x(best->to[i]);
@@ -353,7 +347,7 @@ class Calibration {
     if (seeds.empty()) return all;
     say(what);
     // A target of cells is averaged onto cells of this size.
-    const Target target = size.nx == size_.nx ? problem_.target : aims(size);
+    const Target target = size.nx == size_.nx && size.ny == size_.ny ? problem_.target : aims(size);
     Objective judge(problem_, request_.configuration, seeds, size.nx, size.ny, watch_.stop);
     for (const std::int64_t seed : seeds) all.push_back({seed, 0.0, 0.0});
     judge.route(start_);
@@ -393,7 +387,6 @@ class Calibration {
   std::vector<std::int64_t> seeds_, held_out_seeds_;
   Problem problem_;
   Checkpoint checkpoint_;
-  std::vector<FitState> fits_;
   Eigen::VectorXd start_;
   std::vector<std::vector<double>> before_, before_bins_;
   Result result_;

@@ -29,7 +29,6 @@ struct Request {
 struct Watch {
   std::function<void(std::string_view message)> info;
   std::function<void(const Iteration&)> iteration;
-  std::function<void(double fraction)> progress;
   const std::atomic<bool>* stop = nullptr;
 };
 

@@ -33,10 +33,12 @@ json to_json(const Start& s) {
           {"to", s.to},
           {"cost", s.cost},
           {"converged", s.converged},
-          {"iterations", s.iterations}};
+          {"iterations", s.iterations},
+          {"ending", s.ending}};
 }
 Start start_from(const json& j) {
-  return {j.at("from"), j.at("to"), j.at("cost"), j.at("converged"), j.at("iterations")};
+  return {j.at("from"),      j.at("to"),         j.at("cost"),
+          j.at("converged"), j.at("iterations"), j.at("ending")};
 }
 
 }  // namespace
@@ -48,18 +50,12 @@ void write_checkpoint(const Checkpoint& c, const std::filesystem::path& file) {
   all["iterations"] = json::array();
   for (const Iteration& iteration : c.iterations) all["iterations"].push_back(to_json(iteration));
   const FitState& s = c.state;
-  all["state"] = {{"x", as_list(s.x)},
-                  {"probed", as_list(s.probed)},
-                  {"probed_cost", s.probed_cost},
-                  {"probes", s.probes},
-                  {"polishes", s.polishes},
-                  {"cost", s.cost},
-                  {"radius", s.radius},
-                  {"iteration", s.iteration},
-                  {"stalls", s.stalls},
-                  {"begun", s.begun},
-                  {"ended", s.ended},
-                  {"converged", s.converged},
+  all["state"] = {{"x", as_list(s.x)},  {"probed", as_list(s.probed)},
+                  {"probes", s.probes}, {"polishes", s.polishes},
+                  {"cost", s.cost},     {"distance_m", s.distance_m},
+                  {"radius", s.radius}, {"iteration", s.iteration},
+                  {"stalls", s.stalls}, {"begun", s.begun},
+                  {"ended", s.ended},   {"converged", s.converged},
                   {"ending", s.ending}};
   io::write_text_file(file, all.dump(1) + "\n");
 }
@@ -75,10 +71,10 @@ Checkpoint read_checkpoint(const std::filesystem::path& file) {
     const json& s = all.at("state");
     c.state.x = as_vector(s.at("x").get<std::vector<double>>());
     c.state.probed = as_vector(s.at("probed").get<std::vector<double>>());
-    c.state.probed_cost = s.at("probed_cost");
     c.state.probes = s.at("probes");
     c.state.polishes = s.at("polishes");
     c.state.cost = s.at("cost");
+    c.state.distance_m = s.at("distance_m");
     c.state.radius = s.at("radius");
     c.state.iteration = s.at("iteration");
     c.state.stalls = s.at("stalls");

@@ -31,19 +31,24 @@ class HeldFastCost final : public ceres::CostFunction {
     const auto count = parameter_block_sizes().front();
     const Eigen::VectorXd x = Eigen::Map<const Eigen::VectorXd>(parameters[0], count);
     const bool wants_rates = jacobians != nullptr && jacobians[0] != nullptr;
-    Eigen::MatrixXd rates;
-    const Eigen::VectorXd residual = objective_.follow(x, wants_rates ? &rates : nullptr);
+    // Those after the last step serve Ceres's test of convergence alone, which routing anew makes
+    // idle: the last ones stand for them.
+    const bool renews = wants_rates && renewals_ < kStepsHeldFast;
+    if (renews) ++renewals_;
+    const Eigen::VectorXd residual = objective_.follow(x, renews ? &rates_ : nullptr);
     Eigen::Map<Eigen::VectorXd>(residuals, residual.size()) = residual;
     if (wants_rates) {
       using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-      Eigen::Map<RowMajor>(jacobians[0], rates.rows(), rates.cols()) = rates;
-      return rates.allFinite() && residual.allFinite();
+      Eigen::Map<RowMajor>(jacobians[0], rates_.rows(), rates_.cols()) = rates_;
+      return rates_.allFinite() && residual.allFinite();
     }
     return residual.allFinite();
   }
 
  private:
   Objective& objective_;
+  mutable Eigen::MatrixXd rates_;
+  mutable int renewals_ = 0;
 };
 
 double cost_of(const Eigen::VectorXd& residual) {
@@ -105,7 +110,8 @@ bool polish(Objective& objective, const Problem& problem, FitState& state) {
     const double cost = cost_of(objective.route(x));
     if (!(cost < state.cost)) continue;
     state.x = state.probed = x;
-    state.cost = state.probed_cost = cost;
+    state.cost = cost;
+    state.distance_m = objective.distance_m();
     return true;
   }
   return false;
@@ -119,7 +125,8 @@ void fit(Objective& objective, Problem& problem, const FitOptions& options, FitS
   if (!state.begun) {
     state.radius = kFirstRadius;
     state.begun = true;
-    state.cost = state.probed_cost = cost_of(objective.route(state.x));
+    state.cost = cost_of(objective.route(state.x));
+    state.distance_m = objective.distance_m();
     state.probed = state.x;
   } else {
     objective.route(state.probed);
@@ -142,7 +149,8 @@ void fit(Objective& objective, Problem& problem, const FitOptions& options, FitS
       accepted = cost < before;
       if (accepted) {
         state.x = state.probed = x;
-        state.cost = state.probed_cost = cost;
+        state.cost = cost;
+        state.distance_m = objective.distance_m();
         state.probes = 0;
       } else {
         part *= 0.5;
@@ -155,7 +163,6 @@ void fit(Objective& objective, Problem& problem, const FitOptions& options, FitS
           state.probes < kProbes && full_cost > 0.0 && full_cost < kNotMuchWorse * before;
       state.probes = goes_on ? state.probes + 1 : 0;
       state.probed = goes_on ? to : best;
-      state.probed_cost = goes_on ? full_cost : state.cost;
       objective.route(state.probed);
       if (!goes_on) state.radius = std::max(0.03 * state.radius, kLeastRadius);
     } else {
@@ -200,10 +207,7 @@ void fit(Objective& objective, Problem& problem, const FitOptions& options, FitS
     record.step = step;
     record.accepted = accepted;
     record.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
-    for (const auto& bins : objective.fine_bins()) {
-      record.wasserstein_m += wasserstein_m(bins, problem.target.fine_bin_m) /
-                              static_cast<double>(objective.fine_bins().size());
-    }
+    record.wasserstein_m = state.distance_m;
     for (std::size_t i = 0; i < problem.free.size(); ++i) {
       record.values.push_back(problem.free[i].to_value(state.x[Eigen::Index(i)]));
     }

@@ -11,11 +11,11 @@ namespace geo::calibration {
 
 /// Where a fit from one starting point stands: enough to go on from, bit for bit.
 struct FitState {
-  Eigen::VectorXd x;       ///< the best so far
-  double cost = 0.0;       ///< half the sum of squares there, routed anew
-  Eigen::VectorXd probed;  ///< where the next iteration begins
-  double probed_cost = 0.0;
-  double radius = 0.0;  ///< of the trust region, as Ceres has it
+  Eigen::VectorXd x;        ///< the best so far
+  double cost = 0.0;        ///< half the sum of squares there, routed anew
+  double distance_m = 0.0;  ///< mean Wasserstein-1 distance there
+  Eigen::VectorXd probed;   ///< where the next iteration begins
+  double radius = 0.0;      ///< of the trust region, as Ceres has it
   int iteration = 0;
   int stalls = 0;    ///< iterations in a row that gained almost nothing
   int probes = 0;    ///< steps in a row that went on from a place no better than the best

@@ -223,6 +223,12 @@ Eigen::VectorXd Objective::route(const Eigen::VectorXd& x) {
   return residuals_of(statistics_, x);
 }
 
+double Objective::distance_m() const {
+  double sum = 0.0;
+  for (const auto& bins : fine_bins_) sum += wasserstein_m(bins, problem_.target.fine_bin_m);
+  return sum / static_cast<double>(fine_bins_.size());
+}
+
 Eigen::VectorXd Objective::follow(const Eigen::VectorXd& x, Eigen::MatrixXd* jacobian) {
   const Stopwatch watch;
   problem_.set(x);

@@ -80,6 +80,8 @@ class Objective {
   /// Of the last `route`, for each seed: statistics, and means of kFineBins bins.
   [[nodiscard]] const std::vector<std::vector<double>>& statistics() const { return statistics_; }
   [[nodiscard]] const std::vector<std::vector<double>>& fine_bins() const { return fine_bins_; }
+  /// Mean Wasserstein-1 distance from the target of the last `route`, m.
+  [[nodiscard]] double distance_m() const;
   /// Derivatives of each seed's statistics by x, of the last `follow` with a Jacobian.
   [[nodiscard]] const std::vector<Eigen::MatrixXd>& seed_jacobians() const { return rates_; }
   [[nodiscard]] const std::vector<std::unique_ptr<SeedPlanet>>& planets() const { return planets_; }

@@ -64,7 +64,8 @@ Json start_json(const Start& start) {
           {"to", start.to},
           {"cost", start.cost},
           {"converged", start.converged},
-          {"iterations", start.iterations}};
+          {"iterations", start.iterations},
+          {"ending", start.ending}};
 }
 
 Json direction_json(const Direction& direction) {

@@ -69,6 +69,7 @@ struct Start {
   double cost = 0.0;
   bool converged = false;
   int iterations = 0;
+  std::string ending;  ///< why it ended
 };
 
 /// All that a calibration found.

@@ -35,6 +35,16 @@ State plates_of(std::span<const Parameter> configuration, std::uint64_t seed, in
 SeedPlanet::SeedPlanet(std::span<const Parameter> configuration, std::uint64_t seed, int nx, int ny)
     : seed_(seed), state_(plates_of(configuration, seed, nx, ny)), coarse_(state_.grid()) {}
 
+void SeedPlanet::hold_frame(const IsostasyParameters& p, const CrustInputs& in) {
+  if (held_.frame && held_.divergent_length_km == p.divergent_length_km &&
+      held_.transform_length_km == p.transform_length_km) {
+    return;
+  }
+  held_.frame = tectonic_frame(p, coarse_, in, continental_fraction());
+  held_.divergent_length_km = p.divergent_length_km;
+  held_.transform_length_km = p.transform_length_km;
+}
+
 void SeedPlanet::find_sea(const Model& model, std::span<const double> elevation_m) {
   constexpr double kHalfWidth = 0.0025;  // share of the area on either side of the shore
   const Grid& grid = this->grid();

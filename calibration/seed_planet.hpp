@@ -32,6 +32,7 @@ struct Relief {
 /// What is held fast between two routings: where sections, rocks, sea and rivers lie.
 struct HeldFast {
   std::optional<TectonicFrame> frame;
+  double divergent_length_km = 0.0, transform_length_km = 0.0;  ///< that the frame was made with
   std::vector<float> erodibility;
   std::vector<std::uint8_t> outlets;
   std::vector<Drainage> drainage;  ///< one for each routing of the erosion stage
@@ -74,6 +75,8 @@ class SeedPlanet {
   Relief<V> evaluate(const Model& model, const Lift<V>& lift, bool routes);
   template <class V>
   V sea_level(const Model& model, const Lift<V>& lift, std::span<const V> elevation_m, bool finds);
+  /// Boundaries and distances from them: costly, and other only when a length of deformation is.
+  void hold_frame(const IsostasyParameters& parameters, const CrustInputs& in);
   void find_sea(const Model& model, std::span<const double> elevation_m);
 
   std::uint64_t seed_;
@@ -142,7 +145,7 @@ Relief<V> SeedPlanet::evaluate(const Model& model, const Lift<V>& lift, bool rou
                        .elevation_m = relief.elevation_m,
                        .lift = lift,
                        .noise = &noise_};
-  if (routes) held_.frame = tectonic_frame(model.isostasy, coarse_, in, fraction);
+  if (routes) hold_frame(model.isostasy, in);
   float_margins_crust(crust, coarse_, *held_.frame);
   const std::span<V> z(relief.elevation_m);
   fill_sea(crust, sea_level<V>(model, lift, z, routes));

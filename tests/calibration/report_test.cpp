@@ -13,33 +13,16 @@
 
 #include "calibration/sample_result.hpp"
 #include "geo/core/error.hpp"
-#include "geo/core/planet.hpp"
 #include "geo/io/build_info.hpp"
 #include "geo/io/config.hpp"
-#include "geo/io/run_settings.hpp"
-#include "geo/stages/stages.hpp"
 #include "io/temporary_folder.hpp"
+#include "support/declarations.hpp"
 
 namespace geo::calibration {
 namespace {
 
 using testing::HasSubstr;
 using testing::Not;
-
-/// All that a run declares, with the owners that the declarations point into.
-struct Declarations {
-  Planet planet;
-  io::RunSettings settings;
-  Pipeline pipeline = make_pipeline();
-
-  [[nodiscard]] std::vector<Parameter> all() {
-    std::vector<Parameter> rows;
-    for (auto part : {settings.parameters(), planet.parameters(), pipeline.parameters()}) {
-      rows.insert(rows.end(), part.begin(), part.end());
-    }
-    return rows;
-  }
-};
 
 class CalibrationReport : public testing::Test {
  protected:
@@ -51,7 +34,7 @@ class CalibrationReport : public testing::Test {
   }
 
   Result result_ = made_up_result();
-  Declarations declarations_;
+  test::Declarations declarations_;
   std::vector<Event> events_;
   TemporaryFolder folder_;
 };
@@ -128,7 +111,7 @@ TEST_F(CalibrationReport, FittedConfigurationReadsBackTheSame) {
   factor->set(0.051234567890123);
   events_.push_back({"strike", Impact{.latitude_deg = 12.0, .longitude_deg = 34.0}});
   write(result_);
-  Declarations again;
+  test::Declarations again;
   auto fresh = again.all();
   std::vector<Event> events;
   const auto set = io::apply_config_file(folder_ / "fitted.toml", fresh, &events);

@@ -69,7 +69,8 @@ TEST(References, HaveWhatSourcesCiteAndNothingElse) {
   std::set<std::string> used;
   test::Declarations declarations;
   for (const Parameter& p : declarations.all()) used.insert(std::string(p.source));
-  for (const auto& path : test::files_in({"libgeo", "calibration", "apps", "bench"}, {".hpp", ".cpp"})) {
+  for (const auto& path :
+       test::files_in({"libgeo", "calibration", "apps", "bench"}, {".hpp", ".cpp"})) {
     std::vector<std::string> unknown;
     used.merge(cited_in_prose(test::read_text(path), entries, unknown));
     EXPECT_TRUE(unknown.empty()) << path << " cites " << (unknown.empty() ? "" : unknown.front())

@@ -13,26 +13,9 @@
 #include <string_view>
 #include <vector>
 
-#include "geo/core/planet.hpp"
-#include "geo/io/run_settings.hpp"
-#include "geo/stages/stages.hpp"
+#include "support/declarations.hpp"
 
 namespace geo::test {
-
-/// Everything that can be configured, with the owners that the declarations point into.
-struct Declarations {
-  Planet planet;
-  io::RunSettings settings;
-  Pipeline pipeline = make_pipeline();
-
-  [[nodiscard]] std::vector<Parameter> all() {
-    std::vector<Parameter> rows;
-    for (auto part : {settings.parameters(), planet.parameters(), pipeline.parameters()}) {
-      rows.insert(rows.end(), part.begin(), part.end());
-    }
-    return rows;
-  }
-};
 
 /// The models among which a stage lets its user choose; the empty word where there is no choice.
 inline std::vector<std::string> models_of(const StageEntry& entry) {
