@@ -10,6 +10,7 @@
 #include "geo/kernels/plate_growth.hpp"
 #include "geo/kernels/sphere_start.hpp"
 #include "geo/kernels/sphere_tectonics.hpp"
+#include "geo/stages/raster_parameters.hpp"
 
 namespace geo {
 
@@ -53,6 +54,8 @@ struct PlatesParameters {
   // Of the model "hypsography", and of "sphere" that starts from one.
   std::string first_relief = "noise";
   HypsographicRanking ranking;
+  // Of the model "raster".
+  RasterParameters raster;
 
   [[nodiscard]] std::vector<Parameter> declarations();
 };

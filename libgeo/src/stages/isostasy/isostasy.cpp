@@ -22,7 +22,7 @@ std::span<const float> made_by_plates(const IsostasyParameters& p, const StageIo
   if (elevation_m.empty() || thickness_m.empty()) {
     throw InputError("isostasy: crust = \"" + p.crust +
                      "\" needs crust_elevation and crust_thickness, which plates.model = "
-                     "\"sphere\" and \"hypsography\" write");
+                     "\"sphere\", \"raster\" and \"hypsography\" write");
   }
   return elevation_m;
 }

@@ -2,16 +2,17 @@
 
 #include "growth.hpp"
 #include "hypsography.hpp"
+#include "raster.hpp"
 #include "sphere.hpp"
 
 namespace geo {
 
 std::vector<Parameter> PlatesParameters::declarations() {
   std::vector<Parameter> rows{
-      choice("plates.model", model, {"growth", "sphere", "hypsography"},
-             "how plates come about: they grow as they stand today, drift, go below each other, "
-             "collide and break on a sphere through time, or there is one at rest whose heights "
-             "follow a hypsography",
+      choice("plates.model", model, {"growth", "sphere", "raster", "hypsography"},
+             "how plates come about: they grow as they stand today; drift, go below each other, "
+             "collide and break on a sphere through time; drift and collide as height maps on a "
+             "torus; or there is one at rest whose heights follow a hypsography",
              "cortial2019"),
       integer("plates.count", growth.count, "1", 2, 100, "number of plates", "tectonica2026"),
       real("plates.speed_cm_yr", growth.speed_cm_yr, "cm yr-1", 0.1, 50.0,
@@ -170,6 +171,7 @@ std::vector<Parameter> PlatesParameters::declarations() {
               "sphere: most steps between resamplings", "cortial2019"),
   };
   for (Parameter& row : hypsography_parameters(*this)) rows.push_back(std::move(row));
+  for (Parameter& row : raster_declarations(raster)) rows.push_back(std::move(row));
   return rows;
 }
 
@@ -181,26 +183,33 @@ class PlatesStage final : public Stage {
 
   [[nodiscard]] const StageInfo& info() const override {
     static const StageInfo kSeen = described({});
-    static const StageInfo kWithCrust =
-        described({&field::crust_elevation, &field::crust_thickness, &field::orogeny_age,
-                   &field::fold_direction_east, &field::fold_direction_north,
-                   &field::ridge_direction_east, &field::ridge_direction_north});
-    static const StageInfo kFollowing = of_hypsography(kWithCrust);
-    static const StageInfo kStarting = with_ranking(kWithCrust);
+    static const StageInfo kDrifting = with_crust(true), kRaster = with_crust(false);
+    static const StageInfo kStarting = with_ranking(kDrifting);
+    static const StageInfo kFollowing = of_hypsography(kRaster);
+    if (parameters_.model == "growth") return kSeen;
+    if (parameters_.model == "raster") return kRaster;
     if (parameters_.model == "hypsography") return kFollowing;
-    if (parameters_.model != "sphere") return kSeen;
-    return parameters_.first_relief == "hypsography" ? kStarting : kWithCrust;
+    return parameters_.first_relief == "hypsography" ? kStarting : kDrifting;
   }
   [[nodiscard]] std::vector<Parameter> parameters() override { return parameters_.declarations(); }
 
   void run(StageIo& io, Context& context) const override {
     if (parameters_.model == "hypsography") return draw_hypsography(parameters_, io, context);
-    parameters_.model == "sphere" ? drift(parameters_, info(), io, context)
-                                  : grow(parameters_, io, context);
+    if (parameters_.model == "sphere") return drift(parameters_, info(), io, context);
+    if (parameters_.model == "raster") return collide_rasters(parameters_, io, context);
+    grow(parameters_, io, context);
   }
 
  private:
   /// Models with a history also write the crust that it made.
+  static StageInfo with_crust(bool feels_events) {
+    StageInfo info =
+        described({&field::crust_elevation, &field::crust_thickness, &field::orogeny_age,
+                   &field::fold_direction_east, &field::fold_direction_north,
+                   &field::ridge_direction_east, &field::ridge_direction_north});
+    info.feels_events = feels_events;
+    return info;
+  }
   static StageInfo described(std::initializer_list<const FieldSpec*> crust) {
     StageInfo info{"plates",
                    "tectonic plates, their motion, boundaries, sea floor and continents",
@@ -210,7 +219,6 @@ class PlatesStage final : public Stage {
                     &field::plate_velocity_north, &field::boundary_type, &field::boundary_strength,
                     &field::crust_age, &field::orogeny_type, &field::heat_anomaly}};
     info.writes.insert(info.writes.end(), crust);
-    info.feels_events = crust.size() > 0;
     return info;
   }
   static StageInfo with_ranking(StageInfo info) {
@@ -220,7 +228,6 @@ class PlatesStage final : public Stage {
   /// Densities come with the heights; nothing moves that an event could turn.
   static StageInfo of_hypsography(StageInfo info) {
     info.writes.push_back(&field::crust_density);
-    info.feels_events = false;
     return with_ranking(std::move(info));
   }
 

@@ -1,0 +1,113 @@
+#include "raster.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <string_view>
+
+#include "geo/core/error.hpp"
+#include "raster_on_sphere.hpp"
+#include "raster_on_torus.hpp"
+
+namespace geo {
+namespace {
+
+/// Reads "0.1, 0.2" into one member of the plates' own settings.
+void read_own(std::string_view key, std::string_view text, double least, double most,
+              double RasterPlateSettings::*member, std::vector<RasterPlateSettings>& own) {
+  for (std::size_t plate = 0; !text.empty(); ++plate) {
+    const std::size_t comma = std::min(text.find(','), text.size());
+    std::string_view entry = text.substr(0, comma);
+    text.remove_prefix(std::min(comma + 1, text.size()));
+    while (!entry.empty() && entry.front() == ' ') entry.remove_prefix(1);
+    while (!entry.empty() && entry.back() == ' ') entry.remove_suffix(1);
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(entry.data(), entry.data() + entry.size(), value);
+    if (error != std::errc{} || end != entry.data() + entry.size() ||
+        !(value >= least && value <= most)) {
+      throw ConfigurationError(std::string(key) + ": entry " + std::to_string(plate) + " is \"" +
+                               std::string(entry) + "\"; it must be a number from " +
+                               std::to_string(least) + " to " + std::to_string(most));
+    }
+    if (own.size() <= plate) own.resize(plate + 1);
+    own[plate].*member = value;
+  }
+}
+
+RasterSettings settings_of(const PlatesParameters& parameters, double width_km) {
+  const RasterParameters& p = parameters.raster;
+  RasterSettings s = p.model;
+  s.world = {static_cast<int>(p.columns), static_cast<int>(p.rows)};
+  s.plates = static_cast<int>(p.plates);
+  s.cycles = static_cast<int>(p.cycles);
+  s.cycle_steps = static_cast<int>(p.cycle_steps);
+  s.erosion_steps = static_cast<int>(p.erosion_steps);
+  s.restart_quiet = static_cast<int>(p.restart_quiet);
+  const auto width = static_cast<double>(p.columns);
+  s.continents_across = std::max(1.0, width_km / (2.0 * parameters.start.continent_km));
+  s.speed = p.drift * width;
+  s.arc_cells = p.arc_distance * width;
+  s.arc_scatter_cells = 0.3 * s.arc_cells;
+  s.overlap_cells = p.overlap_absolute * width * static_cast<double>(p.rows);
+  const double radians = parameters.sphere.law.step_myr * std::numbers::pi / 180.0;
+  s.spin = p.spin_deg_myr * radians;
+  s.curve = p.curve_deg_myr * radians;
+  read_own("plates.plate_speed", p.plate_speed, 0.0, 10.0, &RasterPlateSettings::speed, s.own);
+  read_own("plates.plate_folding", p.plate_folding, 0.0, 1.0, &RasterPlateSettings::folding_ratio,
+           s.own);
+  read_own("plates.plate_overlap", p.plate_overlap, 0.0, 10.0,
+           &RasterPlateSettings::overlap_relative, s.own);
+  read_own("plates.plate_erosion", p.plate_erosion, 0.0, 1e4, &RasterPlateSettings::erosion_steps,
+           s.own);
+  return s;
+}
+
+void report(const RasterTectonics& model, Budget& budget) {
+  const RasterBudget& sums = model.budget();
+  const double mass = model.mass();
+  budget["raster_steps"] = static_cast<double>(sums.steps);
+  budget["raster_cycles"] = sums.cycles;
+  budget["raster_mergers"] = sums.mergers;
+  budget["raster_crust_start"] = sums.start;
+  budget["raster_crust_end"] = mass;
+  budget["raster_crust_created"] = sums.created;
+  budget["raster_crust_subducted"] = sums.subducted;
+  budget["raster_crust_melted"] = sums.melted;
+  budget["raster_crust_folded"] = sums.folded;
+  budget["raster_crust_closing_error"] =
+      (mass - sums.start - sums.created + sums.subducted - sums.melted) / mass;
+}
+
+}  // namespace
+
+double wanted_ocean(const Context& context) {
+  return context.planet.sea_level == "fraction" ? context.planet.ocean_fraction : 1.0;
+}
+
+void collide_rasters(const PlatesParameters& parameters, StageIo& io, Context& context) {
+  const Grid& grid = io.grid();
+  if (grid.topology() == Topology::plane) {
+    throw InputError("plates: the grid must be a whole sphere or a torus");
+  }
+  context.advance(0.0);
+  const bool on_torus = grid.topology() == Topology::torus;
+  const double width_km = on_torus ? 1e-3 * grid.nx() * grid.spacing_east_m(0)
+                                   : 2e-3 * std::numbers::pi * grid.figure().radius_m;
+  RasterTectonics model(settings_of(parameters, width_km), context.seed);
+  while (model.advance()) {
+    constexpr int kTold = 32;
+    if (model.steps() % kTold == 0) context.advance(0.8 * model.progress());
+  }
+  report(model, context.budget);
+  RasterScale scale;
+  scale.cell_km = width_km / static_cast<double>(parameters.raster.columns);
+  scale.step_myr = parameters.sphere.law.step_myr;
+  scale.summit_km = parameters.sphere.law.summit_km;
+  scale.oldest_floor_myr = parameters.oldest_floor_myr;
+  context.advance(0.8);
+  on_torus ? lay_on_torus(parameters, model, scale, io, context)
+           : lay_on_sphere(parameters, model, scale, io, context);
+}
+
+}  // namespace geo

@@ -1,0 +1,145 @@
+#include "raster_on_torus.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geo/kernels/plate_boundaries.hpp"
+#include "raster.hpp"
+
+namespace geo {
+namespace {
+
+/// Boundary of two plates at a cell of the map, or interior.
+struct Contact {
+  BoundaryType type = BoundaryType::interior;
+  double strength = 0.0;
+};
+
+class TorusBoundaries {
+ public:
+  TorusBoundaries(const PlatesParameters& p, const RasterTectonics& model,
+                  const RasterRelief& relief, const RasterScale& scale)
+      : p_(p), model_(model), relief_(relief), mm_yr_(scale.cell_km / scale.step_myr) {
+    reach_ = std::max(2, static_cast<int>(std::lround(p.boundary_smoothing_km / scale.cell_km)));
+    contact_.resize(relief.plate.size());
+    const RasterWorld& world = relief.world;
+#pragma omp parallel for schedule(static)
+    for (int j = 0; j < world.rows; ++j) {
+      for (int i = 0; i < world.columns; ++i) find(i, j);
+    }
+    double most = 1e-9;
+    for (const Contact& contact : contact_) most = std::max(most, contact.strength);
+    for (Contact& contact : contact_) contact.strength /= most;
+  }
+  [[nodiscard]] const Contact& at(std::size_t cell) const { return contact_[cell]; }
+
+ private:
+  [[nodiscard]] std::size_t cell(int i, int j) const {
+    const RasterWorld& world = relief_.world;
+    return static_cast<std::size_t>(world.row(j)) * world.columns + world.column(i);
+  }
+  void find(int i, int j) {
+    const std::int16_t own = relief_.plate[cell(i, j)];
+    std::int16_t other = own;
+    for (int k = 1; k < kDirections && other == own; k += 2) {
+      other = relief_.plate[cell(i + kColumnStep[k - 1], j + kRowStep[k - 1])];
+    }
+    if (other == own) return;
+    Vector3 towards{};
+    for (int dy = -reach_; dy <= reach_; ++dy) {
+      for (int dx = -reach_; dx <= reach_; ++dx) {
+        const std::int16_t plate = relief_.plate[cell(i + dx, j + dy)];
+        const double side = plate == other ? 1.0 : plate == own ? -1.0 : 0.0;
+        towards = add(towards, {static_cast<double>(dx), static_cast<double>(dy), 0.0}, side);
+      }
+    }
+    towards = normalised(towards);
+    const auto velocity = [&](std::int16_t plate) {
+      const RasterVelocity v =
+          raster_velocity(model_.plates()[plate], relief_.world, i + 0.5, j + 0.5);
+      return Vector3{mm_yr_ * v.x, mm_yr_ * v.y, 0.0};
+    };
+    const RelativeMotion motion =
+        relative_motion(velocity(own), velocity(other), towards, {0.0, 0.0, 1.0});
+    Contact& contact = contact_[cell(i, j)];
+    contact.type = classify(motion, p_.growth.speed_cm_yr);
+    if (contact.type != BoundaryType::interior) {
+      contact.strength = std::max({motion.closing, motion.opening, std::abs(motion.shear)});
+    }
+  }
+
+  const PlatesParameters& p_;
+  const RasterTectonics& model_;
+  const RasterRelief& relief_;
+  double mm_yr_;
+  int reach_ = 2;
+  std::vector<Contact> contact_;
+};
+
+}  // namespace
+
+void lay_on_torus(const PlatesParameters& parameters, const RasterTectonics& model,
+                  RasterScale scale, StageIo& io, const Context& context) {
+  const Grid& grid = io.grid();
+  std::vector<float> heights;
+  for (const RasterCrust& crust : model.map(false).crust) heights.push_back(crust.height);
+  fit_scale(std::move(heights), wanted_ocean(context), parameters.raster.median_land_m, scale);
+  const RasterRelief relief = raster_relief(model, scale);
+  const RasterWorld& world = relief.world;
+  const TorusBoundaries boundaries(parameters, model, relief, scale);
+  const auto plate = io.write(field::plate_id);
+  const auto fraction = io.write(field::continental_fraction);
+  const auto east = io.write(field::plate_velocity_east);
+  const auto north = io.write(field::plate_velocity_north);
+  const auto type = io.write(field::boundary_type);
+  const auto strength = io.write(field::boundary_strength);
+  const auto age = io.write(field::crust_age);
+  const auto orogeny = io.write(field::orogeny_type);
+  const auto heat = io.write(field::heat_anomaly);
+  const auto elevation = io.write(field::crust_elevation);
+  const auto thickness = io.write(field::crust_thickness);
+  const auto orogeny_age = io.write(field::orogeny_age);
+  const auto fold_east = io.write(field::fold_direction_east);
+  const auto fold_north = io.write(field::fold_direction_north);
+  const auto ridge_east = io.write(field::ridge_direction_east);
+  const auto ridge_north = io.write(field::ridge_direction_north);
+  constexpr float kBackgroundHeat = 0.2F;
+#pragma omp parallel for schedule(static)
+  for (int j = 0; j < grid.ny(); ++j) {
+    const double row = (j + 0.5) * world.rows / grid.ny();
+    for (int i = 0; i < grid.nx(); ++i) {
+      const double column = (i + 0.5) * world.columns / grid.nx();
+      const std::size_t of =
+          static_cast<std::size_t>(row) * world.columns + static_cast<std::size_t>(column);
+      const Index cell = grid.cell(i, j);
+      const auto value = [&](const std::vector<float>& values) {
+        return static_cast<float>(smooth_value(world, values, column, row));
+      };
+      const RasterVelocity v =
+          raster_velocity(model.plates()[relief.plate[of]], world, column, row);
+      const double mm_yr = scale.cell_km / scale.step_myr;
+      plate[cell] = relief.plate[of];
+      east[cell] = static_cast<float>(mm_yr * v.x);
+      north[cell] = static_cast<float>(mm_yr * v.y);
+      type[cell] = static_cast<std::int8_t>(boundaries.at(of).type);
+      strength[cell] = static_cast<float>(boundaries.at(of).strength);
+      const double height = value(relief.height), floor = model.settings().ocean_crust;
+      elevation[cell] =
+          static_cast<float>(raster_elevation_m(height, value(relief.age_myr), floor, scale));
+      thickness[cell] = static_cast<float>(raster_thickness_m(height, floor, scale));
+      fraction[cell] = static_cast<float>(
+          std::clamp((thickness[cell] - 1e3 * scale.oceanic_km) / 15e3, 0.0, 1.0));
+      const bool land = fraction[cell] >= 0.5F;
+      orogeny_age[cell] = land ? value(relief.orogeny_age_myr) : 0.0F;
+      age[cell] = land ? orogeny_age[cell] : value(relief.age_myr);
+      orogeny[cell] = land ? relief.orogeny[of] : std::int8_t{0};
+      heat[cell] = kBackgroundHeat;
+      fold_east[cell] = relief.fold_x[of];
+      fold_north[cell] = relief.fold_y[of];
+      ridge_east[cell] = relief.ridge_x[of];
+      ridge_north[cell] = relief.ridge_y[of];
+    }
+  }
+}
+
+}  // namespace geo

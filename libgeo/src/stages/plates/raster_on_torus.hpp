@@ -1,0 +1,13 @@
+#pragma once
+
+#include "geo/kernels/raster_relief.hpp"
+#include "geo/stages/plates.hpp"
+
+namespace geo {
+
+/// Writes a raster world to the fields of a torus, a seamless tile: the map's sides are the grid's.
+/// East is along x.
+void lay_on_torus(const PlatesParameters& parameters, const RasterTectonics& model,
+                  RasterScale scale, StageIo& io, const Context& context);
+
+}  // namespace geo

@@ -1,0 +1,194 @@
+// Planets and tiles of plates that are height maps.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <set>
+
+#include "geo/core/error.hpp"
+#include "geo/stages/isostasy.hpp"
+#include "geo/stages/plates.hpp"
+
+namespace geo {
+namespace {
+
+PlatesParameters quick() {
+  PlatesParameters p;
+  p.model = "raster";
+  p.samples = 12000;
+  p.raster.columns = p.raster.rows = 128;
+  p.raster.cycle_steps = 150;
+  return p;
+}
+
+State laid(Grid grid, std::uint64_t seed, const PlatesParameters& parameters,
+           Budget* budget = nullptr) {
+  State state(std::make_shared<Grid>(std::move(grid)));
+  const auto stage = make_plates_stage(parameters);
+  StageIo io(state, stage->info());
+  Context context;
+  context.seed = seed;
+  stage->run(io, context);
+  if (budget != nullptr) *budget = context.budget;
+  return state;
+}
+
+void expect_sound(const State& state) {
+  const auto stage = make_plates_stage(quick());
+  for (const FieldSpec* spec : stage->info().writes) {
+    ASSERT_TRUE(state.has(*spec)) << spec->name;
+    std::visit(
+        [&](const auto& values) {
+          for (const auto value : values) {
+            ASSERT_TRUE(std::isfinite(static_cast<double>(value))) << spec->name;
+          }
+        },
+        *state.values(*spec));
+  }
+  const auto type = state.read(field::boundary_type);
+  const std::set<int> types(type.begin(), type.end());
+  EXPECT_TRUE(types.contains(static_cast<int>(BoundaryType::interior)));
+  EXPECT_TRUE(types.contains(static_cast<int>(BoundaryType::convergent)));
+  EXPECT_TRUE(types.contains(static_cast<int>(BoundaryType::divergent)));
+  const auto fraction = state.read(field::continental_fraction);
+  for (const float f : fraction) {
+    ASSERT_GE(f, 0.0F);
+    ASSERT_LE(f, 1.0F);
+  }
+}
+
+TEST(RasterPlanet, WritesAllThatItDeclaresAndItIsFinite) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    SCOPED_TRACE(seed);
+    expect_sound(laid(Grid::sphere(144, 72), seed, quick()));
+  }
+}
+
+TEST(RasterPlanet, ClosesItsBooks) {
+  Budget budget;
+  laid(Grid::sphere(72, 36), 2, quick(), &budget);
+  EXPECT_LT(std::abs(budget.at("raster_crust_closing_error")), 1e-6);
+  EXPECT_GT(budget.at("raster_crust_created"), 0.0);
+}
+
+TEST(RasterPlanet, HasTheWantedOceanAndLandAtItsHeight) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const State state = laid(Grid::sphere(192, 96), seed, quick());
+    const Grid& grid = state.grid();
+    const auto z = state.read(field::crust_elevation);
+    double sea = 0.0;
+    for (Index cell = 0; cell < grid.size(); ++cell) {
+      if (z[cell] < 0.0F) sea += grid.area_m2(grid.row(cell));
+    }
+    EXPECT_NEAR(sea / grid.total_area_m2(), 0.71, 0.04) << "seed " << seed;
+  }
+}
+
+/// Mean step between neighbours along a meridian line, against the mean of all others.
+double seam(const State& state, int column) {
+  const Grid& grid = state.grid();
+  const auto z = state.read(field::crust_elevation);
+  const auto step = [&](int i) {
+    double sum = 0.0;
+    for (int j = 0; j < grid.ny(); ++j) {
+      sum += std::abs(z[grid.cell(i, j)] - z[grid.cell((i + grid.nx() - 1) % grid.nx(), j)]);
+    }
+    return sum;
+  };
+  double all = 0.0;
+  for (int i = 0; i < grid.nx(); ++i) all += step(i) / grid.nx();
+  return step(column) / all;
+}
+
+TEST(RasterPlanet, HasNoSeamAtTheDateLine) {
+  double mean = 0.0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    mean += seam(laid(Grid::sphere(256, 128), seed, quick()), 0) / 6.0;
+  }
+  EXPECT_LT(mean, 1.5);
+}
+
+TEST(RasterPlanet, IsNotDrawnTogetherAtThePoles) {
+  // Along the parallel at 85 degrees a lattice of pinched cells would differ from cell to cell.
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const State state = laid(Grid::sphere(360, 180), seed, quick());
+    const Grid& grid = state.grid();
+    const auto z = state.read(field::crust_elevation);
+    const auto rough = [&](int j) {
+      double sum = 0.0;
+      for (int i = 0; i < grid.nx(); ++i) {
+        sum += std::abs(z[grid.cell(i, j)] - z[grid.cell((i + 1) % grid.nx(), j)]);
+      }
+      return sum / grid.nx();
+    };
+    double middle = 0.0;
+    for (int j = 60; j < 120; ++j) middle += rough(j) / 60.0;
+    EXPECT_LT(rough(175), middle) << "seed " << seed;
+    EXPECT_LT(rough(4), middle) << "seed " << seed;
+  }
+}
+
+TEST(RasterPlanet, MovesItsPlatesAsRigidBodies) {
+  const State state = laid(Grid::sphere(144, 72), 5, quick());
+  const Grid& grid = state.grid();
+  const auto plate = state.read(field::plate_id);
+  const auto east = state.read(field::plate_velocity_east);
+  const auto north = state.read(field::plate_velocity_north);
+  // A rotation keeps lengths: the relative velocity of two places has no part along their line.
+  const auto vector = [&](Index cell) {
+    const Vector3 up = grid.to_axis(grid.unit_vector(grid.column(cell), grid.row(cell)));
+    const Vector3 to_east = normalised(Vector3{-up[1], up[0], 0.0});
+    return add(scaled(to_east, east[cell]), cross(up, to_east), north[cell]);
+  };
+  int checked = 0;
+  for (Index a = 500; a < grid.size(); a += 37) {
+    const Index b = (a * 7) % grid.size();
+    if (plate[a] != plate[b] || a == b) continue;
+    const Vector3 at = grid.to_axis(grid.unit_vector(grid.column(a), grid.row(a)));
+    const Vector3 other = grid.to_axis(grid.unit_vector(grid.column(b), grid.row(b)));
+    const Vector3 way = normalised(add(at, other, -1.0));
+    EXPECT_NEAR(dot(add(vector(a), vector(b), -1.0), way), 0.0, 0.05);
+    ++checked;
+  }
+  EXPECT_GT(checked, 10);
+}
+
+TEST(RasterPlanet, CarriesIsostasy) {
+  State state = laid(Grid::sphere(128, 64), 3, quick());
+  IsostasyParameters parameters;
+  parameters.crust = "simulated";
+  const auto stage = make_isostasy_stage(parameters);
+  StageIo io(state, stage->info());
+  Context context;
+  context.seed = 3;
+  stage->run(io, context);
+  const auto z = state.read(field::elevation);
+  EXPECT_GT(*std::max_element(z.begin(), z.end()), 1000.0F);
+  EXPECT_LT(*std::min_element(z.begin(), z.end()), -3000.0F);
+}
+
+TEST(RasterTile, WritesAllThatItDeclaresAndHasNoSeam) {
+  const State state = laid(Grid::torus(128, 128, 80e3, 80e3), 4, quick());
+  expect_sound(state);
+  EXPECT_LT(seam(state, 0), 2.0);
+  const auto z = state.read(field::crust_elevation);
+  const auto sea = std::count_if(z.begin(), z.end(), [](float value) { return value < 0.0F; });
+  EXPECT_NEAR(static_cast<double>(sea) / static_cast<double>(z.size()), 0.71, 0.03);
+}
+
+TEST(RasterPlanet, SaysWhichOfThePlatesOwnSettingsIsWrong) {
+  PlatesParameters p = quick();
+  p.raster.plate_folding = "0.02, 7";
+  try {
+    laid(Grid::sphere(72, 36), 1, p);
+    FAIL() << "accepted a folding ratio of 7";
+  } catch (const ConfigurationError& error) {
+    EXPECT_NE(std::string(error.what()).find("plates.plate_folding"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("entry 1"), std::string::npos);
+  }
+  EXPECT_THROW(laid(Grid::plane(64, 64, 1e4, 1e4), 1, quick()), InputError);
+}
+
+}  // namespace
+}  // namespace geo
