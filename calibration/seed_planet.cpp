@@ -49,7 +49,7 @@ void SeedPlanet::find_sea(const Model& model, std::span<const double> elevation_
                           HeldFast::Sea& sea) const {
   constexpr double kHalfWidth = 0.0025;  // share of the area on either side of the shore
   const Grid& grid = this->grid();
-  sea = {};
+  sea = {.at_shore = sea.at_shore};
   const std::vector<float> values(elevation_m.begin(), elevation_m.end());
   sea.level_m = sea_level_m(grid, values, model.planet);
   if (model.planet.sea_level == "volume") {
@@ -70,7 +70,7 @@ void SeedPlanet::find_sea(const Model& model, std::span<const double> elevation_
   // no cell stands at the bend between shelf and land, where nothing has a derivative.
   constexpr double kGap_m = 0.02;
   constexpr int kCells = 20;
-  sea.level_m = sea.ranking->gap_below(sea.level_m, kGap_m, kCells);
+  if (sea.at_shore) sea.level_m = sea.ranking->gap_below(sea.level_m, kGap_m, kCells);
   sea.window = sea.ranking->window(share, kHalfWidth);
   sea.mean_m = sea.ranking->mean(sea.window, elevation_m);
   sea.asked = share;

@@ -41,11 +41,12 @@ struct HeldFast {
   /// Sea level as a mean over cells next to it (by share) or over the sea (by volume), and how it
   /// follows the share or volume that is asked for.
   struct Sea {
-    std::optional<Ranking> ranking;
-    Ranking::Window window;
-    std::vector<std::uint8_t> wet;
+    bool at_shore = false;  ///< shelves end there: a bend, where no cell may stand
+    std::optional<Ranking> ranking{};
+    Ranking::Window window{};
+    std::vector<std::uint8_t> wet{};
     double level_m = 0.0, mean_m = 0.0, asked = 0.0, rate = 0.0;
-  } sea;
+  } sea{.at_shore = true};
   /// The sea before continents settle, each time they do, and the cells below it.
   struct Settling {
     Sea sea;

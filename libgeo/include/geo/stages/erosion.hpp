@@ -20,12 +20,12 @@ struct ErosionParameters {
   std::string flow_routing = "mfd";
   double flow_exponent = 1.1;
   std::string depressions = "fill";
-  double erodibility_factor = 0.243;
+  double erodibility_factor = 0.15;
   double reference_cell_km = 10.0;
   double subgrid_exponent = 0.38;
   double uplift_mm_yr = 0.0;
   std::string uplift_from = "deformation";
-  double convergent_uplift_mm_yr = 0.03;
+  double convergent_uplift_mm_yr = 0.06;
   double divergent_uplift_mm_yr = -0.02;
   double transform_uplift_mm_yr = 0.03;
   double rebound_fraction = 0.8;

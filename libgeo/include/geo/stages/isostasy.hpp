@@ -26,10 +26,10 @@ struct IsostasyParameters {
   double deformation_smoothing_km = 30.0;
 
   double continental_km = 36.4;
-  double ocean_depth_m = 3715.0;
+  double ocean_depth_m = 3690.0;
   double oceanic_km = 7.0;
   double thickness_noise_km = 4.5;
-  double collision_km = 16.5;
+  double collision_km = 14.5;
   double arc_km = 13.0;
   double rift_km = 20.0;
   double transpression_km = 2.0;
@@ -38,7 +38,7 @@ struct IsostasyParameters {
 
   double lithosphere = 1.22;
   double craton_compensation = 0.95;
-  double swell_m = 490.0;
+  double swell_m = 430.0;
   double ocean_swell_m = 430.0;
   double margin_tilt_m = 660.0;
   double margin_tilt_km = 260.0;
