@@ -14,12 +14,14 @@ namespace geo::calibration {
 /// The configuration of a run, with everything small.
 class SmallRun {
  public:
-  explicit SmallRun(const std::string& assignment = "erosion.steps=4") {
+  explicit SmallRun(const std::string& assignment = "erosion.steps=4",
+                    const std::string& another = "erosion.steps=4") {
     for (auto declarations : {planet.parameters(), pipeline.parameters()}) {
       parameters.insert(parameters.end(), declarations.begin(), declarations.end());
     }
     set("erosion.steps=4");
     set(assignment);
+    set(another);
     settings.seeds = "1-2";
     settings.grid = "96x48";
   }

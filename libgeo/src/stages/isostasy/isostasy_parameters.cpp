@@ -81,7 +81,7 @@ std::vector<Parameter> IsostasyParameters::declarations() {
            "loss of crustal density above the hottest mantle, blueprint crust alone",
            "tectonica2026"),
       real("isostasy.shelf_depth_m", shelf_depth_m, "m", 0.0, 2000.0,
-           "depth that scales shelves: D below the sea, sediment leaves d ln(1 + D / d)", "watts2001"),
+           "depth below the sea that sediment builds shelves up to", "watts2001"),
       real("isostasy.shelf_edge", shelf_edge, "1", 0.0, 0.99,
            "share of continental crust in a column from which on shelves are built", "watts2001"),
       real("isostasy.trench_depth_m", trench_depth_m, "m", 0.0, 15000.0,
