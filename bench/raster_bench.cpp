@@ -36,9 +36,9 @@ void RasterStep(benchmark::State& state) {
   RasterTectonics model(settings_for(state.range(0)), 1);
   for (int k = 0; k < 100; ++k) model.advance();
   for (auto _ : state) model.advance();
-  state.counters["cells/s"] = benchmark::Counter(
-      static_cast<double>(state.range(0) * state.range(0)),
-      benchmark::Counter::kIsIterationInvariantRate);
+  state.counters["cells/s"] =
+      benchmark::Counter(static_cast<double>(state.range(0) * state.range(0)),
+                         benchmark::Counter::kIsIterationInvariantRate);
 }
 
 BENCHMARK(RasterWorldOfTenPlates)

@@ -16,7 +16,6 @@ using Complex = std::complex<double>;
 /// Parameters of formulas; those of smoothing lengths and plates are differences of a kernel.
 const std::vector<std::string> kExact{"isostasy.collision_km",
                                       "isostasy.continental_km",
-
                                       "isostasy.lithosphere",
                                       "isostasy.swell_m",
                                       "isostasy.thickness_noise_km",

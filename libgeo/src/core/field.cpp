@@ -261,7 +261,7 @@ std::span<const FieldSpec* const> all() {
                                                      &fold_direction_north,
                                                      &ridge_direction_east,
                                                      &ridge_direction_north,
-&ranking,
+                                                     &ranking,
                                                      &convergent_deformation,
                                                      &divergent_deformation,
                                                      &transform_deformation,

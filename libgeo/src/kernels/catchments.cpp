@@ -5,6 +5,8 @@
 #include <atomic>
 #include <limits>
 
+#include "wide.hpp"
+
 namespace geo::detail {
 namespace {
 
@@ -60,9 +62,9 @@ constexpr std::array<bool, 256> kSaddle = make_saddle_table();
 constexpr std::int32_t kHasEqual = 1 << 8, kDivides = 1 << 9;
 
 /// Codes of the interior cells of a row. Branch-free, so that the compiler vectorises it.
-__attribute__((target_clones("avx2", "default"))) void survey_row(
-    const float* __restrict z, const std::int32_t* __restrict leaf, Index begin, Index end,
-    const std::array<Index, kDirections>& offset, std::int32_t* __restrict code) {
+TERRANE_WIDE void survey_row(const float* __restrict z, const std::int32_t* __restrict leaf,
+                             Index begin, Index end, const std::array<Index, kDirections>& offset,
+                             std::int32_t* __restrict code) {
   for (Index cell = begin; cell < end; ++cell) {
     std::int32_t bits = 0;
 #pragma GCC unroll 8

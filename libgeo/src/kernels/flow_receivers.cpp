@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "geo/kernels/flow_graph.hpp"
+#include "wide.hpp"
 
 namespace geo {
 namespace {
@@ -39,9 +40,9 @@ Index receiver_at_edge(const Grid& grid, const float* z, const Weights& weights,
 
 /// The interior of one row: constant offsets, no branches, so that the compiler vectorises it.
 /// Eight comparisons a cell; the same multiplications as at the edges, hence the same bits.
-__attribute__((target_clones("avx2", "default"))) void interior_receivers(
-    const float* z, Index begin, Index end, const std::array<Index, kDirections>& offset,
-    const Weights& weights, Index* receiver) {
+TERRANE_WIDE void interior_receivers(const float* z, Index begin, Index end,
+                                     const std::array<Index, kDirections>& offset,
+                                     const Weights& weights, Index* receiver) {
   for (Index cell = begin; cell < end; ++cell) {
     const float here = z[cell];
     float steepest = 0.0F;

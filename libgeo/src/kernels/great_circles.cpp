@@ -9,12 +9,7 @@
 
 #include "geo/core/error.hpp"
 #include "geo/core/random.hpp"
-
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define TERRANE_WIDE __attribute__((target_clones("avx2", "default")))
-#else
-#define TERRANE_WIDE
-#endif
+#include "wide.hpp"
 
 namespace geo {
 namespace {
