@@ -46,7 +46,7 @@ struct IsostasyParameters {
   double heat_m = 950.0;
   double thermal_coefficient = 0.02;
   double shelf_depth_m = 65.0;
-  double shelf_edge = 0.75;
+  double shelf_edge = 0.68;
   double trench_depth_m = 1700.0;
   double seamount_m = 1800.0;
   double seafloor_roughness_m = 130.0;
