@@ -140,28 +140,40 @@ Sampled sample(const MapFrame& frame, Filter filter, const Value& value) {
     return frame.project(sample(frame.source(), Filter::linear, value), filter);
   }
   const auto columns = frame.column_taps(filter), rows = frame.row_taps(filter);
+  // Along the rows of the grid first: each is seen by several rows of pixels where these are finer.
+  const int nx = frame.grid().nx(), ny = frame.grid().ny(), width = frame.width();
+  std::vector<float> sums(static_cast<std::size_t>(ny) * width), shares(sums.size());
+#pragma omp parallel for schedule(static)
+  for (int row = 0; row < ny; ++row) {
+    const Index base = row * nx;
+    for (int x = 0; x < width; ++x) {
+      float sum = 0.0F, there = 0.0F;
+      for (int i = columns.begin[x]; i < columns.begin[x + 1]; ++i) {
+        const float v = value(base + columns.index[i]);
+        if (v == v) {
+          sum += columns.weight[i] * v;
+          there += columns.weight[i];
+        }
+      }
+      sums[static_cast<std::size_t>(row) * width + x] = sum;
+      shares[static_cast<std::size_t>(row) * width + x] = there;
+    }
+  }
   Sampled out{Raster(frame), Raster(frame)};
-  const int nx = frame.grid().nx();
 #pragma omp parallel for schedule(static)
   for (int y = 0; y < frame.height(); ++y) {
     float* const mean = &out.mean.at(0, y);
     float* const cover = &out.cover.at(0, y);
     for (int j = rows.begin[y]; j < rows.begin[y + 1]; ++j) {
-      const Index base = rows.index[j] * nx;
-      for (int x = 0; x < frame.width(); ++x) {
-        float sum = 0.0F, there = 0.0F;
-        for (int i = columns.begin[x]; i < columns.begin[x + 1]; ++i) {
-          const float v = value(base + columns.index[i]);
-          if (v == v) {
-            sum += columns.weight[i] * v;
-            there += columns.weight[i];
-          }
-        }
-        mean[x] += rows.weight[j] * sum;
-        cover[x] += rows.weight[j] * there;
+      const float* const sum = &sums[static_cast<std::size_t>(rows.index[j]) * width];
+      const float* const there = &shares[static_cast<std::size_t>(rows.index[j]) * width];
+      const float weight = rows.weight[j];
+      for (int x = 0; x < width; ++x) {
+        mean[x] += weight * sum[x];
+        cover[x] += weight * there[x];
       }
     }
-    for (int x = 0; x < frame.width(); ++x) {
+    for (int x = 0; x < width; ++x) {
       mean[x] = cover[x] > 0.0F ? mean[x] / cover[x] : std::numeric_limits<float>::quiet_NaN();
     }
   }

@@ -201,6 +201,7 @@ std::filesystem::path draw_field(const RunFolder& folder, const MapView& view,
                                  folder.manifest().string(), wanted.field));
   }
   const State state = state_for(folder, manifest, record, spec->name);
+  static_cast<void>(map_layout(state.grid(), view));  // refuses a view before there is a folder
   make_folder(pictures);
   const std::string name =
       wanted.stage.empty() ? wanted.field : fmt::format("{}-{}", wanted.stage, wanted.field);
