@@ -321,7 +321,8 @@ void draw_any_field(const FieldSpec& spec, const Scene& scene, MapCanvas& canvas
   } else {
     switch (kind_of(spec)) {
       case FieldKind::relief:
-        draw_elevation(scene, canvas);
+        // Islands bear their contours and rivers.
+        (scene.state.grid().is_projected() ? draw_island : draw_elevation)(scene, canvas);
         break;
       case FieldKind::categories:
         draw_flags(spec, scene, canvas);

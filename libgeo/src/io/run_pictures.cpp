@@ -105,13 +105,17 @@ const StageRecord& stage_of(const Manifest& manifest, const FieldOfRun& wanted,
                   near.empty() ? ": it has " + fmt::format("{}", fmt::join(fields, ", ")) : near));
 }
 
-/// The fields of that stage that a map of one of them is drawn from; where it has no elevation, the
-/// planet's last.
+/// The fields of that stage that a map of one of them is drawn from, with the rivers of an island's
+/// relief; where the stage has no elevation, the planet's last.
 State state_for(const RunFolder& folder, const Manifest& manifest, const StageRecord& record,
                 std::string_view field) {
+  const std::array<const FieldSpec*, 4> water{&field::lake_depth, &field::flow_receiver,
+                                              &field::discharge, &field::drainage_area};
+  const bool with_water = is_island(record) && field == field::elevation.name;
   const Snapshot snapshot =
       read_netcdf(folder.path() / netcdf_of(record), [&](const FieldSpec& spec) {
-        return spec.name == field || spec.name == field::elevation.name;
+        return spec.name == field || spec.name == field::elevation.name ||
+               (with_water && std::find(water.begin(), water.end(), &spec) != water.end());
       });
   State state(snapshot.grid);
   for (const auto& [spec, values] : snapshot.fields) state.share(*spec, values);
