@@ -88,7 +88,7 @@ def thumbnail_failures(driver):
     driver.execute_script('document.querySelector("a > img").click()')
     if driver.current_url != target:
         yield f"a click on a thumbnail leads to {driver.current_url}, not to {target}"
-    elif driver.execute_script("return document.images[0]?.naturalWidth ?? 0") == 0:
+    elif not driver.execute_script('return document.contentType.startsWith("image/")'):
         yield f"{target} does not open"
 
 
