@@ -1,4 +1,4 @@
-"""What the site adds to the pages: citations that lead to a list of references."""
+"""What the site adds to the pages: citations that lead to a list of references, pictures that open."""
 
 import re
 from pathlib import Path
@@ -47,3 +47,8 @@ def on_page_markdown(markdown, page, config, files):
     cited = [key for key in _keys if f"[{key}]" in markdown]
     references = "../" * source.count("/") + PAGE
     return markdown + "\n\n" + "\n".join(f"[{key}]: {references}#{key}" for key in cited)
+
+
+def on_page_content(html, page, config, files):
+    """Lets a click on a picture open it in its full size."""
+    return re.sub(r'<img ([^>]*?)src="([^"]+)"([^>]*)>', r'<a href="\2"><img \1src="\2"\3></a>', html)

@@ -123,6 +123,13 @@ class QuietHandler(http.server.SimpleHTTPRequestHandler):
     def log_message(self, *_):
         pass
 
+    def do_GET(self):
+        if self.path == "/favicon.ico":  # which Chromium asks for beside a picture that stands alone
+            self.send_response(204)
+            self.end_headers()
+        else:
+            super().do_GET()
+
 
 def serve(folder):
     handler = functools.partial(QuietHandler, directory=str(folder))
