@@ -72,6 +72,12 @@ TEST(Params, OfOneStageAreItsOwn) {
   }
 }
 
+TEST(Params, OfAStageWithTheNameOfACommandAreItsOwn) {
+  const auto json = nlohmann::json::parse(told_by({"params", "island", "--format", "json"}));
+  ASSERT_FALSE(json.empty());
+  EXPECT_THAT(json.front().at("name").get<std::string>(), StartsWith("island."));
+}
+
 TEST(Params, AsTomlRunAsTheyAre) {
   const TemporaryFolder folder;
   ReliefFile{}.write(folder / "relief.nc");
