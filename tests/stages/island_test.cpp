@@ -213,21 +213,30 @@ TEST(Island, RiversThatEnterAreThereAndNoWaterIsLost) {
 // Interpolation dams a valley that is one cell wide: rivers once left by the edge that they had
 // come in over.
 TEST(Island, RiversCarryWhatTheyCarryOnThePlanet) {
-  const auto receiver = planet().read(field::flow_receiver);
-  const auto planets = planet().read(field::discharge);
-  for (const Index c : great_rivers(4)) {
-    SCOPED_TRACE("river at " + text(place_of(c)));
-    const State island = make(around(place_of(c))).island;
-    const PlanetCells cells(planet().grid(), island.grid());
-    const auto discharge = island.read(field::discharge);
-    float most = 0.0F;
-    for (Index k = 0; k < island.grid().size(); ++k) {
-      if (cells.cell_of()[k] == c) most = std::max(most, discharge[k]);
+  double carried = 0.0;
+  int rivers = 0;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const State whole = make_planet(seed);
+    const auto receiver = whole.read(field::flow_receiver);
+    const auto planets = whole.read(field::discharge);
+    for (const Index c : great_rivers(4, whole)) {
+      SCOPED_TRACE("seed " + std::to_string(seed) + ", river at " +
+                   text(place_of(c, whole.grid())));
+      const State island = make(around(place_of(c, whole.grid())), whole, seed).island;
+      const PlanetCells cells(whole.grid(), island.grid());
+      const auto discharge = island.read(field::discharge);
+      float most = 0.0F;
+      for (Index k = 0; k < island.grid().size(); ++k) {
+        if (cells.cell_of()[k] == c) most = std::max(most, discharge[k]);
+      }
+      // Where rivers meet may move by a cell or two, and a brook may join the river beside.
+      EXPECT_GT(most, 0.8 * planets[c]);
+      EXPECT_LT(most, 1.1 * planets[receiver[receiver[c]]]);
+      carried += std::min(1.0, static_cast<double>(most) / planets[c]);
+      ++rivers;
     }
-    EXPECT_GT(most, 0.9 * planets[c]);
-    // Where rivers meet may move by a cell or two.
-    EXPECT_LT(most, 1.1 * planets[receiver[receiver[c]]]);
   }
+  EXPECT_GT(carried, 0.97 * rivers);
 }
 
 /// Whether a planet's cell has a river of its own, whose centre is well inside an island.
