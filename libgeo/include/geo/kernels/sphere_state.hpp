@@ -46,11 +46,18 @@ struct PlatePair {
   float last_contact_myr = -1e9F;
 };
 
+/// A plume of the mantle, below the plates and at rest.
+struct SpherePlume {
+  Vector3 place;              ///< unit vector
+  double growth_mm_yr = 0.0;  ///< of volcanoes on the sea floor above it
+};
+
 /// All that a run of the sphere model needs to go on.
 struct SphereState {
   SphereCrust crust;
   std::vector<SpherePlate> plates;
   std::vector<PlatePair> pairs;  ///< plates.size() squared; used where row < column
+  std::vector<SpherePlume> plumes;
   double time_myr = 0.0;
   std::int64_t steps = 0;
   double resampled_myr = 0.0;  ///< time of the last resampling

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -40,8 +41,7 @@ struct SphereSettings {
   double rift_warp_km = 400.0;        ///< of their borders
   double mean_area_km2 = 1.27e7;      ///< A_0
   double smallest_piece_km2 = 5e5;    ///< detached pieces below join a neighbour
-  std::vector<Vector3> plumes;        ///< places of hot spots, fixed in the mantle, unit vectors
-  double plume_mm_yr = 0.0;           ///< growth of volcanoes above them
+  double plume_mm_yr = 0.0;           ///< growth of volcanoes above the first plumes
   double plume_km = 60.0;             ///< over which it falls to a half
   double plume_top_km = 2.0;          ///< height that volcanoes of the sea floor reach
   bool no_net_rotation = true;
@@ -63,6 +63,7 @@ struct SphereBudget {
   double ocean_error_km2 = 0.0;   ///< created - consumed - turned into continent - change
   double emerged_km2 = 0.0;       ///< ocean floor that became continental
   double continental_km3 = 0.0;   ///< volume of continental crust at the end of the step
+  double accreted_km3 = 0.0;      ///< sediment that the wedges behind trenches grew by
   double raised_km3 = 0.0;        ///< added by subduction: magma and accretion
   double eroded_km3 = 0.0;
   double emerged_km3 = 0.0;     ///< of arcs when they became continental
@@ -106,6 +107,10 @@ class SphereTectonics {
   void finish();
   /// Splits a plate by the nearest of some places, warped; the fragments part at the speed.
   void rift(int plate, std::span<const Vector3> places, double speed_mm_yr);
+  /// Splits a plate along a line of great circles, which go on beyond its ends; with three or four
+  /// fragments the sides are cut across at the middle of the line, the right one first. They leave
+  /// that middle at the speed.
+  void rift_along(int plate, std::span<const Vector3> line, int fragments, double speed_mm_yr);
 
   /// The plate that is on top at a place, or -1 in a gap.
   [[nodiscard]] int plate_at(const Vector3& place) const;
@@ -114,6 +119,10 @@ class SphereTectonics {
   /// The crust within a circle, whatever its plates, becomes continental or oceanic. Returns the
   /// area that changed, km2.
   double change_crust(const Vector3& place, double radius_km, bool continental);
+  /// The same of all places (unit vectors) of which something holds.
+  double change_crust(const std::function<bool(const Vector3&)>& holds, bool continental);
+  /// Area of each plate with all that it carries, km2; 0 of those that are no more.
+  [[nodiscard]] std::vector<double> plate_areas_km2() const;
 
   [[nodiscard]] const SphereState& state() const noexcept { return state_; }
   /// For what changes a state from outside, between steps; call repartition() after changing
@@ -157,6 +166,10 @@ class SphereTectonics {
   void surge(int upper, std::span<const std::int32_t> terrane, const Vector3& centroid,
              double area_km2, double speed_mm_yr);
   void rift_by_chance();
+  void part(int plate, std::span<const std::int8_t> fragment, std::span<const Vector3> away,
+            double speed_mm_yr);
+  template <class Within>
+  double change_samples(Within&& within, bool continental);
   void subtract_net_rotation();
   void fill_gaps(SphereCrust& now, std::vector<std::int16_t>& owner);
   void stretch_margins(std::span<const std::int32_t> gaps, std::span<const std::int32_t> nearest,

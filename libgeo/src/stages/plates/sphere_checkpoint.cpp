@@ -63,6 +63,12 @@ Checkpoint checkpoint_of(const SphereState& state) {
   to["pair_ocean_top"] = ocean;
   to["pair_continent_top"] = continent;
   to["pair_last_contact_myr"] = contact;
+  std::vector<double> plumes;
+  for (const SpherePlume& plume : state.plumes) {
+    plumes.insert(plumes.end(),
+                  {plume.place[0], plume.place[1], plume.place[2], plume.growth_mm_yr});
+  }
+  to["plumes"] = plumes;
   to["clock"] =
       std::vector<double>{state.time_myr, static_cast<double>(state.steps), state.resampled_myr};
   return out;
@@ -117,6 +123,13 @@ SphereState state_of(const Checkpoint& from) {
   }
   for (std::size_t k = 0; k < ocean.size(); ++k) {
     state.pairs.push_back({ocean[k], continent[k], contact[k]});
+  }
+  // Frames of older versions have none.
+  if (from.arrays.contains("plumes")) {
+    const auto& plumes = from.get<double>("plumes");
+    for (std::size_t k = 0; k + 3 < plumes.size(); k += 4) {
+      state.plumes.push_back({{plumes[k], plumes[k + 1], plumes[k + 2]}, plumes[k + 3]});
+    }
   }
   state.time_myr = clock[0];
   state.steps = static_cast<std::int64_t>(clock[1]);
