@@ -29,6 +29,31 @@ double seam_m(const PlanetCells& cells) {
   return std::min(0.25 * cells.planet().face_east_m(cells.first_row()), 0.05 * extent_m);
 }
 
+/// 1 on the planet's land out of sight of the sea, one value per covered cell.
+std::vector<float> inland(const PlanetCells& cells, std::span<const float> planet_elevation_m) {
+  const Grid& planet = cells.planet();
+  std::vector<float> share(cells.size());
+  for (int j = cells.first_row(); j < cells.first_row() + cells.rows(); ++j) {
+    for (int i = 0; i < planet.nx(); ++i) {
+      bool dry = planet_elevation_m[planet.cell(i, j)] >= 0.0F;
+      for (int k = 0; k < kDirections; ++k) {
+        const Index next = planet.neighbour(planet.cell(i, j), k);
+        dry = dry && (next == kNoCell || planet_elevation_m[next] >= 0.0F);
+      }
+      share[cells.at(i, j)] = dry ? 1.0F : 0.0F;
+    }
+  }
+  return share;
+}
+
+/// A height with detail on it. Plains near the level of the sea would become flats at it wherever
+/// detail dips further: inland, h exp(d / h) stays above it and drains.
+double with_detail(double height_m, double detail_m, double inland) {
+  const double plainly = height_m + detail_m;
+  if (!(detail_m < 0.0 && height_m > 0.0 && inland > 0.0)) return plainly;
+  return plainly + inland * (height_m * std::exp(detail_m / height_m) - plainly);
+}
+
 /// Detail that continues the planet's roughness, its mean over each planet cell taken out.
 void add_rough_detail(const PlanetCells& cells, std::span<const float> planet_elevation_m,
                       const IslandParameters& p, std::uint64_t seed, std::span<float> z) {
@@ -50,9 +75,11 @@ void add_rough_detail(const PlanetCells& cells, std::span<const float> planet_el
     detail[c] *= static_cast<float>(p.detail_amplitude * rough_m);
   });
   const std::vector<float> mean = cells.means(detail, {}, 0.0F);
+  const std::vector<float> dry = inland(cells, planet_elevation_m);
   on_cells(fine, [&](int i, int j, Index c) {
-    const double centred = detail[c] - cells.interpolate(mean, i, j);
-    z[c] += static_cast<float>(edge_ramp(fine, i, j, seam_m(cells)) * centred);
+    const double centred_m = detail[c] - cells.interpolate(mean, i, j);
+    z[c] = static_cast<float>(with_detail(z[c], edge_ramp(fine, i, j, seam_m(cells)) * centred_m,
+                                          std::clamp(cells.interpolate(dry, i, j), 0.0, 1.0)));
   });
 }
 
