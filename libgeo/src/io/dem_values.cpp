@@ -103,7 +103,8 @@ struct Gaps {
 }  // namespace
 
 std::vector<float> read_values(const nc::File& file, int variable, const DemAxis& rows,
-                               const DemAxis& columns, const std::string& units) {
+                               const DemAxis& columns, const std::string& units,
+                               MissingCells missing) {
   const std::string name = file.variable_name(variable);
   const Packing packing = read_packing(file, variable, units);
   const auto dimensions = file.dimensions_of(variable).size();
@@ -126,16 +127,17 @@ std::vector<float> read_values(const nc::File& file, int variable, const DemAxis
           fmt::format("variable {}: truncated or damaged ({})", name, nc_strerror(status)));
     }
     for (std::size_t k = 0; k < count[dimensions - 2] * nx; ++k) {
-      if (packing.is_missing(block[k])) {
-        if (gaps.count++ == 0) {
-          gaps.row = static_cast<int>(from + k / nx);
-          gaps.column = static_cast<int>(k % nx);
-        }
+      float& value = values[from * nx + k];
+      value = static_cast<float>(block[k] * packing.scale + packing.offset);
+      if (!packing.is_missing(block[k])) continue;
+      value = std::numeric_limits<float>::quiet_NaN();
+      if (gaps.count++ == 0) {
+        gaps.row = static_cast<int>(from + k / nx);
+        gaps.column = static_cast<int>(k % nx);
       }
-      values[from * nx + k] = static_cast<float>(block[k] * packing.scale + packing.offset);
     }
   }
-  if (gaps.count > 0) refuse(name, gaps, rows, columns);
+  if (gaps.count > 0 && missing == MissingCells::refused) refuse(name, gaps, rows, columns);
   return values;
 }
 

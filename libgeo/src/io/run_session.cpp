@@ -13,6 +13,7 @@
 #include "geo/io/atomic_file.hpp"
 #include "geo/io/background_writer.hpp"
 #include "geo/io/build_info.hpp"
+#include "geo/io/exemplar_files.hpp"
 #include "geo/io/hypsography.hpp"
 #include "geo/io/island_session.hpp"
 #include "geo/io/run_pictures.hpp"
@@ -155,6 +156,8 @@ void RunSession::compute(const RunEvents& events) {
   context.planet = planet_;
   context.seed = static_cast<std::uint64_t>(settings_.seed);
   context.hypsography = hypsography();
+  if (makes_exemplars() && !exemplars_) exemplars_ = exemplars_of({}, planet_);
+  context.exemplars = exemplars_;
   context.events = settings_.events;
   context.on_progress = events.progress;
   context.stop = events.stop;

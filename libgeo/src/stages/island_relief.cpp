@@ -6,7 +6,9 @@
 #include "geo/kernels/catmull_rom.hpp"
 #include "geo/kernels/depressions.hpp"
 #include "geo/kernels/diffusion.hpp"
+#include "geo/kernels/exemplar_detail.hpp"
 #include "geo/kernels/noise.hpp"
+#include "geo/kernels/shapes.hpp"
 #include "geo/kernels/stream_power.hpp"
 
 namespace geo {
@@ -29,19 +31,74 @@ double seam_m(const PlanetCells& cells) {
   return std::min(0.25 * cells.planet().face_east_m(cells.first_row()), 0.05 * extent_m);
 }
 
-/// Detail that continues the planet's roughness, its mean over each planet cell taken out.
-void add_rough_detail(const PlanetCells& cells, std::span<const float> planet_elevation_m,
-                      const IslandParameters& p, std::uint64_t seed, std::span<float> z) {
-  const Grid& fine = cells.fine();
+/// Fractional Brownian motion from about twice the planet's cells down to twice the island's.
+DetailLaw detail_law(const PlanetCells& cells, const IslandParameters& p) {
   const double spacing_m = cells.planet().face_east_m(cells.first_row());
   DetailLaw law;
   law.wavelength_m = 2.0 * spacing_m;
   law.octaves = std::clamp(
       static_cast<int>(std::lround(std::log2(law.wavelength_m / (2.0 * p.cell_m)))) + 1, 1, 16);
   law.gain = std::exp2(-p.detail_hurst);
+  return law;
+}
+
+/// Unit detail of exemplars on land and of noise in the sea. Waves that exemplars do not hold, too
+/// long for a piece of them or too short for their cells, are noise of the same law.
+void detail_like_exemplars(const PlanetCells& cells, const PlanetRelief& planet,
+                           const IslandParameters& p, const DetailLaw& law,
+                           const ExemplarLibrary& library, std::uint64_t seed,
+                           std::span<const float> planet_m, std::span<float> detail) {
+  constexpr double kShallow_m = -200.0;
+  const Grid& fine = cells.fine();
+  const ExemplarBand band = exemplar_band(library, 0.5 * law.wavelength_m, p.cell_m);
+  const auto octave_of = [&](double wavelength_m) {
+    const double octave = std::log2(law.wavelength_m / wavelength_m);
+    return std::clamp(static_cast<int>(std::lround(octave)), 0, law.octaves);
+  };
+  const int first = octave_of(band.longest_m);
+  const int last = std::max(first, octave_of(0.5 * band.shortest_m));
+  const auto variance = [&](int begin, int end) {
+    double sum = 0.0;
+    for (int k = begin; k < end; ++k) sum += std::exp2(-2.0 * p.detail_hurst * k);
+    return sum;
+  };
+  const double whole = variance(0, law.octaves);
+
+  std::vector<float> noise(fine.size()), part(fine.size());
+  unit_detail(fine, law, seed, noise);
+  exemplar_detail(cells.planet(),
+                  {planet.elevation_m, planet.orogeny_type, planet.orogeny_age_myr,
+                   planet.fold_east, planet.fold_north, p.old_orogeny_myr, p.plain_slope},
+                  fine, library, band, seed, detail);
+  const auto share = static_cast<float>(std::sqrt(variance(first, last) / whole));
+  for (float& value : detail) value *= share;
+  const auto add_octaves = [&](int begin, int end) {
+    if (begin >= end) return;
+    unit_detail(fine, {law.wavelength_m * std::exp2(-begin), end - begin, law.gain}, seed, part);
+    const auto factor = static_cast<float>(std::sqrt(variance(begin, end) / whole));
+    for (std::size_t c = 0; c < detail.size(); ++c) detail[c] += factor * part[c];
+  };
+  add_octaves(0, first);
+  add_octaves(last, law.octaves);
+  on_cells(fine, [&](int, int, Index c) {
+    const double land = smooth_step(kShallow_m, 0.0, static_cast<double>(planet_m[c]));
+    detail[c] = static_cast<float>(std::sqrt(land) * detail[c] + std::sqrt(1.0 - land) * noise[c]);
+  });
+}
+
+/// Detail that continues the planet's roughness, its mean over each planet cell taken out.
+void add_rough_detail(const PlanetCells& cells, const PlanetRelief& planet,
+                      const IslandParameters& p, const ExemplarLibrary* exemplars,
+                      std::uint64_t seed, std::span<float> z) {
+  const Grid& fine = cells.fine();
+  const DetailLaw law = detail_law(cells, p);
   std::vector<float> detail(fine.size()), roughness(cells.size());
-  unit_detail(fine, law, seed, detail);
-  local_roughness(cells, planet_elevation_m, roughness);
+  if (exemplars != nullptr) {
+    detail_like_exemplars(cells, planet, p, law, *exemplars, seed, z, detail);
+  } else {
+    unit_detail(fine, law, seed, detail);
+  }
+  local_roughness(cells, planet.elevation_m, roughness);
   for (float& rough_m : roughness) {
     rough_m = std::max(rough_m, static_cast<float>(p.least_roughness_m));
   }
@@ -136,16 +193,17 @@ void restore_means(const PlanetCells& cells, std::span<const float> target,
 }  // namespace
 
 void raise_island(const PlanetCells& cells, const PlanetRelief& planet, const IslandParameters& p,
-                  std::uint64_t seed, std::span<float> planet_m, std::span<float> elevation_m) {
+                  const ExemplarLibrary* exemplars, std::uint64_t seed, std::span<float> planet_m,
+                  std::span<float> elevation_m) {
   on_cells(cells.fine(), [&](int i, int j, Index c) {
     const CatmullRom stencil(cells.planet(), cells.fine().position(i, j));
     planet_m[c] = static_cast<float>(stencil.of(planet.elevation_m));
   });
   std::copy(planet_m.begin(), planet_m.end(), elevation_m.begin());
-  if (p.detail == "roughness") {
-    add_rough_detail(cells, planet.elevation_m, p, seed, elevation_m);
-  } else {
+  if (p.detail == "height") {
     add_height_detail(cells, p, seed, elevation_m);
+  } else {
+    add_rough_detail(cells, planet, p, exemplars, seed, elevation_m);
   }
   dry_inland_dips(cells, planet.elevation_m, elevation_m);
   if (p.edge_fade) sink_edges(cells.fine(), p, seed, elevation_m);

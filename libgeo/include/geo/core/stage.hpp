@@ -42,12 +42,16 @@ struct Hypsography {
   std::vector<double> fraction, elevation_m;
 };
 
+struct ExemplarLibrary;  // kernels/exemplar.hpp
+
 /// What a run gives a stage besides fields: the planet, the seed, and ways to be heard.
 struct Context {
   Planet planet;
   std::uint64_t seed = 1;
   /// What hypsometry by rank aims at; empty unless asked for.
   Hypsography hypsography;
+  /// What terrain is made like, where exemplars are asked for; empty: stages grow their own.
+  std::shared_ptr<const ExemplarLibrary> exemplars;
   /// What befalls the planet; empty unless asked for.
   std::vector<Event> events;
   /// Called with the fraction of the stage that is done; may be empty.

@@ -22,13 +22,18 @@ struct Relief {
   std::vector<float> raster_m;
 };
 
+/// What becomes of cells that a file has no value for.
+enum class MissingCells { refused, not_a_number };
+
 /// Reads `FILE[:VARIABLE]`, any NetCDF with a two-dimensional elevation over latitude and longitude
 /// (or projected x and y in metres). Node- and cell-registered, latitudes up or down, longitudes
 /// 0..360 or -180..180, packed integers, repeated end column, any unit of length (none: metres).
 /// Without VARIABLE the one two-dimensional variable that looks like relief, else an error that
-/// lists the candidates. Throws InputError for unusable data (missing or NaN cells with their
-/// index, wrong units, truncated file, irregular axes), IoError when it cannot be opened.
-Relief read_relief(const std::string& file_and_variable, const Planet& planet);
+/// lists the candidates. Throws InputError for unusable data (missing or NaN cells, unless
+/// they may stay NaN, with their index, wrong units, truncated file, irregular axes), IoError when
+/// it cannot be opened.
+Relief read_relief(const std::string& file_and_variable, const Planet& planet,
+                   MissingCells missing = MissingCells::refused);
 /// The same for any other field that is given as a raster (`elevation_m` then holds its values in
 /// the units of the vocabulary, or of the file where those are empty). Without VARIABLE the one
 /// named as the field, else the only raster.

@@ -86,6 +86,8 @@ class RunSession {
   void begin_with_bare_planet();
   void read_initial_relief();
   void read_given_fields();
+  void read_given_exemplars();
+  [[nodiscard]] bool makes_exemplars() const;
   [[nodiscard]] Hypsography hypsography() const;
   [[nodiscard]] int count_complete_stages() const;
   [[nodiscard]] bool is_complete(int position) const;
@@ -119,6 +121,7 @@ class RunSession {
   std::string config_;
   std::string note_;  // why a stage of the pipeline is left out
   std::optional<State> state_;
+  std::shared_ptr<const ExemplarLibrary> exemplars_;
 };
 
 }  // namespace geo::io

@@ -33,6 +33,7 @@ struct RunSettings {
   std::string hypsography_ocean = "planet";
   std::string ranking;  ///< FILE[:VARIABLE]
   std::string start_frame;
+  std::string exemplars;  ///< folder
 
   bool vtk = true;
   bool globe = false;
