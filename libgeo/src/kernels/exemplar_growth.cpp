@@ -31,7 +31,7 @@ Recipe recipe_of(Terrain terrain) {
     case Terrain::andean:
       return {1.0e-3, 4.0e-6, 0.02, 150e3, 0.02, 0.30, 0.40, 1.0, 0.35, 0.30, 7.0};
     case Terrain::himalayan:
-      return {2.0e-3, 5.0e-6, 0.03, 100e3, 0.0, 0.20, 0.75, 1.0, 0.30, 0.25, 6.0};
+      return {2.0e-3, 5.0e-6, 0.03, 100e3, 0.0, 0.20, 0.75, 1.0, 0.35, 0.35, 7.0};
     case Terrain::old_mountains:
       return {4.0e-5, 4.0e-7, 0.02, 2e6, 0.0, 0.15, 0.85, 1.0, 0.10, 0.70, 8.0};
     case Terrain::plain:

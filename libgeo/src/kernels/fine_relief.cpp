@@ -91,6 +91,27 @@ void local_roughness(const PlanetCells& cells, std::span<const float> planet_ele
   }
 }
 
+void land_dissection(const PlanetCells& cells, std::span<const float> planet_elevation_m,
+                     double spacing_m, const DissectionLaw& law, std::span<float> covered) {
+  const Grid& planet = cells.planet();
+  std::vector<float> z(planet_elevation_m.begin(), planet_elevation_m.end());
+  for (float& height_m : z) height_m = std::max(0.0F, height_m);
+  local_roughness(cells, z, covered);
+#pragma omp parallel for schedule(static)
+  for (int j = cells.first_row(); j < cells.first_row() + cells.rows(); ++j) {
+    const auto& distance_m = planet.distances_m(j);
+    for (int i = 0; i < planet.nx(); ++i) {
+      const auto rise = [&](int k, int back) {
+        return (z[planet.neighbour(i, j, k)] - z[planet.neighbour(i, j, back)]) /
+               (distance_m[k] + distance_m[back]);
+      };
+      const double fall_m = spacing_m * std::hypot(rise(kEast, kWest), rise(kNorth, kSouth));
+      float& value = covered[cells.at(i, j)];
+      value = static_cast<float>(std::hypot(law.roughness * value, law.fall * fall_m));
+    }
+  }
+}
+
 void unit_detail(const Grid& fine, const DetailLaw& law, std::uint64_t seed,
                  std::span<float> detail) {
   const Noise noise(seed, "island.detail");

@@ -42,13 +42,25 @@ DetailLaw detail_law(const PlanetCells& cells, const IslandParameters& p) {
   return law;
 }
 
-/// Unit detail of exemplars on land and of noise in the sea. Waves that exemplars do not hold, too
-/// long for a piece of them or too short for their cells, are noise of the same law.
-void detail_like_exemplars(const PlanetCells& cells, const PlanetRelief& planet,
-                           const IslandParameters& p, const DetailLaw& law,
-                           const ExemplarLibrary& library, std::uint64_t seed,
-                           std::span<const float> planet_m, std::span<float> detail) {
-  constexpr double kShallow_m = -200.0;
+/// Standard deviation of detail at each fine cell from that of each covered planet cell.
+std::vector<float> deviation_m(const PlanetCells& cells, std::vector<float> covered,
+                               const IslandParameters& p) {
+  for (float& value : covered) {
+    value = std::max(value, static_cast<float>(p.least_roughness_m));
+  }
+  std::vector<float> fine(cells.fine().size());
+  on_cells(cells.fine(), [&](int i, int j, Index c) {
+    fine[c] =
+        static_cast<float>(p.detail_amplitude * std::max(0.0, cells.interpolate(covered, i, j)));
+  });
+  return fine;
+}
+
+/// Unit detail of exemplars. Waves that they do not hold, too long for a piece of them or too short
+/// for their cells, are noise of the same law.
+std::vector<float> exemplary_detail(const PlanetCells& cells, const PlanetRelief& planet,
+                                    const IslandParameters& p, const DetailLaw& law,
+                                    const ExemplarLibrary& library, std::uint64_t seed) {
   const Grid& fine = cells.fine();
   const ExemplarBand band = exemplar_band(library, 0.5 * law.wavelength_m, p.cell_m);
   const auto octave_of = [&](double wavelength_m) {
@@ -57,59 +69,65 @@ void detail_like_exemplars(const PlanetCells& cells, const PlanetRelief& planet,
   };
   const int first = octave_of(band.longest_m);
   const int last = std::max(first, octave_of(0.5 * band.shortest_m));
-  const auto variance = [&](int begin, int end) {
-    double sum = 0.0;
-    for (int k = begin; k < end; ++k) sum += std::exp2(-2.0 * p.detail_hurst * k);
-    return sum;
+  const auto deviation = [&](int begin, int end) {
+    const auto variance = [&](int from, int to) {
+      double sum = 0.0;
+      for (int k = from; k < to; ++k) sum += std::exp2(-2.0 * p.detail_hurst * k);
+      return sum;
+    };
+    return static_cast<float>(std::sqrt(variance(begin, end) / variance(0, law.octaves)));
   };
-  const double whole = variance(0, law.octaves);
-
-  std::vector<float> noise(fine.size()), part(fine.size());
-  unit_detail(fine, law, seed, noise);
+  std::vector<float> detail(fine.size()), part(fine.size());
   exemplar_detail(cells.planet(),
                   {planet.elevation_m, planet.orogeny_type, planet.orogeny_age_myr,
                    planet.fold_east, planet.fold_north, p.old_orogeny_myr, p.plain_slope},
                   fine, library, band, seed, detail);
-  const auto share = static_cast<float>(std::sqrt(variance(first, last) / whole));
-  for (float& value : detail) value *= share;
+  for (float& value : detail) value *= deviation(first, last);
   const auto add_octaves = [&](int begin, int end) {
     if (begin >= end) return;
     unit_detail(fine, {law.wavelength_m * std::exp2(-begin), end - begin, law.gain}, seed, part);
-    const auto factor = static_cast<float>(std::sqrt(variance(begin, end) / whole));
+    const float factor = deviation(begin, end);
     for (std::size_t c = 0; c < detail.size(); ++c) detail[c] += factor * part[c];
   };
   add_octaves(0, first);
   add_octaves(last, law.octaves);
-  on_cells(fine, [&](int, int, Index c) {
-    const double land = smooth_step(kShallow_m, 0.0, static_cast<double>(planet_m[c]));
-    detail[c] = static_cast<float>(std::sqrt(land) * detail[c] + std::sqrt(1.0 - land) * noise[c]);
+  return detail;
+}
+
+/// Takes the mean of detail over each planet cell out and adds what is left.
+void add_centred(const PlanetCells& cells, std::span<const float> detail, std::span<float> z) {
+  const std::vector<float> mean = cells.means(detail, {}, 0.0F);
+  on_cells(cells.fine(), [&](int i, int j, Index c) {
+    const double centred = detail[c] - cells.interpolate(mean, i, j);
+    z[c] += static_cast<float>(edge_ramp(cells.fine(), i, j, seam_m(cells)) * centred);
   });
 }
 
-/// Detail that continues the planet's roughness, its mean over each planet cell taken out.
-void add_rough_detail(const PlanetCells& cells, const PlanetRelief& planet,
-                      const IslandParameters& p, const ExemplarLibrary* exemplars,
-                      std::uint64_t seed, std::span<float> z) {
-  const Grid& fine = cells.fine();
-  const DetailLaw law = detail_law(cells, p);
-  std::vector<float> detail(fine.size()), roughness(cells.size());
-  if (exemplars != nullptr) {
-    detail_like_exemplars(cells, planet, p, law, *exemplars, seed, z, detail);
-  } else {
-    unit_detail(fine, law, seed, detail);
-  }
-  local_roughness(cells, planet.elevation_m, roughness);
-  for (float& rough_m : roughness) {
-    rough_m = std::max(rough_m, static_cast<float>(p.least_roughness_m));
-  }
-  on_cells(fine, [&](int i, int j, Index c) {
-    const double rough_m = std::max(0.0, cells.interpolate(roughness, i, j));
-    detail[c] *= static_cast<float>(p.detail_amplitude * rough_m);
-  });
-  const std::vector<float> mean = cells.means(detail, {}, 0.0F);
-  on_cells(fine, [&](int i, int j, Index c) {
-    const double centred = detail[c] - cells.interpolate(mean, i, j);
-    z[c] += static_cast<float>(edge_ramp(fine, i, j, seam_m(cells)) * centred);
+/// Detail that continues the planet's roughness.
+std::vector<float> rough_detail(const PlanetCells& cells, const PlanetRelief& planet,
+                                const IslandParameters& p, const DetailLaw& law,
+                                std::uint64_t seed) {
+  std::vector<float> detail(cells.fine().size()), covered(cells.size());
+  unit_detail(cells.fine(), law, seed, detail);
+  local_roughness(cells, planet.elevation_m, covered);
+  const auto scale_m = deviation_m(cells, std::move(covered), p);
+  for (std::size_t c = 0; c < detail.size(); ++c) detail[c] *= scale_m[c];
+  return detail;
+}
+
+/// Makes detail on land that of exemplars.
+void take_exemplars(const PlanetCells& cells, const PlanetRelief& planet, const IslandParameters& p,
+                    const DetailLaw& law, const ExemplarLibrary& library, std::uint64_t seed,
+                    std::span<const float> planet_m, std::span<float> detail) {
+  constexpr double kShallow_m = -200.0;
+  const std::vector<float> exemplary = exemplary_detail(cells, planet, p, law, library, seed);
+  std::vector<float> covered(cells.size());
+  land_dissection(cells, planet.elevation_m, 0.5 * law.wavelength_m, {}, covered);
+  const auto scale_m = deviation_m(cells, std::move(covered), p);
+  on_cells(cells.fine(), [&](int, int, Index c) {
+    const double land = smooth_step(kShallow_m, 0.0, static_cast<double>(planet_m[c]));
+    detail[c] = static_cast<float>(std::sqrt(land) * scale_m[c] * exemplary[c] +
+                                   std::sqrt(1.0 - land) * detail[c]);
   });
 }
 
@@ -203,7 +221,12 @@ void raise_island(const PlanetCells& cells, const PlanetRelief& planet, const Is
   if (p.detail == "height") {
     add_height_detail(cells, p, seed, elevation_m);
   } else {
-    add_rough_detail(cells, planet, p, exemplars, seed, elevation_m);
+    const DetailLaw law = detail_law(cells, p);
+    std::vector<float> detail = rough_detail(cells, planet, p, law, seed);
+    if (exemplars != nullptr) {
+      take_exemplars(cells, planet, p, law, *exemplars, seed, planet_m, detail);
+    }
+    add_centred(cells, detail, elevation_m);
   }
   dry_inland_dips(cells, planet.elevation_m, elevation_m);
   if (p.edge_fade) sink_edges(cells.fine(), p, seed, elevation_m);
