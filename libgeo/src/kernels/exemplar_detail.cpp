@@ -159,10 +159,81 @@ int times_coarser(const Exemplar& e, double fine_cell_m) {
   return std::max(1, static_cast<int>(fine_cell_m / e.cell_m + 0.05));
 }
 
+double deviation_of(std::span<const float> values) {
+  double sum = 0.0, squares = 0.0;
+  for (const float value : values) {
+    sum += value;
+    squares += static_cast<double>(value) * value;
+  }
+  const auto count = static_cast<double>(values.size());
+  return std::sqrt(std::max(1e-30, squares / count - sum * sum / (count * count)));
+}
+
+/// The octaves of a relief from the longest wave of the band to what its cells show, each the
+/// difference of two Gaussian blurs; a blur halves the power of waves of four deviations.
+std::vector<std::vector<float>> octaves_of(const Grid& grid, std::span<const float> z,
+                                           double longest_m) {
+  const double shortest_m = 2.5 * grid.spacing_east_m(0);
+  std::vector<std::vector<float>> octaves;
+  std::vector<float> low(z.begin(), z.end());
+  smooth(grid, std::span<float>(low), 0.25 * longest_m);
+  for (double wave_m = 0.5 * longest_m; !low.empty(); wave_m *= 0.5) {
+    std::vector<float> higher(z.begin(), z.end());
+    const bool last = wave_m < shortest_m;
+    if (!last) smooth(grid, std::span<float>(higher), 0.25 * wave_m);
+    std::vector<float> octave(z.size());
+    for (std::size_t c = 0; c < z.size(); ++c) octave[c] = higher[c] - low[c];
+    octaves.push_back(std::move(octave));
+    low = last ? std::vector<float>{} : std::move(higher);
+  }
+  return octaves;
+}
+
+/// Sum of octaves whose deviations fall with the Hurst exponent.
+std::vector<float> self_affine(const std::vector<std::vector<float>>& octaves, double hurst) {
+  constexpr double kMost = 4.0;
+  std::vector<double> excess;  // logarithms
+  double mean = 0.0;
+  for (std::size_t k = 0; k < octaves.size(); ++k) {
+    excess.push_back(std::log(deviation_of(octaves[k])) +
+                     hurst * static_cast<double>(k) * std::numbers::ln2);
+    mean += excess.back() / static_cast<double>(octaves.size());
+  }
+  std::vector<float> sum(octaves.front().size());
+  for (std::size_t k = 0; k < octaves.size(); ++k) {
+    const auto factor =
+        static_cast<float>(std::clamp(std::exp(mean - excess[k]), 1.0 / kMost, kMost));
+    for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += factor * octaves[k][c];
+  }
+  return sum;
+}
+
+/// Forelands are not to leave holes in mountains: most of the variance is evened out.
+void even_out(const Grid& grid, double longest_m, std::vector<float>& z) {
+  constexpr double kEven = 0.75;
+  const double variance = std::pow(deviation_of(z), 2.0);
+  std::vector<float> local(z.size());
+  for (std::size_t c = 0; c < z.size(); ++c) local[c] = z[c] * z[c];
+  smooth(grid, std::span<float>(local), 0.4 * longest_m);
+  double sum = 0.0;
+  for (std::size_t c = 0; c < z.size(); ++c) {
+    const double around = (1.0 - kEven) * variance + kEven * std::max(0.0F, local[c]);
+    z[c] = static_cast<float>(z[c] / std::sqrt(around));
+    sum += z[c];
+  }
+  const double mean = sum / static_cast<double>(z.size()), deviation = deviation_of(z);
+  for (float& value : z) value = static_cast<float>((value - mean) / deviation);
+}
+
 Texture texture_of(const Exemplar& exemplar, const ExemplarBand& band, double fine_cell_m) {
   const int times = times_coarser(exemplar, fine_cell_m);
   const Exemplar e = times > 1 ? coarser(exemplar, times) : exemplar;
   const Grid grid = e.grid();
+  const auto octaves = octaves_of(grid, e.elevation_m, band.longest_m);
+  std::vector<float> all(e.elevation_m.size());
+  for (const auto& octave : octaves) {
+    for (std::size_t c = 0; c < all.size(); ++c) all[c] += octave[c];
+  }
   Texture texture{e.terrain,
                   e.nx,
                   e.ny,
@@ -170,37 +241,9 @@ Texture texture_of(const Exemplar& exemplar, const ExemplarBand& band, double fi
                   e.periodic,
                   std::cos(e.fold_rad),
                   std::sin(e.fold_rad),
-                  0.0,
-                  e.elevation_m};
-  std::vector<float>& z = texture.values;
-  // A Gaussian high pass halves the power of waves of four deviations.
-  std::vector<float> low = z;
-  smooth(grid, std::span<float>(low), 0.25 * band.longest_m);
-  double squares = 0.0;
-  for (std::size_t c = 0; c < z.size(); ++c) {
-    z[c] -= low[c];
-    squares += static_cast<double>(z[c]) * z[c];
-  }
-  const double variance = squares / static_cast<double>(z.size());
-  texture.roughness_m = std::sqrt(variance);
-  // Forelands are not to leave holes in mountains: three quarters of the variance evened out.
-  constexpr double kEven = 0.75;
-  for (std::size_t c = 0; c < z.size(); ++c) low[c] = z[c] * z[c];
-  smooth(grid, std::span<float>(low), 0.4 * band.longest_m);
-  for (std::size_t c = 0; c < z.size(); ++c) {
-    const double local = (1.0 - kEven) * variance + kEven * std::max(0.0F, low[c]);
-    z[c] = static_cast<float>(z[c] / std::sqrt(local));
-  }
-  double sum = 0.0;
-  squares = 0.0;
-  for (const float value : z) {
-    sum += value;
-    squares += static_cast<double>(value) * value;
-  }
-  const auto count = static_cast<double>(z.size());
-  const double mean = sum / count;
-  const double deviation = std::sqrt(std::max(1e-30, squares / count - mean * mean));
-  for (float& value : z) value = static_cast<float>((value - mean) / deviation);
+                  deviation_of(all),
+                  self_affine(octaves, band.hurst)};
+  even_out(grid, band.longest_m, texture.values);
   return texture;
 }
 
@@ -374,9 +417,10 @@ LocalTerrain look_around(const Grid& planet, const TerrainGuide& guide, const Ve
   return local;
 }
 
-ExemplarBand exemplar_band(const ExemplarLibrary& library, double spacing_m, double fine_cell_m) {
+ExemplarBand exemplar_band(const ExemplarLibrary& library, double spacing_m, double fine_cell_m,
+                           double hurst) {
   if (library.exemplars.empty()) throw InputError("there is no exemplar");
-  ExemplarBand band{spacing_m, 0.0, 0.0};
+  ExemplarBand band{spacing_m, 0.0, 0.0, hurst};
   for (const Exemplar& e : library.exemplars) {
     band.shortest_m = std::max(band.shortest_m, 2.0 * e.cell_m * times_coarser(e, fine_cell_m));
   }

@@ -62,7 +62,8 @@ std::vector<float> exemplary_detail(const PlanetCells& cells, const PlanetRelief
                                     const IslandParameters& p, const DetailLaw& law,
                                     const ExemplarLibrary& library, std::uint64_t seed) {
   const Grid& fine = cells.fine();
-  const ExemplarBand band = exemplar_band(library, 0.5 * law.wavelength_m, p.cell_m);
+  const ExemplarBand band =
+      exemplar_band(library, 0.5 * law.wavelength_m, p.cell_m, p.detail_hurst);
   const auto octave_of = [&](double wavelength_m) {
     const double octave = std::log2(law.wavelength_m / wavelength_m);
     return std::clamp(static_cast<int>(std::lround(octave)), 0, law.octaves);

@@ -35,12 +35,13 @@ struct LocalTerrain {
 /// Wavelengths that detail made of exemplars holds.
 struct ExemplarBand {
   double spacing_m = 10e3;    ///< of the planet's cells, whose own relief ends at about twice that
-  double longest_m = 20e3;    ///< out: of the exemplars' waves
-  double shortest_m = 600.0;  ///< out: what their cells can show
+  double longest_m = 20e3;    ///< of the exemplars' waves
+  double shortest_m = 600.0;  ///< what their cells can show
+  double hurst = 0.75;        ///< amplitudes of waves go with this power of their length
 };
 /// Settles the band of a library for cells of `fine_cell_m`.
 [[nodiscard]] ExemplarBand exemplar_band(const ExemplarLibrary& library, double spacing_m,
-                                         double fine_cell_m);
+                                         double fine_cell_m, double hurst = 0.75);
 
 /// Relief of zero mean and unit variance, as exemplars have it below the planet's cells.
 ///
@@ -49,7 +50,9 @@ struct ExemplarBand {
 /// what the planet says at its centre, an exemplar of that terrain (likelier the more its roughness
 /// is like the planet's), a piece of it, and a mirror image or not; and is turned so that its folds
 /// run along those of the place (Cortial et al. 2019, section 5). Exemplars come high-passed, in
-/// wavelengths below 2.5 planet cells, and evened out to one variance. Blended as
+/// wavelengths below 2.5 planet cells; each octave of them as strong as its neighbours and the
+/// Hurst exponent ask, by a factor of 4 at most, so that the spectrum has neither gap nor hump; and
+/// evened out to one variance. Blended as
 ///   sum_k w_k e_k / sqrt(sum_k w_k^2),  w = (1 - r^2 / R^2)^2 exp(-4 r^2 / d^2)
 /// (r the distance from a primitive, d the distance between primitives, R = 1.5 d), which keeps the
 /// variance that a weighted mean would lose (Heitz & Neyret 2018).
