@@ -91,10 +91,12 @@ TEST(Exemplar, OnesThatNothingCanBeMadeLikeAreRefused) {
   for (std::size_t c = 0; c < hole.size(); ++c) hole[c] = static_cast<float>(c);
   Exemplar sound{.name = "sound", .nx = 64, .ny = 64, .cell_m = 100.0, .elevation_m = hole};
   EXPECT_NO_THROW(measure_exemplar(sound));
+  const std::vector<float> slope = hole;
   hole[99] = std::nanf("");
   refused({.name = "level", .nx = 64, .ny = 64, .cell_m = 100.0, .elevation_m = level});
   refused({.name = "hole", .nx = 64, .ny = 64, .cell_m = 100.0, .elevation_m = hole});
   refused({.name = "small", .nx = 16, .ny = 256, .cell_m = 100.0, .elevation_m = hole});
+  refused({.name = "vast", .nx = 64, .ny = 64, .cell_m = 100e3, .elevation_m = slope});
   refused({.name = "no size", .nx = 64, .ny = 64, .cell_m = 0.0, .elevation_m = hole});
 }
 
@@ -155,7 +157,13 @@ TEST(ExemplarDetail, WithoutGivenFoldsRidgesFollowThePlanetsRelief) {
         static_cast<float>(2000.0 + 1000.0 * std::sin(2.0 * (at.latitude_deg + at.longitude_deg)));
   }
   const std::array<double, 3> unit{1.0, 0.0, 0.0};  // on the equator
-  const LocalTerrain local = look_around(planet, {.elevation_m = z}, unit, 55e3);
+  const LocalTerrain local = look_around(planet,
+                                         {.elevation_m = z,
+                                          .orogeny_type = {},
+                                          .orogeny_age_myr = {},
+                                          .fold_east = {},
+                                          .fold_north = {}},
+                                         unit, 55e3);
   EXPECT_LT(apart(local.fold_rad, -0.25 * kPi), 0.05);
   EXPECT_NEAR(local.share[static_cast<std::size_t>(Terrain::old_mountains)], 1.0, 1e-9);
 }

@@ -87,6 +87,11 @@ void measure_exemplar(Exemplar& e, std::optional<Terrain> terrain) {
   if (!(e.cell_m > 0.0) || !std::isfinite(e.cell_m)) {
     throw InputError(fmt::format("cells of {:g} m: must be more than 0", e.cell_m));
   }
+  constexpr double kMost_m = 2000e3;
+  if (std::max(e.nx, e.ny) * e.cell_m > kMost_m) {
+    throw InputError(fmt::format("reaches over {:.0f} km: an exemplar reaches {:.0f} km at most",
+                                 1e-3 * std::max(e.nx, e.ny) * e.cell_m, 1e-3 * kMost_m));
+  }
   for (std::size_t c = 0; c < e.elevation_m.size(); ++c) {
     if (std::isfinite(e.elevation_m[c])) continue;
     throw InputError(fmt::format("row {}, column {} holds no elevation", c / e.nx, c % e.nx));

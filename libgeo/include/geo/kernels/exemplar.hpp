@@ -51,7 +51,8 @@ struct ExemplarLibrary {
 /// Fills what is measured: the fold direction of the relief smoothed over 3 % of its shorter side,
 /// the range of elevations and the local relief. With no `terrain` that of its local relief:
 /// himalayan from 1500 m, andean from 600 m, old mountains from 150 m. Throws InputError when it
-/// has fewer than 32 cells a side, cells of no size, heights that are no numbers, or no relief.
+/// has fewer than 32 cells a side, cells of no size, more than 2000 km, heights that are no numbers,
+/// or no relief.
 void measure_exemplar(Exemplar& exemplar, std::optional<Terrain> terrain = {});
 
 /// A library grown with the kernel that wears continents down: for each terrain, stream power and
