@@ -100,6 +100,8 @@ void run_program(int argc, char** argv) {
   terrane::add_info_command(program, action);
   terrane::add_presets_command(program, action);
   program.allow_extras();
+  // One: what follows it is a stage, a folder or a file, whatever its name.
+  program.require_subcommand(0, 1);
   for (CLI::App* command : program.get_subcommands({})) {
     command->allow_extras();
     command->set_help_flag("-h,--help", "This help");

@@ -12,7 +12,7 @@ namespace geo::calibration {
 /// between.
 struct Settings {
   std::string free =
-      "isostasy.collision_km, isostasy.lithosphere, isostasy.swell_m, isostasy.margin_tilt_m, "
+      "isostasy.ocean_depth_m, isostasy.collision_km, isostasy.swell_m, isostasy.margin_tilt_m, "
       "isostasy.ocean_swell_m, erosion.erodibility_factor";
   std::string bounds, priors, terms;
   std::string seeds = "1-8";

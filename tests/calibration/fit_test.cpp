@@ -14,7 +14,7 @@ namespace geo::calibration {
 namespace {
 
 const std::vector<std::pair<std::string, double>> kTruth{
-    {"isostasy.collision_km", 16.0},   {"isostasy.lithosphere", 1.15},
+    {"isostasy.collision_km", 16.0},   {"isostasy.ocean_depth_m", 3500.0},
     {"isostasy.swell_m", 360.0},       {"isostasy.margin_tilt_m", 800.0},
     {"isostasy.ocean_swell_m", 380.0}, {"isostasy.trench_depth_m", 2400.0}};
 
@@ -116,6 +116,24 @@ TEST(Fit, GivesTheSameBitsForAnyNumberOfThreads) {
   }
   omp_set_num_threads(before);
   EXPECT_EQ(x[0], x[1]);
+}
+
+TEST(Fit, RecordsTheDistanceOfTheBestPlaceNotOfTheLastTried) {
+  Twin twin;
+  for (const auto& [name, value] : kTruth) twin.set(name, 1.15 * value);
+  Problem problem(twin.run.parameters, twin.run.settings, twin.run.earth());
+  Objective objective(problem, twin.run.parameters, twin.seeds, 96, 48);
+  Objective judge(problem, twin.run.parameters, twin.seeds, 96, 48);
+  FitState state;
+  state.x = problem.present();
+  int rejected = 0;
+  fit(objective, problem, {12, 1e-4}, state, [&](const FitState& now, const Iteration& record) {
+    rejected += record.accepted ? 0 : 1;
+    const double cost = 0.5 * judge.route(now.x).squaredNorm();
+    EXPECT_EQ(record.cost, cost) << "iteration " << record.number;
+    EXPECT_EQ(record.wasserstein_m, judge.distance_m()) << "iteration " << record.number;
+  });
+  EXPECT_GT(rejected, 0);
 }
 
 TEST(Fit, WarnsInWordsOfWhatTheTargetDoesNotTell) {

@@ -49,6 +49,20 @@ TEST_F(CalibrationReport, LeavesItsFilesAndNothingElse) {
                                           "hypsometry.png", "report.html"));
 }
 
+TEST_F(CalibrationReport, GoesWithTheStateOfItsFitAndNothingElse) {
+  write(result_);
+  for (const std::string name : {std::string(kStateFile), std::string("notes.txt")}) {
+    std::ofstream(folder_ / name) << "{}";
+  }
+  remove_results(folder_.path());
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
+    names.insert(entry.path().filename());
+  }
+  EXPECT_THAT(names, testing::ElementsAre("notes.txt"));
+  EXPECT_NO_THROW(remove_results(folder_.path()));
+}
+
 TEST_F(CalibrationReport, JsonHoldsEveryFigure) {
   write(result_);
   const auto json = nlohmann::json::parse(text_of("calibration.json"));
@@ -79,6 +93,7 @@ TEST_F(CalibrationReport, JsonHoldsEveryFigure) {
   EXPECT_EQ(json["directions"][2]["weights"][1], 0.79);
   EXPECT_EQ(json["profiles"][0]["cost"][2], 40.1);
   EXPECT_EQ(json["starts"][2]["converged"], false);
+  EXPECT_EQ(json["starts"][2]["ending"], "9 iterations did not suffice");
   EXPECT_EQ(json["hypsometry"]["target_m"].size(), 64U);
   EXPECT_EQ(json["program"]["version"], io::build_info().version);
   EXPECT_TRUE(json["program"]["libraries"].contains("netCDF"));

@@ -49,8 +49,12 @@ inline void add_iterations(Result& result) {
                                    4.2,
                                    {38.0, 1.2, 0.05}});
     }
-    result.starts.push_back(
-        {{30.0 + 5.0 * start, 1.22, 0.1}, {38.2, 1.219, 0.0512}, cost, start < 2, 9});
+    result.starts.push_back({{30.0 + 5.0 * start, 1.22, 0.1},
+                             {38.2, 1.219, 0.0512},
+                             cost,
+                             start < 2,
+                             9,
+                             start < 2 ? "the target is met" : "9 iterations did not suffice"});
   }
 }
 

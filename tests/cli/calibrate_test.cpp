@@ -24,7 +24,7 @@ const Words kSmall{"--set", "calibration.grid=64x32",
                    "--set", "calibration.held_out_grid=",
                    "--set", "erosion.steps=2",
                    "--set", "calibration.iterations=3",
-                   "--set", "calibration.free=isostasy.lithosphere, isostasy.ocean_swell_m"};
+                   "--set", "calibration.free=isostasy.ocean_depth_m, isostasy.ocean_swell_m"};
 
 class Calibrate : public testing::Test {
  protected:
@@ -57,7 +57,7 @@ class Calibrate : public testing::Test {
 TEST_F(Calibrate, WritesWhatARunTakes) {
   const Outcome outcome = calibrate({});
   ASSERT_TRUE(outcome.code == 0 || outcome.code == 5) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("isostasy.lithosphere = "));
+  EXPECT_THAT(outcome.out, HasSubstr("isostasy.ocean_depth_m = "));
   for (const char* name :
        {"calibration.json", "fitted.toml", "hypsometry.csv", "hypsometry.png", "report.html"}) {
     EXPECT_TRUE(fs::exists(out_ / name)) << name;
@@ -115,7 +115,7 @@ TEST_F(Calibrate, RefusesWhatCannotBeFitted) {
   expect_refusal({"--set=calibration.held_out=2"}, 2, {"must not be one of calibration.seeds"});
   expect_refusal({"--set=calibration.priors=isostasy.swell_m = 1 +- 1"}, 2, {"calibration.free"});
   expect_refusal({"--set=calibration.terms=height = 1 +- 1"}, 2, {"land_fraction"});
-  expect_refusal({"--set=calibration.bounds=isostasy.lithosphere = 2 .. 3"}, 2, {"its start"});
+  expect_refusal({"--set=calibration.bounds=isostasy.ocean_depth_m = 5000 .. 6000"}, 2, {"its start"});
   expect_refusal({"--resume"}, 2, {"no calibration to go on with"});
   expect_refusal({}, 3, {"no such file"}, "mars");
   EXPECT_EQ(terrane({"calibrate", "-o", out_.string()}).code, 2);

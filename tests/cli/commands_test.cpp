@@ -72,6 +72,12 @@ TEST(Params, OfOneStageAreItsOwn) {
   }
 }
 
+TEST(Params, OfAStageWithTheNameOfACommandAreItsOwn) {
+  const auto json = nlohmann::json::parse(told_by({"params", "island", "--format", "json"}));
+  ASSERT_FALSE(json.empty());
+  EXPECT_THAT(json.front().at("name").get<std::string>(), StartsWith("island."));
+}
+
 TEST(Params, AsTomlRunAsTheyAre) {
   const TemporaryFolder folder;
   ReliefFile{}.write(folder / "relief.nc");
@@ -174,6 +180,92 @@ TEST_F(FinishedRun, MapsAreDrawnAgain) {
   for (const std::string& file : drawn) EXPECT_TRUE(fs::exists(file)) << file;
   for (const auto& [name, bytes] : before)
     EXPECT_TRUE(text_of(run_ / name) == bytes || bytes == "(folder)") << name;
+}
+
+TEST_F(FinishedRun, EveryFieldOfEveryStageIsDrawn) {
+  for (const auto& stage : manifest_of(run_).at("stages")) {
+    std::vector<std::string> arguments{"maps", run_,      "--width",
+                                       "300",  "--stage", stage.at("name").get<std::string>()};
+    for (const auto& [name, field] : stage.at("fields").items()) {
+      arguments.insert(arguments.end(), {"--field", name});
+    }
+    const auto drawn = lines_of(told_by(arguments));
+    ASSERT_EQ(drawn.size(), stage.at("fields").size());
+    for (const std::string& file : drawn) {
+      EXPECT_THAT(file, StartsWith((run_ / "maps/fields").string()));
+      EXPECT_GT(fs::file_size(file), 2000U) << file;
+    }
+  }
+}
+
+TEST_F(FinishedRun, OtherViewsLieBesideThePicturesOfTheRun) {
+  told_by({"maps", run_, "--width", "300"});
+  const auto before = contents_of(run_);
+  const auto drawn = lines_of(told_by(
+      {"maps", run_, "--projection", "orthographic", "--center", "-40,170", "--width", "300"}));
+  EXPECT_THAT(drawn, Contains((run_ / "maps/orthographic/elevation.png").string()));
+  const auto window =
+      lines_of(told_by({"maps", run_, "--bbox", "160,-60,-150,-10", "--width", "300"}));
+  EXPECT_THAT(window, Contains((run_ / "maps/window/elevation.png").string()));
+  const auto elsewhere = lines_of(told_by({"maps", run_, "--field", "slope", "--projection",
+                                           "mollweide", "--width", "300", "-o", folder_ / "x"}));
+  EXPECT_THAT(elsewhere, testing::ElementsAre((folder_ / "x/slope.png").string()));
+  for (const auto& [name, bytes] : before) {
+    EXPECT_TRUE(bytes == "(folder)" || text_of(run_ / name) == bytes) << name;
+  }
+}
+
+TEST_F(FinishedRun, AFieldIsThatOfTheLastStageOrOfTheOneNamed) {
+  const auto draw = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"maps", run_, "--field", "elevation", "--width", "900"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return text_of(lines_of(told_by(arguments)).at(0));
+  };
+  // The upper right corner says which stage it is.
+  const std::string last = draw({});
+  EXPECT_TRUE(last == draw({"--stage", "hydrology"}));
+  EXPECT_FALSE(last == draw({"--stage", "erosion"}));
+  EXPECT_FALSE(last == draw({"--stage", "island"}));
+}
+
+TEST_F(FinishedRun, WhatMapsCannotDrawIsSaidInOneLine) {
+  const auto refusal = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"maps", run_};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const auto before = contents_of(run_);
+    const Outcome outcome = terrane(arguments);
+    EXPECT_EQ(outcome.code, 2) << outcome.err;
+    EXPECT_EQ(lines_of(outcome.err).size(), 1U) << outcome.err;
+    EXPECT_TRUE(contents_of(run_) == before);
+    return outcome.err;
+  };
+  EXPECT_THAT(refusal({"--field", "elevatoin"}), HasSubstr("perhaps elevation"));
+  EXPECT_THAT(refusal({"--field", "precipitation", "--stage", "erosion"}),
+              HasSubstr("stage erosion"));
+  EXPECT_THAT(refusal({"--field", "slope", "--stage", "hydrolgy"}), HasSubstr("perhaps hydrology"));
+  EXPECT_THAT(refusal({"--stage", "hydrology"}), HasSubstr("--field"));
+  EXPECT_THAT(refusal({"--projection", "molweide"}), HasSubstr("perhaps mollweide"));
+  EXPECT_THAT(refusal({"--projection", "robinson", "--center", "10,20"}), HasSubstr("equator"));
+  EXPECT_THAT(refusal({"--center", "10"}), HasSubstr("--center 10"));
+  EXPECT_THAT(refusal({"--bbox", "0,10,20"}), HasSubstr("--bbox 0,10,20"));
+  EXPECT_THAT(refusal({"--field", "elevation", "--stage", "island", "--projection", "robinson"}),
+              HasSubstr("as it lies"));
+}
+
+TEST(MapsOfARun, HaveTheProjectionOfTheConfiguration) {
+  const TemporaryFolder folder;
+  ReliefFile{}.write(folder / "relief.nc");
+  auto arguments = quick_run(folder / "relief.nc", folder / "out",
+                             {"--set", "output.map_projection=mollweide", "--set",
+                              "output.map_center=0,90", "--set", "output.map_width_px=300"});
+  std::erase(arguments, "--no-maps");
+  ASSERT_EQ(terrane(arguments).code, 0);
+  const std::string run = text_of(folder / "out/maps/elevation.png");
+  told_by({"maps", folder / "out", "--projection", "mollweide", "--center", "0,90", "-o",
+           folder / "again"});
+  EXPECT_TRUE(text_of(folder / "again/elevation.png") == run);
+  told_by({"maps", folder / "out", "--projection", "mollweide", "-o", folder / "centred"});
+  EXPECT_FALSE(text_of(folder / "centred/elevation.png") == run);
 }
 
 }  // namespace

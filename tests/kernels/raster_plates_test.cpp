@@ -248,6 +248,46 @@ TEST(RasterPlates, SmallOverlapsMergeContinentsAndLargeOnesDoNot) {
   EXPECT_EQ(mergers(10.0), 0);
 }
 
+TEST(RasterPlates, AMergerHandsItsMomentumOn) {
+  RasterSettings settings = small();
+  settings.friction = 0.0;
+  settings.erosion = 0.0;
+  settings.cycles = 1;
+  settings.overlap_relative = 0.05;
+  int checked = 0;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    RasterTectonics model(settings, seed);
+    for (bool goes_on = true; goes_on;) {
+      const std::vector<RasterPlate> before = model.plates();
+      const RasterBudget books = model.budget();
+      goes_on = model.advance();
+      const auto& plates = model.plates();
+      const int mergers = model.budget().mergers - books.mergers;
+      const double moved = model.budget().merged - books.merged;
+      // New floor, on any plate, comes after a merger.
+      const double floor = model.budget().created - books.created;
+      for (std::size_t p = 0; p < plates.size(); ++p) {
+        const double east = plates[p].east - before[p].east,
+                     north = plates[p].north - before[p].north;
+        if (mergers == 0) EXPECT_EQ(std::hypot(east, north), 0.0) << "seed " << seed;
+        if (mergers != 1 || std::hypot(east, north) == 0.0) continue;
+        double missing = std::numeric_limits<double>::infinity();
+        for (std::size_t from = 0; from < plates.size(); ++from) {
+          if (from == p) continue;
+          missing = std::min(
+              missing,
+              std::hypot(plates[p].mass * east - moved * (before[from].east - before[p].east),
+                         plates[p].mass * north - moved * (before[from].north - before[p].north)));
+        }
+        EXPECT_LE(missing, (floor + 1e-6 * plates[p].mass) * std::hypot(east, north))
+            << "seed " << seed << ", plate " << p;
+        ++checked;
+      }
+    }
+  }
+  EXPECT_GT(checked, 3);
+}
+
 TEST(RasterPlates, MountainsRiseWhereContinentsMeet) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     RasterTectonics model(small(), seed);

@@ -95,7 +95,7 @@ TEST(Isostasy, ContinentsSettleUntilTheSeaIsAsDeepAsAsked) {
 
 TEST(Isostasy, ASettledContinentIsAsThickAsItsHeightAsks) {
   IsostasyParameters free, settled;
-  settled.ocean_depth_m = 3690.0;
+  free.ocean_depth_m = 0.0;
   const Planetary before = planet(256, 2, free), after = planet(256, 2, settled);
   const double rise_m = after.budget.at("continental_rise_m");
   ASSERT_GT(std::abs(rise_m), 10.0);
@@ -112,10 +112,30 @@ TEST(Isostasy, ASettledContinentIsAsThickAsItsHeightAsks) {
 
 TEST(Isostasy, ASmallSeaSettlesNoContinents) {
   // It lies on ocean floor alone: how deep it is does not depend on continents.
-  IsostasyParameters parameters;
-  parameters.ocean_depth_m = 3690.0;
-  const Planetary p = planet(256, 1, parameters, {.ocean_fraction = 0.4});
+  const Planetary p = planet(256, 1, {}, {.ocean_fraction = 0.4});
   EXPECT_EQ(p.budget.at("continental_rise_m"), 0.0);
+}
+
+TEST(Isostasy, QuietMarginsSlopeSteadilyFromShelfToFloor) {
+  constexpr int kParts = 5;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    const Planetary p = planet(256, seed);
+    const Grid& grid = p.state.grid();
+    const auto z = p.state.read(field::elevation), f = p.state.read(field::continental_fraction),
+               belt = p.state.read(field::convergent_deformation);
+    std::array<double, kParts> sum{}, area{};
+    for (Index c = 0; c < grid.size(); ++c) {
+      if (belt[c] > 0.01F || f[c] <= 0.0F || f[c] >= 1.0F) continue;
+      const int part = static_cast<int>(kParts * f[c]);
+      sum[part] += grid.area_m2(grid.row(c)) * z[c];
+      area[part] += grid.area_m2(grid.row(c));
+    }
+    for (int k = 0; k < kParts; ++k) {
+      const double floor_m = sum[0] / area[0], shelf_m = sum[kParts - 1] / area[kParts - 1];
+      const double even_m = floor_m + (shelf_m - floor_m) * k / (kParts - 1);
+      EXPECT_NEAR(sum[k] / area[k], even_m, 600.0) << "seed " << seed << ", part " << k;
+    }
+  }
 }
 
 TEST(Isostasy, FieldsStayInTheirRangesOnManyPlanets) {

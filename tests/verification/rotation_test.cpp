@@ -196,17 +196,6 @@ void expect_the_same_distribution(const Pair& pair) {
   }
 }
 
-/// Bands of rows that hold enough to compare, from the pole on.
-void expect_the_same_variance_by_row(const Pair& pair) {
-  for (const auto* name : kFields) {
-    for (const double from : {86.0, 80.0, 74.0, 68.0}) {
-      const Both band(pair, name, from, from + 6.0);
-      const double added = band.deviation(band.turned) / band.deviation(band.plain);
-      EXPECT_NEAR(added, 1.0, 0.15) << name << ", from latitude " << from;
-    }
-  }
-}
-
 void expect_the_same_slopes(const Pair& pair) {
   for (const auto* name : kFields) {
     const Grid& frame = *pair.turned.grid;
@@ -226,7 +215,27 @@ TEST(TurnedPlanet, LooksTheSameWithAContinentOnThePole) {
     expect_the_same_land(pair);
     expect_the_same_distribution(pair);
     expect_the_same_slopes(pair);
-    expect_the_same_variance_by_row(pair);
+  }
+}
+
+// A band next to the pole holds a river or two of a planet: only the mean over planets tells what
+// rows do from what these rivers happen to.
+TEST(TurnedPlanet, IsAsRoughInTheRowsNextToThePole) {
+  constexpr int kSeeds = 6;
+  std::map<std::string, std::map<double, double>> added;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const Pair pair = planets(seed);
+    for (const auto* name : kFields) {
+      for (const double from : {86.0, 80.0, 74.0, 68.0}) {
+        const Both band(pair, name, from, from + 6.0);
+        added[name][from] += band.deviation(band.turned) / band.deviation(band.plain) / kSeeds;
+      }
+    }
+  }
+  for (const auto& [name, of_band] : added) {
+    for (const auto& [from, ratio] : of_band) {
+      EXPECT_NEAR(ratio, 1.0, 0.08) << name << ", from latitude " << from;
+    }
   }
 }
 

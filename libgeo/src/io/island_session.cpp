@@ -160,7 +160,7 @@ std::string IslandSession::execute(const RunEvents& events) {
   write_manifest(folder_.manifest(), manifest_);
   if (settings_.vtk) write_collection_files(folder_, manifest_);
   if (events.stage_ends) events.stage_ends(name, seconds);
-  if (settings_.maps) draw_run(folder_, static_cast<int>(settings_.map_width_px), name);
+  if (settings_.maps) draw_run(folder_, settings_.map_view(), name);
   return name;
 }
 

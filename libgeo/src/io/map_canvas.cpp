@@ -21,16 +21,9 @@ Canvas::Canvas(int width_px, int height_px)
   colour({1, 1, 1});
   cairo_paint(pen());
   cairo_surface_flush(surface_.get());
-}
-
-void Canvas::set_pixel(int x, int y, Rgb colour) {
-  const auto byte = [](float part) {
-    return static_cast<std::uint32_t>(std::clamp(part, 0.0F, 1.0F) * 255.0F + 0.5F);
-  };
-  auto* row = cairo_image_surface_get_data(surface_.get()) +
-              static_cast<std::ptrdiff_t>(y) * cairo_image_surface_get_stride(surface_.get());
-  reinterpret_cast<std::uint32_t*>(row)[x] =
-      byte(colour.r) << 16U | byte(colour.g) << 8U | byte(colour.b);
+  pixels_ = reinterpret_cast<std::uint32_t*>(cairo_image_surface_get_data(surface_.get()));
+  pixels_per_row_ = static_cast<std::size_t>(cairo_image_surface_get_stride(surface_.get())) /
+                    sizeof(std::uint32_t);
 }
 
 void Canvas::pixels_done() { cairo_surface_mark_dirty(surface_.get()); }
@@ -86,20 +79,61 @@ double round_down_nicely(double value) {
   return best * power;
 }
 
-std::string label_of(double value) {
-  std::string text = fmt::format("{:.4g}", std::abs(value));
-  if (std::abs(value) >= 1000.0) text = fmt::format("{:.0f}", std::abs(value));
-  if (std::abs(value) >= 10000.0) {
-    for (auto at = static_cast<int>(text.size()) - 3; at > 0; at -= 3) text.insert(at, "\u2009");
-  }
-  return value < 0.0 ? fmt::format("\u2212{}", text) : text;
+namespace {
+
+// "10⁻⁵": digits as exponents.
+std::string power_of_ten(int exponent) {
+  constexpr std::array kDigits{"\u2070", "\u00b9", "\u00b2", "\u00b3", "\u2074",
+                               "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
+  std::string text = exponent < 0 ? "10\u207b" : "10";
+  for (const char digit : fmt::format("{}", std::abs(exponent))) text += kDigits[digit - '0'];
+  return text;
 }
 
-MapCanvas::MapCanvas(const Grid& grid, const MapLayout& layout)
-    : Canvas(layout.width_px, layout.height_px),
-      grid_(&grid),
-      layout_(layout),
-      unit_(map_unit(layout.map_width)) {}
+}  // namespace
+
+std::string label_of(double value) {
+  const double size = std::abs(value);
+  const char* const sign = value < 0.0 ? "\u2212" : "";
+  if (size > 0.0 && (size < 1e-3 || size >= 1e7)) {
+    const int exponent = static_cast<int>(std::floor(std::log10(size) + 1e-6));
+    const std::string factor = fmt::format("{:.3g}", size / std::pow(10.0, exponent));
+    const std::string power = power_of_ten(exponent);
+    return sign + (factor == "1" ? power : factor + "\u00b7" + power);
+  }
+  std::string text = size >= 1000.0 ? fmt::format("{:.0f}", size) : fmt::format("{:.4g}", size);
+  if (size >= 10000.0) {
+    for (auto at = static_cast<int>(text.size()) - 3; at > 0; at -= 3) text.insert(at, "\u2009");
+  }
+  return sign + text;
+}
+
+MapCanvas::MapCanvas(const MapFrame& frame)
+    : Canvas(frame.page().layout().width_px, frame.page().layout().height_px),
+      frame_(&frame),
+      page_(&frame.page()),
+      layout_(frame.page().layout()),
+      unit_(map_unit(layout_.map_width)) {}
+
+void MapCanvas::stroke(const PageLines& lines) {
+  for (const auto& line : lines) {
+    cairo_new_sub_path(pen());
+    for (const PagePoint& point : line) cairo_line_to(pen(), point.x, point.y);
+  }
+  cairo_stroke(pen());
+}
+
+void MapCanvas::text_on_map(double x, double y, const std::string& text, Align align, Rgb rgb) {
+  const double shift = align == Align::left ? 0.0 : align == Align::centre ? 0.5 : 1.0;
+  cairo_move_to(pen(), x - shift * text_width(text), y);
+  cairo_text_path(pen(), text.c_str());
+  colour({1, 1, 1}, 0.75);
+  cairo_set_line_width(pen(), 3.5 * unit_);
+  cairo_set_line_join(pen(), CAIRO_LINE_JOIN_ROUND);
+  cairo_stroke_preserve(pen());
+  colour(rgb);
+  cairo_fill(pen());
+}
 
 void MapCanvas::title(const std::string& title, const std::string& units, std::string_view note) {
   const double baseline = layout_.map_top - 26 * unit_;

@@ -2,7 +2,9 @@
 
 #include <cairo.h>
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <span>
@@ -12,6 +14,8 @@
 
 #include "geo/io/maps.hpp"
 #include "map_colours.hpp"
+#include "map_page.hpp"
+#include "map_raster.hpp"
 
 namespace geo::io {
 
@@ -26,7 +30,13 @@ class Canvas {
   Canvas(int width_px, int height_px);
 
   [[nodiscard]] cairo_t* pen() const { return pen_.get(); }
-  void set_pixel(int x, int y, Rgb colour);
+  void set_pixel(int x, int y, Rgb colour) {
+    const auto byte = [](float part) {
+      return static_cast<std::uint32_t>(std::clamp(part, 0.0F, 1.0F) * 255.0F + 0.5F);
+    };
+    pixels_[static_cast<std::size_t>(y) * pixels_per_row_ + x] =
+        byte(colour.r) << 16U | byte(colour.g) << 8U | byte(colour.b);
+  }
   /// Pixels were set; tells Cairo before it draws on.
   void pixels_done();
   void colour(Rgb colour, double alpha = 1.0);
@@ -46,18 +56,21 @@ class Canvas {
   };
   std::unique_ptr<cairo_surface_t, Destroy> surface_;
   std::unique_ptr<cairo_t, Destroy> pen_;
+  std::uint32_t* pixels_ = nullptr;  // 0x00RRGGBB, the surface's own
+  std::size_t pixels_per_row_ = 0;
 };
 
 /// A canvas with a map in its frame.
 class MapCanvas : public Canvas {
  public:
-  MapCanvas(const Grid& grid, const MapLayout& layout);
+  explicit MapCanvas(const MapFrame& frame);
 
-  /// Sets each pixel of the map to `colour_of(x, y)`.
+  /// Sets each pixel of the map that shows something to `colour_of(x, y)`.
   template <class ColourOf>
   void paint(const ColourOf& colour_of) {
     for (int y = 0; y < layout_.map_height; ++y) {
       for (int x = 0; x < layout_.map_width; ++x) {
+        if (!frame_->shows(x, y)) continue;
         set_pixel(layout_.map_left + x, layout_.map_top + y, colour_of(x, y));
       }
     }
@@ -75,13 +88,19 @@ class MapCanvas : public Canvas {
   }
   /// Title, units beside it, remark at the right.
   void title(const std::string& title, const std::string& units, std::string_view note);
-  /// Graticule or kilometre ticks with labels, scale bar where it has one, border.
+  /// Graticule or kilometre ticks with labels, scale bar where one scale holds, border.
   void frame();
+  /// Strokes lines of the map, as they stand in its pixels.
+  void stroke(const PageLines& lines);
+  /// Text with a pale edge, to be read on any ground.
+  void text_on_map(double x, double y, const std::string& text, Align align, Rgb rgb);
 
   /// Colour bar below the map: the stops of the colour maps one after the other, equally wide.
   void colour_bar(std::span<const ColourMap* const> maps, bool classed);
   /// Swatches and names of categories below the map.
   void category_legend(const std::vector<std::pair<Rgb, std::string>>& items);
+  /// A line of words below the map.
+  void remark(const std::string& words);
   /// Lines of several widths (px at unit 1) with labels, and one swatch, below the map.
   void line_legend(Rgb colour, const std::vector<std::pair<double, std::string>>& lines,
                    Rgb swatch_colour, const std::string& swatch_label);
@@ -91,11 +110,17 @@ class MapCanvas : public Canvas {
   [[nodiscard]] const MapLayout& layout() const { return layout_; }
 
  private:
-  void graticule();
+  void straight_graticule();
+  void curved_graticule();
+  void label_curved_graticule(double step_deg);
+  void label_polar_graticule(double step_deg);
   void kilometre_ticks();
   void scale_bar();
+  /// Whether the edge of what is shown runs through a box that ends `above` the map's lower edge.
+  [[nodiscard]] bool crosses_edge(double left, double width, double height, double above) const;
 
-  const Grid* grid_;
+  const MapFrame* frame_;
+  const MapPage* page_;
   MapLayout layout_;
   double unit_;
 };
@@ -109,7 +134,7 @@ double map_unit(int map_width_px);
 /// The largest of 1, 2, 2.5, 5 times a power of ten that is at most `value`.
 double round_down_nicely(double value);
 
-/// "−50", "0.25", "4000", "11 000": a number for a label, without exponent and trailing zeros.
+/// "−50", "0.25", "4000", "11 000", "2·10⁻⁵": a number for a label, without trailing zeros.
 std::string label_of(double value);
 
 }  // namespace geo::io

@@ -32,6 +32,16 @@ ColourMap::ColourMap(std::string_view name) {
   }
 }
 
+ColourMap ColourMap::spread_over(const std::vector<float>& values) const {
+  ColourMap out;
+  const auto last = static_cast<float>(stops_.size() - 1);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const float share = static_cast<float>(i) / static_cast<float>(values.size() - 1);
+    out.stops_.push_back({values[i], at_position(share * last), ""});
+  }
+  return out;
+}
+
 float ColourMap::position(float value) const {
   if (!(value > stops_.front().value)) return 0.0F;
   const auto last = static_cast<float>(stops_.size() - 1);

@@ -28,6 +28,8 @@ class ColourMap {
   };
 
   explicit ColourMap(std::string_view name);
+  /// These colours, evenly along the given ascending values.
+  [[nodiscard]] ColourMap spread_over(const std::vector<float>& values) const;
 
   [[nodiscard]] const std::vector<Stop>& stops() const { return stops_; }
   /// Position of a value among the stops: 0 at the first, 1 at the second …, clamped.
@@ -43,6 +45,7 @@ class ColourMap {
   [[nodiscard]] const Stop* category(int value) const;
 
  private:
+  ColourMap() = default;
   [[nodiscard]] Rgb at_position(float position) const;
   std::vector<Stop> stops_;
 };

@@ -9,6 +9,6 @@ namespace geo::io {
 
 /// Draws the rims of craters, or a sign where they are too small to see, the lines of rifts, and
 /// the names of both onto the map of a grid that has latitudes and longitudes.
-void draw_events(MapCanvas& canvas, const Grid& grid, std::span<const EventMark> marks);
+void draw_events(MapCanvas& canvas, const MapFrame& frame, std::span<const EventMark> marks);
 
 }  // namespace geo::io

@@ -11,6 +11,11 @@ namespace {
 // Steps that a reader expects on a map, largest first.
 constexpr std::array kDegreeSteps{30.0, 15.0, 10.0, 5.0,  2.0,  1.0,
                                   0.5,  0.25, 0.1,  0.05, 0.02, 0.01};
+// Curved lines are drawn as arcs of this.
+constexpr double kArcDeg = 0.5;
+// A scale bar holds within this share over the whole map.
+constexpr double kOneScale = 1.25;
+constexpr double kGraticuleAlpha = 0.22;
 
 double degree_step(double extent_deg) {
   for (const double step : kDegreeSteps) {
@@ -25,66 +30,235 @@ std::string degrees(double value, const char* positive, const char* negative) {
   return text + (value > 0.0 ? positive : negative);
 }
 
-double wrapped_longitude(double longitude_deg) {
-  return longitude_deg > 180.0 ? longitude_deg - 360.0 : longitude_deg;
+std::string longitude_label(double longitude_deg) {
+  return degrees(std::remainder(longitude_deg, 360.0), "E", "W");
+}
+
+std::string latitude_label(double latitude_deg) { return degrees(latitude_deg, "N", "S"); }
+
+/// Multiples of a step within a range.
+std::vector<double> multiples(double step, double from, double to) {
+  std::vector<double> values;
+  for (double k = std::ceil(from / step - 1e-9); k * step < to + 1e-9; k += 1.0) {
+    values.push_back(k * step);
+  }
+  return values;
+}
+
+/// Degrees between the lines of a map of that extent.
+double line_step(const Window& region) {
+  const double width = region.east_deg - region.west_deg;
+  const double height = region.north_deg - region.south_deg;
+  const double step = degree_step(std::min(width, height));
+  return std::max(width, height) / step > 14.0 ? 2.0 * step : step;
 }
 
 }  // namespace
 
 void MapCanvas::frame() {
   cairo_set_antialias(pen(), CAIRO_ANTIALIAS_DEFAULT);
-  if (grid_->is_latitude_longitude()) {
-    graticule();
-  } else {
+  if (!page_->grid().is_latitude_longitude()) {
     kilometre_ticks();
+  } else if (page_->is_cylindrical()) {
+    straight_graticule();
+  } else {
+    curved_graticule();
   }
-  if (grid_->topology() != Topology::sphere) scale_bar();
+  scale_bar();
   colour(kInk);
   cairo_set_line_width(pen(), 1.6 * unit_);
-  rectangle(layout_.map_left, layout_.map_top, layout_.map_width, layout_.map_height);
-  cairo_stroke(pen());
+  if (page_->is_aligned()) {
+    rectangle(layout_.map_left, layout_.map_top, layout_.map_width, layout_.map_height);
+    cairo_stroke(pen());
+    return;
+  }
+  cairo_save(pen());
+  cairo_translate(pen(), layout_.map_left, layout_.map_top);
+  cairo_set_line_join(pen(), CAIRO_LINE_JOIN_ROUND);
+  cairo_set_line_cap(pen(), CAIRO_LINE_CAP_ROUND);
+  stroke(page_->edge());
+  cairo_restore(pen());
 }
 
-void MapCanvas::graticule() {
-  const Window& window = grid_->window();
-  const double width = layout_.map_width, height = layout_.map_height;
-  const double width_deg = window.east_deg - window.west_deg;
-  const double height_deg = window.north_deg - window.south_deg;
-  const double step = degree_step(std::min(width_deg, height_deg));
-  const double lines = std::max(width_deg, height_deg) / step > 14.0 ? 2.0 * step : step;
-  const double left = layout_.map_left, bottom = layout_.map_top + height;
+void MapCanvas::straight_graticule() {
+  const Window& region = page_->region();
+  const double step = line_step(region), lon_0 = page_->centre().longitude_deg;
+  const double left = layout_.map_left, bottom = layout_.map_top + layout_.map_height;
+  const MapPage::Projector projector(*page_);
   font(16 * unit_);
   cairo_set_line_width(pen(), unit_);
-  const auto tick_first = [](double from, double by) { return std::ceil(from / by - 1e-9) * by; };
-
-  for (double lon = tick_first(window.west_deg, lines); lon < window.east_deg + 1e-9;
-       lon += lines) {
-    const double x = (lon - window.west_deg) / width_deg * width;
+  const auto line = [&](double x0, double y0, double x1, double y1) {
     inside([&] {
-      colour(kInk, 0.22);
-      cairo_move_to(pen(), x, 0);
-      cairo_line_to(pen(), x, height);
+      colour(kInk, kGraticuleAlpha);
+      cairo_move_to(pen(), x0, y0);
+      cairo_line_to(pen(), x1, y1);
       cairo_stroke(pen());
     });
     colour(kInk);
-    text(left + x, bottom + 24 * unit_, degrees(wrapped_longitude(lon), "E", "W"), Align::centre);
+  };
+  for (const double lon : multiples(step, lon_0 + region.west_deg, lon_0 + region.east_deg)) {
+    const double x = projector.point_east_of_centre(lon - lon_0, region.south_deg)->x;
+    line(x, 0, x, layout_.map_height);
+    text(left + x, bottom + 24 * unit_, longitude_label(lon), Align::centre);
   }
-  for (double lat = tick_first(window.south_deg, lines); lat < window.north_deg + 1e-9;
-       lat += lines) {
-    const double y = (window.north_deg - lat) / height_deg * height;
-    inside([&] {
-      colour(kInk, 0.22);
-      cairo_move_to(pen(), 0, y);
-      cairo_line_to(pen(), width, y);
-      cairo_stroke(pen());
-    });
-    colour(kInk);
-    text(left - 10 * unit_, layout_.map_top + y + 6 * unit_, degrees(lat, "N", "S"), Align::right);
+  for (const double lat : multiples(step, region.south_deg, region.north_deg)) {
+    const double y = projector.point_east_of_centre(region.west_deg, lat)->y;
+    line(0, y, layout_.map_width, y);
+    text(left - 10 * unit_, layout_.map_top + y + 6 * unit_, latitude_label(lat), Align::right);
+  }
+}
+
+void MapCanvas::curved_graticule() {
+  const Window& region = page_->region();
+  const bool whole = region.east_deg - region.west_deg > 359.9;
+  double step = line_step(region);
+  if (page_->is_azimuthal() && whole) step = 15.0;
+  const double lon_0 = page_->centre().longitude_deg;
+  const MapPage::Projector projector(*page_);
+  const auto draw = [&](const auto& place_at, double from, double to) {
+    std::vector<PagePoint> line;
+    const int pieces = std::max(2, static_cast<int>(std::ceil((to - from) / kArcDeg)));
+    for (int i = 0; i <= pieces; ++i) {
+      const auto [east, lat] = place_at(from + (to - from) * i / pieces);
+      if (const auto point = projector.point_east_of_centre(east, lat)) {
+        line.push_back(*point);
+      } else {
+        stroke({line});
+        line.clear();
+      }
+    }
+    stroke({line});
+  };
+  inside([&] {
+    colour(kInk, kGraticuleAlpha);
+    cairo_set_line_width(pen(), unit_);
+    for (const double lon : multiples(step, lon_0 + region.west_deg, lon_0 + region.east_deg)) {
+      const double east = lon - lon_0;
+      if (whole && east > region.east_deg - 1e-6) continue;
+      // Near the poles only every other or every third meridian goes on.
+      const bool goes_on = std::abs(std::remainder(lon, 6.0 * step)) < 1e-6;
+      const double most = goes_on ? 90.0 : 90.0 - step;
+      draw(
+          [&](double lat) {
+            return std::pair{east, lat};
+          },
+          std::max(region.south_deg, -most), std::min(region.north_deg, most));
+    }
+    for (const double lat : multiples(step, region.south_deg, region.north_deg)) {
+      if (std::abs(lat) > 89.999) continue;
+      draw([&](double east) { return std::pair{east, lat}; }, region.west_deg, region.east_deg);
+    }
+  });
+  label_curved_graticule(step);
+}
+
+void MapCanvas::label_polar_graticule(double step) {
+  const Window& region = page_->region();
+  const auto [lat_0, lon_0] = page_->centre();
+  const MapPage::Projector projector(*page_);
+  const bool whole = region.east_deg - region.west_deg > 359.9;
+  const double sign = lat_0 > 0.0 ? 1.0 : -1.0, most = 90.0 - page_->reach_deg() + 1e-6;
+  const double rim =
+      sign > 0.0 ? std::max(region.south_deg, most) : std::min(region.north_deg, -most);
+  const double middle = 0.5 * (region.west_deg + region.east_deg);
+  colour(kInk);
+  font(16 * unit_);
+  for (const double lon : multiples(2.0 * step, lon_0 + region.west_deg, lon_0 + region.east_deg)) {
+    const double east = lon - lon_0;
+    const auto at = projector.point_east_of_centre(east, rim);
+    if (!at || (whole && east > region.east_deg - 1e-6)) continue;
+    const double angle = east * std::numbers::pi / 180.0, out = 12 * unit_;
+    const double right = std::sin(angle), down = sign * std::cos(angle);
+    text(layout_.map_left + at->x + out * right,
+         layout_.map_top + at->y + out * down + 6 * unit_ + 5 * unit_ * down, longitude_label(lon),
+         right > 0.3    ? Align::left
+         : right < -0.3 ? Align::right
+                        : Align::centre);
+  }
+  font(14 * unit_);
+  for (const double lat : multiples(step, region.south_deg, region.north_deg)) {
+    if (std::abs(lat) > 89.9 || std::abs(lat - rim) < 0.5 * step) continue;
+    const auto at = projector.point_east_of_centre(middle + (whole ? step : 0.0), lat);
+    if (!at) continue;
+    text_on_map(layout_.map_left + at->x, layout_.map_top + at->y + 5 * unit_, latitude_label(lat),
+                Align::centre, kInk);
+  }
+}
+
+void MapCanvas::label_curved_graticule(double step) {
+  const Window& region = page_->region();
+  const double lon_0 = page_->centre().longitude_deg, lat_0 = page_->centre().latitude_deg;
+  const MapPage::Projector projector(*page_);
+  const double left = layout_.map_left, top = layout_.map_top;
+  // Labels follow the lines through the middle of the map, or stand beside its edge.
+  const auto labelled_east = multiples(page_->is_azimuthal() ? 2.0 * step : step,
+                                       lon_0 + region.west_deg, lon_0 + region.east_deg);
+  const auto labelled_lat = multiples(step, region.south_deg, region.north_deg);
+  font(14 * unit_);
+  const auto on_map = [&](std::optional<PagePoint> at, const std::string& label, Align align) {
+    const double room = 12 * unit_, width = layout_.map_width, height = layout_.map_height;
+    if (!at || at->x < room || at->y < room || at->x > width - room || at->y > height - room) {
+      return;
+    }
+    text_on_map(left + at->x, top + at->y + 5 * unit_, label, align, kInk);
+  };
+  if (page_->is_polar()) {
+    label_polar_graticule(step);
+    return;
+  }
+  if (page_->is_azimuthal()) {
+    const double middle_lat = step * std::round(lat_0 / step);
+    const double middle_east =
+        step * std::round((lon_0 + 0.5 * (region.west_deg + region.east_deg)) / step) - lon_0;
+    const double level = std::abs(middle_lat) > 75.0 ? std::copysign(75.0, middle_lat) : middle_lat;
+    for (const double lat :
+         multiples(step, region.south_deg + 0.2 * step, region.north_deg - 0.2 * step)) {
+      if (std::abs(lat) > 89.9 || std::abs(lat - level) < 1e-6) continue;
+      on_map(projector.point_east_of_centre(middle_east, lat), latitude_label(lat), Align::centre);
+    }
+    for (const double lon : labelled_east) {
+      on_map(projector.point_east_of_centre(std::remainder(lon - lon_0, 360.0), level),
+             longitude_label(lon), Align::centre);
+    }
+    return;
+  }
+  colour(kInk);
+  font(16 * unit_);
+  for (const double lat : labelled_lat) {
+    const auto at = projector.point_east_of_centre(region.west_deg, lat);
+    if (!at || std::abs(lat) > 89.9) continue;
+    const double lean = 10 * unit_ * lat / 90.0;
+    text(left + at->x - 10 * unit_, top + at->y + 6 * unit_ - lean, latitude_label(lat),
+         Align::right);
+  }
+  // Below the southern edge, unless meridians meet there.
+  const double south = region.south_deg;
+  const auto west_end = projector.point_east_of_centre(region.west_deg, south);
+  const auto east_end = projector.point_east_of_centre(region.east_deg, south);
+  const bool has_room = west_end && east_end && east_end->x - west_end->x > 0.3 * layout_.map_width;
+  const double width = has_room ? east_end->x - west_end->x : layout_.map_width;
+  const double between = width * step / (region.east_deg - region.west_deg);
+  const double every = text_width("150°W") + 6 * unit_ > between ? 2.0 * step : step;
+  for (const double lon : labelled_east) {
+    const double east = lon - lon_0;
+    const std::string label = longitude_label(lon);
+    if (std::abs(std::remainder(lon, every)) > 1e-6) continue;
+    if (has_room) {
+      colour(kInk);
+      font(16 * unit_);
+      const auto at = projector.point_east_of_centre(east, south);
+      if (at) text(left + at->x, top + at->y + 24 * unit_, label, Align::centre);
+    } else {
+      font(14 * unit_);
+      const double level = std::clamp(0.0, region.south_deg, region.north_deg);
+      on_map(projector.point_east_of_centre(east, level), label, Align::centre);
+    }
   }
 }
 
 void MapCanvas::kilometre_ticks() {
-  const double width_km = grid_->nx() * grid_->spacing_east_m(0) / 1000.0;
+  const Grid& grid = page_->grid();
+  const double width_km = grid.nx() * grid.spacing_east_m(0) / 1000.0;
   const double per_km = layout_.map_width / width_km;
   const double height_km = layout_.map_height / per_km;
   const double step = round_down_nicely(std::max(width_km, height_km) / 5.0);
@@ -112,15 +286,34 @@ void MapCanvas::kilometre_ticks() {
   }
 }
 
+bool MapCanvas::crosses_edge(double left, double width, double height, double above) const {
+  int shown = 0;
+  const double bottom = layout_.map_height - above + 12 * unit_;
+  const std::array xs{left, left + 0.5 * width, left + width};
+  const std::array ys{bottom - height, bottom};
+  for (const double x : xs) {
+    for (const double y : ys) {
+      shown += frame_->shows(static_cast<int>(x), static_cast<int>(y)) ? 1 : 0;
+    }
+  }
+  return shown != 0 && shown != static_cast<int>(xs.size() * ys.size());
+}
+
 void MapCanvas::scale_bar() {
-  const double metres_per_px =
-      grid_->spacing_east_m(grid_->ny() / 2) * grid_->nx() / layout_.map_width;
+  const auto [metres_per_px, varies] = frame_->scale();
+  if (varies > kOneScale) return;
   const double length_m = round_down_nicely(metres_per_px * layout_.map_width * 0.18);
   const double length = length_m / metres_per_px, margin = 24 * unit_, thick = 7 * unit_;
   const std::string label =
       length_m >= 1000.0 ? label_of(length_m / 1000.0) + " km" : label_of(length_m) + " m";
   font(17 * unit_);
-  const double x = layout_.map_left + margin;
+  // In the lower left, moved on until the edge of the planet does not run through it.
+  const double box = std::max(length, text_width(label)) + 24 * unit_;
+  double from = margin - 12 * unit_;
+  while (from < 0.4 * layout_.map_width && crosses_edge(from, box, 46 * unit_, margin)) {
+    from += 12 * unit_;
+  }
+  const double x = layout_.map_left + from + 12 * unit_;
   const double y = layout_.map_top + layout_.map_height - margin;
   colour({1, 1, 1}, 0.8);
   rectangle(x - 12 * unit_, y - 34 * unit_, std::max(length, text_width(label)) + 24 * unit_,

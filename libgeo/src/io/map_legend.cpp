@@ -92,6 +92,13 @@ void MapCanvas::category_legend(const std::vector<std::pair<Rgb, std::string>>& 
   }
 }
 
+void MapCanvas::remark(const std::string& words) {
+  font(18 * unit_);
+  colour(kInk);
+  text(layout_.map_left + 0.5 * layout_.map_width,
+       layout_.map_top + layout_.map_height + (kLegendTop + 20) * unit_, words, Align::centre);
+}
+
 void MapCanvas::line_legend(Rgb rgb, const std::vector<std::pair<double, std::string>>& lines,
                             Rgb swatch_colour, const std::string& swatch_label) {
   const double y =

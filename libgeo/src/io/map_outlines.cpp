@@ -10,6 +10,9 @@ namespace {
 // The four ways from a corner of pixels: right, down, left, up.
 constexpr std::array kStepX{1, 0, -1, 0}, kStepY{0, 1, 0, -1};
 
+// Beyond the edge of a map, where values are NaN, nothing has an outline.
+bool differ(float a, float b) { return a != b && a == a && b == b; }
+
 /// The corners of all pixels, and along which of the sides between them values differ.
 class Corners {
  public:
@@ -20,8 +23,8 @@ class Corners {
     for (int y = 0; y < areas.height; ++y) {
       for (int x = 0; x < areas.width; ++x) {
         const float own = areas.at(x, y);
-        if (x + 1 < areas.width && areas.at(x + 1, y) != own) join(x + 1, y, 1);
-        if (y + 1 < areas.height && areas.at(x, y + 1) != own) join(x, y + 1, 0);
+        if (x + 1 < areas.width && differ(areas.at(x + 1, y), own)) join(x + 1, y, 1);
+        if (y + 1 < areas.height && differ(areas.at(x, y + 1), own)) join(x, y + 1, 0);
       }
     }
     for (int y = 0; y < height_; ++y) {

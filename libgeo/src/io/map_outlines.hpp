@@ -12,9 +12,9 @@ struct OutlinePoint {
 };
 using Outline = std::vector<OutlinePoint>;
 
-/// Lines between pixels of different value, each from one junction (or edge of the map) to the
-/// next, or closed. The steps of the pixels are smoothed away over about `smoothing_px`; junctions
-/// stay where they are.
+/// Lines between pixels of different value (NaN is none), each from one junction (or edge of the
+/// map) to the next, or closed. The steps of the pixels are smoothed away over about
+/// `smoothing_px`; junctions stay where they are.
 std::vector<Outline> trace_outlines(const Raster& areas, double smoothing_px);
 
 }  // namespace geo::io

@@ -17,26 +17,12 @@ namespace {
 
 constexpr Rgb kWhite{1.0F, 1.0F, 1.0F};
 
-/// The cell in the middle of each pixel.
-class PixelCells {
- public:
-  explicit PixelCells(const MapFrame& frame) : frame_(frame) {}
-  [[nodiscard]] Index at(int x, int y) const {
-    const Grid& grid = frame_.grid();
-    const int column = static_cast<int>((x + 0.5) / frame_.pixels_per_column());
-    const int row = static_cast<int>((frame_.height() - y - 0.5) / frame_.pixels_per_row());
-    return grid.cell(std::clamp(column, 0, grid.nx() - 1), std::clamp(row, 0, grid.ny() - 1));
-  }
-
- private:
-  const MapFrame& frame_;
-};
-
 Raster sample_plates(const MapFrame& frame, std::span<const std::int16_t> plate_id) {
-  const PixelCells cells(frame);
-  Raster plates(frame);
+  Raster plates(frame, std::numeric_limits<float>::quiet_NaN());
   for (int y = 0; y < plates.height; ++y) {
-    for (int x = 0; x < plates.width; ++x) plates.at(x, y) = plate_id[cells.at(x, y)];
+    for (int x = 0; x < plates.width; ++x) {
+      if (frame.shows(x, y)) plates.at(x, y) = plate_id[frame.cell_at(x, y)];
+    }
   }
   return plates;
 }
@@ -48,11 +34,12 @@ std::map<int, int> colour_numbers(const Raster& plates, int colours) {
   std::map<int, std::set<int>> neighbours;
   for (int y = 0; y < plates.height; ++y) {
     for (int x = 0; x < plates.width; ++x) {
+      if (plates.at(x, y) != plates.at(x, y)) continue;  // beyond the edge of the map
       const int own = static_cast<int>(plates.at(x, y));
       ++pixels[own];
       for (const float other :
            {plates.at(plates.east_of(x), y), plates.at(x, std::min(y + 1, plates.height - 1))}) {
-        if (static_cast<int>(other) == own) continue;
+        if (other != other || static_cast<int>(other) == own) continue;
         neighbours[own].insert(static_cast<int>(other));
         neighbours[static_cast<int>(other)].insert(own);
       }
@@ -92,13 +79,15 @@ class BoundaryTypes {
 
   [[nodiscard]] int at(const OutlinePoint& point) const {
     const Grid& grid = frame_.grid();
-    const int column = static_cast<int>(std::floor(point.x / frame_.pixels_per_column()));
-    const int row =
-        static_cast<int>(std::floor((frame_.height() - point.y) / frame_.pixels_per_row()));
+    const Index here =
+        frame_.cell_at(std::clamp(static_cast<int>(point.x), 0, frame_.width() - 1),
+                       std::clamp(static_cast<int>(point.y), 0, frame_.height() - 1));
+    if (here == kNoCell) return 0;
+    const int column = grid.column(here), row = grid.row(here);
     std::array<int, 4> count{};
     for (int j = std::max(row - reach_, 0); j <= std::min(row + reach_, grid.ny() - 1); ++j) {
       for (int i = column - reach_; i <= column + reach_; ++i) {
-        if (!frame_.wraps_east() && (i < 0 || i >= grid.nx())) continue;
+        if (grid.topology() == Topology::plane && (i < 0 || i >= grid.nx())) continue;
         const int type = types_[grid.cell((i % grid.nx() + grid.nx()) % grid.nx(), j)];
         if (type > 0 && type < 4) ++count[type];
       }
@@ -177,9 +166,15 @@ double arrow_scale(const MapCanvas& canvas, std::span<const float> east,
   return kArrowSpacingPx * canvas.unit() / std::max(*fast, 1.0F);
 }
 
+// On an aligned page arrows may run into the border, on others not over the edge of the planet.
+bool is_on_map(const MapFrame& frame, double x, double y) {
+  if (frame.is_aligned()) return true;
+  const bool inside = x >= 0.0 && y >= 0.0 && x < frame.width() && y < frame.height();
+  return inside && frame.shows(static_cast<int>(x), static_cast<int>(y));
+}
+
 void draw_velocities(MapCanvas& canvas, const MapFrame& frame, std::span<const float> east,
                      std::span<const float> north, double px_per_mm_yr) {
-  const PixelCells cells(frame);
   const int columns =
       std::max(2, static_cast<int>(std::lround(frame.width() / (kArrowSpacingPx * canvas.unit()))));
   const double spacing = double(frame.width()) / columns;
@@ -190,9 +185,16 @@ void draw_velocities(MapCanvas& canvas, const MapFrame& frame, std::span<const f
     for (double y = 0.5 * spacing; y < frame.height(); y += 0.866 * spacing, ++row) {
       for (int i = 0; i < columns; ++i) {
         const double x = (i + (row % 2 == 0 ? 0.25 : 0.75)) * spacing;
-        const Index c = cells.at(static_cast<int>(x), static_cast<int>(y));
-        const double dx = px_per_mm_yr * east[c], dy = -px_per_mm_yr * north[c];
+        const int px = static_cast<int>(x), py = static_cast<int>(y);
+        const Index c = frame.cell_at(px, py);
+        if (c == kNoCell) continue;
+        const PagePoint way = frame.on_page(px, py, east[c], north[c]);
+        const double dx = px_per_mm_yr * way.x, dy = px_per_mm_yr * way.y;
         if (std::hypot(dx, dy) < 3.0 * canvas.unit()) continue;
+        if (!is_on_map(frame, x - 0.5 * dx, y - 0.5 * dy) ||
+            !is_on_map(frame, x + 0.5 * dx, y + 0.5 * dy)) {
+          continue;
+        }
         // About its place, so that arrows of neighbours keep apart.
         draw_arrow(canvas, x - 0.5 * dx, y - 0.5 * dy, dx, dy);
       }

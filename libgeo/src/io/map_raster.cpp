@@ -1,7 +1,12 @@
 #include "map_raster.hpp"
 
 #include <array>
+#include <numbers>
 #include <numeric>
+
+#include "geo/core/error.hpp"
+#include "geo/core/place.hpp"
+#include "geo/core/vector3.hpp"
 
 namespace geo::io {
 namespace {
@@ -65,30 +70,286 @@ Raster::Raster(const MapFrame& frame, float value)
       wraps_east(frame.wraps_east()),
       values(static_cast<std::size_t>(width) * height, value) {}
 
-MapFrame::MapFrame(const Grid& grid, int width_px, int height_px)
-    : grid_(&grid), width_(width_px), height_(height_px) {}
+MapFrame::MapFrame(const MapPage& page, int width_px, int height_px)
+    : page_(&page),
+      width_(width_px),
+      height_(height_px),
+      columns_px_(double(width_px) / page.grid().nx()),
+      rows_px_(double(height_px) / page.grid().ny()),
+      pixel_m_(page.grid().spacing_north_m(row_under(height_px / 2)) / rows_px_) {}
+
+MapFrame::MapFrame(const MapPage& page)
+    : MapFrame(page, page.layout().map_width, page.layout().map_height) {
+  if (page.is_aligned()) return;
+  aligned_ = false;
+  locate_pixels();
+  choose_source();
+}
 
 int MapFrame::row_under(int y) const {
-  return std::clamp(static_cast<int>((height_ - y - 0.5) / pixels_per_row()), 0, grid_->ny() - 1);
+  return std::clamp(static_cast<int>((height_ - y - 0.5) / pixels_per_row()), 0, grid().ny() - 1);
 }
 
 double MapFrame::pixel_east_m(int y) const {
-  return grid_->spacing_east_m(row_under(y)) / pixels_per_column();
+  return grid().spacing_east_m(row_under(y)) / pixels_per_column();
 }
 
 double MapFrame::pixel_north_m(int y) const {
-  return grid_->spacing_north_m(row_under(y)) / pixels_per_row();
+  return grid().spacing_north_m(row_under(y)) / pixels_per_row();
+}
+
+void MapFrame::locate_pixels() {
+  constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+  const std::size_t pixels = static_cast<std::size_t>(width_) * height_;
+  std::vector<Centre> places(pixels, Centre{kNaN, kNaN});
+#pragma omp parallel
+  {
+    const MapPage::Projector projector(*page_);
+#pragma omp for schedule(dynamic, 8)
+    for (int y = 0; y < height_; ++y) {
+      for (int x = 0; x < width_; ++x) {
+        if (const auto place = projector.place_of({x + 0.5, y + 0.5})) places[at(x, y)] = *place;
+      }
+    }
+  }
+  latitude_deg_.resize(pixels);
+  longitude_deg_.resize(pixels);
+  const Window& window = grid().window();
+  const bool round = grid().topology() == Topology::sphere;
+  for (std::size_t i = 0; i < pixels; ++i) {
+    double east = places[i].longitude_deg - window.west_deg;
+    if (round || east < 0.0) east -= 360.0 * std::floor(east / 360.0);
+    latitude_deg_[i] = static_cast<float>(places[i].latitude_deg - window.south_deg);
+    longitude_deg_[i] = static_cast<float>(east);
+  }
+  measure_ground(places);
+}
+
+void MapFrame::measure_ground(const std::vector<Centre>& places) {
+  constexpr double kRadians = std::numbers::pi / 180.0;
+  const double radius_m = grid().figure().radius_m;
+  ground_.resize(places.size());
+  const auto is_there = [&](int x, int y) {
+    return x >= 0 && y >= 0 && x < width_ && y < height_ && shows(x, y);
+  };
+  // Metres east and north from one place to the next, at a third.
+  const auto step = [&](const Centre& from, const Centre& to, const Centre& here, float& east,
+                        float& north, int pixels) {
+    const Vector3 a = unit_vector_of(from), b = unit_vector_of(to);
+    const double lon = here.longitude_deg * kRadians, lat = here.latitude_deg * kRadians;
+    const double dx = b[0] - a[0], dy = b[1] - a[1], dz = b[2] - a[2];
+    const double metres = radius_m / pixels;
+    east = static_cast<float>(metres * (-std::sin(lon) * dx + std::cos(lon) * dy));
+    north = static_cast<float>(
+        metres * (std::cos(lat) * dz - std::sin(lat) * (std::cos(lon) * dx + std::sin(lon) * dy)));
+  };
+#pragma omp parallel for schedule(dynamic, 8)
+  for (int y = 0; y < height_; ++y) {
+    for (int x = 0; x < width_; ++x) {
+      if (!shows(x, y)) continue;
+      PixelGround& ground = ground_[at(x, y)];
+      const int left = is_there(x - 1, y) ? x - 1 : x, right = is_there(x + 1, y) ? x + 1 : x;
+      const int above = is_there(x, y - 1) ? y - 1 : y, below = is_there(x, y + 1) ? y + 1 : y;
+      const Centre& here = places[at(x, y)];
+      step(places[at(left, y)], places[at(right, y)], here, ground.across_east, ground.across_north,
+           std::max(right - left, 1));
+      step(places[at(x, above)], places[at(x, below)], here, ground.down_east, ground.down_north,
+           std::max(below - above, 1));
+    }
+  }
+}
+
+void MapFrame::choose_source() {
+  std::vector<float> areas;
+  for (std::size_t i = 0; i < ground_.size(); i += 13) {
+    const PixelGround& g = ground_[i];
+    const float area = std::abs(g.across_east * g.down_north - g.across_north * g.down_east);
+    if (area > 0.0F) areas.push_back(area);
+  }
+  if (areas.empty()) throw Bug("a map that shows nothing");
+  // Finer than most pixels: what is near the centre of a hemisphere sets the detail.
+  const auto fine = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 10);
+  std::nth_element(areas.begin(), fine, areas.end());
+  pixel_m_ = std::sqrt(*fine);
+  const Grid& grid = this->grid();
+  const double cell_m = grid.spacing_north_m(grid.ny() / 2);
+  rows_px_ = cell_m / pixel_m_;
+  const double coarser = std::min(1.0, rows_px_);
+  columns_px_ = rows_px_ * grid.ny() / grid.nx() *
+                (grid.window().east_deg - grid.window().west_deg) /
+                (grid.window().north_deg - grid.window().south_deg);
+  const auto cells = [&](int count, double share) {
+    return std::clamp(static_cast<int>(std::ceil(count * share)), 1, count);
+  };
+  source_.reset(new MapFrame(*page_, cells(grid.nx(), std::min(1.0, columns_px_)),
+                             cells(grid.ny(), coarser)));
+}
+
+MapScale MapFrame::scale() const {
+  if (is_aligned()) {
+    if (!grid().is_latitude_longitude()) return {pixel_east_m(height_ / 2), 1.0};
+    const double middle = pixel_east_m(height_ / 2);
+    const double ends[] = {pixel_east_m(0), pixel_east_m(height_ - 1)};
+    return {middle, std::max({middle, ends[0], ends[1]}) / std::min({middle, ends[0], ends[1]})};
+  }
+  std::vector<float> lengths;
+  for (std::size_t i = 0; i < ground_.size(); i += 7) {
+    const PixelGround& g = ground_[i];
+    for (const float length :
+         {std::hypot(g.across_east, g.across_north), std::hypot(g.down_east, g.down_north)}) {
+      if (length > 0.0F) lengths.push_back(length);
+    }
+  }
+  std::sort(lengths.begin(), lengths.end());
+  const auto at = [&](double share) {
+    return lengths[static_cast<std::size_t>(share * static_cast<double>(lengths.size() - 1))];
+  };
+  return {at(0.5), at(0.99) / at(0.01)};
+}
+
+PagePoint MapFrame::source_point(std::size_t pixel) const {
+  const Window& window = grid().window();
+  return {longitude_deg_[pixel] / (window.east_deg - window.west_deg) * source_->width_ - 0.5,
+          (1.0 - latitude_deg_[pixel] / (window.north_deg - window.south_deg)) * source_->height_ -
+              0.5};
+}
+
+Index MapFrame::cell_at(int x, int y) const {
+  const Grid& g = grid();
+  if (is_aligned()) {
+    const int column = static_cast<int>((x + 0.5) / columns_px_);
+    return g.cell(std::clamp(column, 0, g.nx() - 1), row_under(y));
+  }
+  if (!shows(x, y)) return kNoCell;
+  const Window& window = g.window();
+  const int column =
+      static_cast<int>(longitude_deg_[at(x, y)] / (window.east_deg - window.west_deg) * g.nx());
+  const int row =
+      static_cast<int>(latitude_deg_[at(x, y)] / (window.north_deg - window.south_deg) * g.ny());
+  return g.cell(std::clamp(column, 0, g.nx() - 1), std::clamp(row, 0, g.ny() - 1));
+}
+
+PagePoint MapFrame::on_page(int x, int y, double east, double north) const {
+  if (is_aligned()) return {east, -north};
+  const PixelGround& g = ground(x, y);
+  const double area = double(g.across_east) * g.down_north - double(g.across_north) * g.down_east;
+  if (area == 0.0) return {0.0, 0.0};
+  const double right = (east * g.down_north - north * g.down_east) / area;
+  const double down = (north * g.across_east - east * g.across_north) / area;
+  const double length = std::hypot(right, down);
+  if (!(length > 0.0)) return {0.0, 0.0};
+  const double scale = std::hypot(east, north) / length;
+  return {right * scale, down * scale};
+}
+
+namespace {
+
+// Means along rows near the poles, where cells are narrower than high, over as many as one is high.
+void widen_rows(const MapFrame& source, Sampled& sampled) {
+  const int width = sampled.mean.width;
+#pragma omp parallel for schedule(dynamic, 8)
+  for (int y = 0; y < sampled.mean.height; ++y) {
+    const double cells = source.pixel_north_m(y) / std::max(source.pixel_east_m(y), 1e-3);
+    const int reach = std::min(static_cast<int>(std::lround(0.5 * (cells - 1.0))), width / 2 - 1);
+    if (reach < 1) continue;
+    std::vector<double> sums(width + 2 * reach + 1, 0.0), covers(sums.size(), 0.0);
+    for (int i = 0; i < width + 2 * reach; ++i) {
+      const int x =
+          source.wraps_east() ? (i - reach + width) % width : std::clamp(i - reach, 0, width - 1);
+      const float cover = sampled.cover.at(x, y);
+      sums[i + 1] = sums[i] + (cover > 0.0F ? cover * sampled.mean.at(x, y) : 0.0F);
+      covers[i + 1] = covers[i] + cover;
+    }
+    for (int x = 0; x < width; ++x) {
+      const double cover = covers[x + 2 * reach + 1] - covers[x];
+      const double sum = sums[x + 2 * reach + 1] - sums[x];
+      sampled.cover.at(x, y) = static_cast<float>(cover / (2 * reach + 1));
+      sampled.mean.at(x, y) =
+          cover > 1e-9 ? static_cast<float>(sum / cover) : std::numeric_limits<float>::quiet_NaN();
+    }
+  }
+}
+
+// Weights of four neighbours, the second and third of them around the point.
+std::array<float, 4> weights(Filter filter, float t) {
+  const float u = 1.0F - t;
+  if (filter == Filter::linear) return {0.0F, u, t, 0.0F};
+  return {u * u * u / 6.0F, 2.0F / 3.0F - t * t * (2.0F - t) / 2.0F,
+          2.0F / 3.0F - u * u * (2.0F - u) / 2.0F, t * t * t / 6.0F};
+}
+
+}  // namespace
+
+Sampled MapFrame::project(Sampled sampled, Filter filter) const {
+  constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+  const bool round = grid().topology() == Topology::sphere;
+  widen_rows(*source_, sampled);
+  const int columns = sampled.mean.width, rows = sampled.mean.height;
+  Sampled out{Raster(*this, kNaN), Raster(*this, kNaN)};
+#pragma omp parallel for schedule(dynamic, 8)
+  for (int y = 0; y < height_; ++y) {
+    for (int x = 0; x < width_; ++x) {
+      if (!shows(x, y)) continue;
+      const PagePoint point = source_point(at(x, y));
+      const int i = static_cast<int>(std::floor(point.x)),
+                j = static_cast<int>(std::floor(point.y));
+      const auto across = weights(filter, static_cast<float>(point.x - i));
+      const auto down = weights(filter, static_cast<float>(point.y - j));
+      float sum = 0.0F, there = 0.0F;
+      for (int b = 0; b < 4; ++b) {
+        if (down[b] == 0.0F) continue;
+        int row = j - 1 + b, turned = 0;
+        if (round && (row < 0 || row >= rows)) {  // over the pole
+          row = row < 0 ? -1 - row : 2 * rows - 1 - row;
+          turned = columns / 2;
+        }
+        row = std::clamp(row, 0, rows - 1);
+        for (int a = 0; a < 4; ++a) {
+          if (across[a] == 0.0F) continue;
+          const int asked = i - 1 + a + turned;
+          const int column =
+              round ? (asked % columns + columns) % columns : std::clamp(asked, 0, columns - 1);
+          const float cover = sampled.cover.at(column, row);
+          if (!(cover > 0.0F)) continue;
+          const float weight = across[a] * down[b] * cover;
+          sum += weight * sampled.mean.at(column, row);
+          there += weight;
+        }
+      }
+      out.cover.at(x, y) = there;
+      if (there > 0.0F) out.mean.at(x, y) = sum / there;
+    }
+  }
+  return out;
+}
+
+Raster MapFrame::project_nearest(const Raster& source) const {
+  Raster out(*this, std::numeric_limits<float>::quiet_NaN());
+#pragma omp parallel for schedule(dynamic, 8)
+  for (int y = 0; y < height_; ++y) {
+    for (int x = 0; x < width_; ++x) {
+      if (!shows(x, y)) continue;
+      const PagePoint point = source_point(at(x, y));
+      out.at(x, y) =
+          source.at(std::clamp(static_cast<int>(std::lround(point.x)), 0, source.width - 1),
+                    std::clamp(static_cast<int>(std::lround(point.y)), 0, source.height - 1));
+    }
+  }
+  return out;
 }
 
 Taps MapFrame::column_taps(Filter filter) const {
-  return axis_taps(grid_->nx(), width_, wraps_east(), false, filter);
+  return axis_taps(grid().nx(), width_, grid().topology() != Topology::plane, false, filter);
 }
 
 Taps MapFrame::row_taps(Filter filter) const {
-  return axis_taps(grid_->ny(), height_, grid_->topology() == Topology::torus, true, filter);
+  return axis_taps(grid().ny(), height_, grid().topology() == Topology::torus, true, filter);
 }
 
 Raster sample_majority(const MapFrame& frame, std::span<const std::int8_t> categories) {
+  if (!frame.is_aligned()) {
+    return frame.project_nearest(sample_majority(frame.source(), categories));
+  }
   const auto columns = frame.column_taps(Filter::linear), rows = frame.row_taps(Filter::linear);
   Raster out(frame);
 #pragma omp parallel for schedule(static)
@@ -113,26 +374,58 @@ Raster sample_majority(const MapFrame& frame, std::span<const std::int8_t> categ
   return out;
 }
 
-Raster blur(const MapFrame& frame, const Raster& raster, double radius_px) {
-  Raster out = raster;
-  const double ground_m = radius_px * frame.pixel_north_m(raster.height / 2);
+namespace {
+
+// Half-widths of the running mean of each row of pixels, and of the columns.
+struct BlurReach {
+  std::vector<int> rows;
+  int columns;
+};
+
+void blur_thrice(const MapFrame& frame, Raster& raster, const BlurReach& reach) {
   for (int pass = 0; pass < 3; ++pass) {
 #pragma omp parallel
     {
       std::vector<double> sums;
 #pragma omp for schedule(static)
-      for (int y = 0; y < out.height; ++y) {
-        const int radius =
-            static_cast<int>(std::min(std::lround(ground_m / std::max(frame.pixel_east_m(y), 1e-3)),
-                                      static_cast<long>(out.width / 8)));
-        box_line(&out.at(0, y), out.width, 1, radius, frame.wraps_east(), sums);
+      for (int y = 0; y < raster.height; ++y) {
+        box_line(&raster.at(0, y), raster.width, 1, reach.rows[y], frame.wraps_east(), sums);
       }
 #pragma omp for schedule(static)
-      for (int x = 0; x < out.width; ++x) {
-        box_line(&out.at(x, 0), out.height, out.width, static_cast<int>(std::lround(radius_px)),
-                 frame.grid().topology() == Topology::torus, sums);
+      for (int x = 0; x < raster.width; ++x) {
+        box_line(&raster.at(x, 0), raster.height, raster.width, reach.columns,
+                 frame.is_aligned() && frame.grid().topology() == Topology::torus, sums);
       }
     }
+  }
+}
+
+}  // namespace
+
+Raster blur(const MapFrame& frame, const Raster& raster, double radius_px) {
+  Raster out = raster;
+  BlurReach reach{std::vector<int>(raster.height), static_cast<int>(std::lround(radius_px))};
+  if (frame.is_aligned()) {
+    const double ground_m = radius_px * frame.pixel_north_m(raster.height / 2);
+    for (int y = 0; y < raster.height; ++y) {
+      reach.rows[y] =
+          static_cast<int>(std::min(std::lround(ground_m / std::max(frame.pixel_east_m(y), 1e-3)),
+                                    static_cast<long>(out.width / 8)));
+    }
+    blur_thrice(frame, out, reach);
+    return out;
+  }
+  std::fill(reach.rows.begin(), reach.rows.end(), reach.columns);
+  Raster there(frame, 1.0F);
+  for (std::size_t i = 0; i < out.values.size(); ++i) {
+    if (out.values[i] == out.values[i]) continue;
+    out.values[i] = there.values[i] = 0.0F;
+  }
+  blur_thrice(frame, out, reach);
+  blur_thrice(frame, there, reach);
+  for (std::size_t i = 0; i < out.values.size(); ++i) {
+    out.values[i] = raster.values[i] == raster.values[i] ? out.values[i] / there.values[i]
+                                                         : std::numeric_limits<float>::quiet_NaN();
   }
   return out;
 }

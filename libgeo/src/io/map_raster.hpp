@@ -4,10 +4,12 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "geo/core/grid.hpp"
+#include "map_page.hpp"
 
 namespace geo::io {
 
@@ -42,68 +44,136 @@ enum class Filter {
   smooth,  ///< cubic B-spline: no facets, the slope is continuous
 };
 
-/// How a grid lies on the pixels of its map. Where pixels are larger than cells a pixel takes the
-/// mean of what it covers, else it interpolates.
-class MapFrame {
- public:
-  MapFrame(const Grid& grid, int width_px, int height_px);
-
-  [[nodiscard]] const Grid& grid() const { return *grid_; }
-  [[nodiscard]] int width() const { return width_; }
-  [[nodiscard]] int height() const { return height_; }
-  [[nodiscard]] bool wraps_east() const { return grid_->topology() != Topology::plane; }
-  /// Pixels across a cell (less than 1 where the map is coarser).
-  [[nodiscard]] double pixels_per_column() const { return double(width_) / grid_->nx(); }
-  [[nodiscard]] double pixels_per_row() const { return double(height_) / grid_->ny(); }
-  [[nodiscard]] bool is_coarser() const { return pixels_per_row() < 1.0; }
-  /// Extent of a pixel on the ground in a row of pixels, m.
-  [[nodiscard]] double pixel_east_m(int y) const;
-  [[nodiscard]] double pixel_north_m(int y) const;
-  /// Position of a cell centre, pixels from the upper left corner of the map.
-  [[nodiscard]] double x_of(double column) const { return (column + 0.5) * pixels_per_column(); }
-  [[nodiscard]] double y_of(double row) const { return height_ - (row + 0.5) * pixels_per_row(); }
-
-  [[nodiscard]] Taps column_taps(Filter filter) const;
-  [[nodiscard]] Taps row_taps(Filter filter) const;
-
- private:
-  [[nodiscard]] int row_under(int y) const;
-  const Grid* grid_;
-  int width_, height_;
-};
-
 /// A resampled field: mean over those cells where it exists, and the share of the pixel where it
 /// does. `mean` is NaN where the share is 0.
 struct Sampled {
   Raster mean, cover;
 };
 
+/// What of the ground a pixel of a projected map shows: metres east and north from its left to its
+/// right edge, and from its upper to its lower one.
+struct PixelGround {
+  float across_east, across_north, down_east, down_north;
+};
+
+/// Length on the ground of a pixel of a map, and largest over smallest of its lengths.
+struct MapScale {
+  double metres_per_px, varies;
+};
+
+/// How a grid lies on the pixels of its map. Where pixels are larger than cells a pixel takes the
+/// mean of what it covers, else it interpolates.
+///
+/// On an aligned page columns and rows are resampled one after the other. On a projected one the
+/// grid is first brought to cells as large as pixels on the ground (the source), towards the poles
+/// as wide as high, and each pixel then interpolates between those.
+class MapFrame {
+ public:
+  explicit MapFrame(const MapPage& page);
+
+  [[nodiscard]] const Grid& grid() const { return page_->grid(); }
+  [[nodiscard]] const MapPage& page() const { return *page_; }
+  [[nodiscard]] int width() const { return width_; }
+  [[nodiscard]] int height() const { return height_; }
+  [[nodiscard]] bool is_aligned() const { return aligned_; }
+  /// Whether the eastern edge of the page goes on at its western one.
+  [[nodiscard]] bool wraps_east() const {
+    return is_aligned() && grid().topology() != Topology::plane;
+  }
+  /// Pixels across a cell (less than 1 where the map is coarser).
+  [[nodiscard]] double pixels_per_column() const { return columns_px_; }
+  [[nodiscard]] double pixels_per_row() const { return rows_px_; }
+  [[nodiscard]] bool is_coarser() const { return rows_px_ < 1.0; }
+  /// Extent of a pixel on the ground in a row of pixels of an aligned page, m.
+  [[nodiscard]] double pixel_east_m(int y) const;
+  [[nodiscard]] double pixel_north_m(int y) const;
+  /// Side of a typical pixel on the ground, m.
+  [[nodiscard]] double pixel_m() const { return pixel_m_; }
+  [[nodiscard]] MapScale scale() const;
+
+  /// Whether a pixel shows a part of the planet.
+  [[nodiscard]] bool shows(int x, int y) const {
+    return is_aligned() || latitude_deg_[at(x, y)] == latitude_deg_[at(x, y)];
+  }
+  /// The cell in the middle of a pixel, kNoCell beyond the edge of the map.
+  [[nodiscard]] Index cell_at(int x, int y) const;
+  /// What a pixel of a projected page shows; needs shows(x, y).
+  [[nodiscard]] const PixelGround& ground(int x, int y) const { return ground_[at(x, y)]; }
+  /// A vector of the ground as it points on the page (x to the right, y down), as long as it was.
+  [[nodiscard]] PagePoint on_page(int x, int y, double east, double north) const;
+
+  [[nodiscard]] Taps column_taps(Filter filter) const;
+  [[nodiscard]] Taps row_taps(Filter filter) const;
+
+  /// The grid in cells about as large as pixels; of projected pages.
+  [[nodiscard]] const MapFrame& source() const { return *source_; }
+  /// Pixels of a projected page from those of its source; NaN beyond the edge of the map.
+  [[nodiscard]] Sampled project(Sampled source, Filter filter) const;
+  [[nodiscard]] Raster project_nearest(const Raster& source) const;
+
+ private:
+  MapFrame(const MapPage& page, int width_px, int height_px);
+  void locate_pixels();
+  void measure_ground(const std::vector<Centre>& places);
+  void choose_source();
+  [[nodiscard]] std::size_t at(int x, int y) const {
+    return static_cast<std::size_t>(y) * width_ + x;
+  }
+  [[nodiscard]] int row_under(int y) const;
+  /// Position in the rasters of the source, from the upper left centre of a pixel.
+  [[nodiscard]] PagePoint source_point(std::size_t pixel) const;
+
+  const MapPage* page_;
+  bool aligned_ = true;
+  int width_, height_;
+  double columns_px_, rows_px_, pixel_m_;
+  std::unique_ptr<MapFrame> source_;
+  // Of projected pages; degrees from the south-western corner of the grid, NaN beyond the edge.
+  std::vector<float> latitude_deg_, longitude_deg_;
+  std::vector<PixelGround> ground_;
+};
+
 /// Resamples `value(cell)`, NaN where there is none.
 template <class Value>
 Sampled sample(const MapFrame& frame, Filter filter, const Value& value) {
+  if (!frame.is_aligned()) {
+    return frame.project(sample(frame.source(), Filter::linear, value), filter);
+  }
   const auto columns = frame.column_taps(filter), rows = frame.row_taps(filter);
+  // Along the rows of the grid first: each is seen by several rows of pixels where these are finer.
+  const int nx = frame.grid().nx(), ny = frame.grid().ny(), width = frame.width();
+  std::vector<float> sums(static_cast<std::size_t>(ny) * width), shares(sums.size());
+#pragma omp parallel for schedule(static)
+  for (int row = 0; row < ny; ++row) {
+    const Index base = row * nx;
+    for (int x = 0; x < width; ++x) {
+      float sum = 0.0F, there = 0.0F;
+      for (int i = columns.begin[x]; i < columns.begin[x + 1]; ++i) {
+        const float v = value(base + columns.index[i]);
+        if (v == v) {
+          sum += columns.weight[i] * v;
+          there += columns.weight[i];
+        }
+      }
+      sums[static_cast<std::size_t>(row) * width + x] = sum;
+      shares[static_cast<std::size_t>(row) * width + x] = there;
+    }
+  }
   Sampled out{Raster(frame), Raster(frame)};
-  const int nx = frame.grid().nx();
 #pragma omp parallel for schedule(static)
   for (int y = 0; y < frame.height(); ++y) {
     float* const mean = &out.mean.at(0, y);
     float* const cover = &out.cover.at(0, y);
     for (int j = rows.begin[y]; j < rows.begin[y + 1]; ++j) {
-      const Index base = rows.index[j] * nx;
-      for (int x = 0; x < frame.width(); ++x) {
-        float sum = 0.0F, there = 0.0F;
-        for (int i = columns.begin[x]; i < columns.begin[x + 1]; ++i) {
-          const float v = value(base + columns.index[i]);
-          if (v == v) {
-            sum += columns.weight[i] * v;
-            there += columns.weight[i];
-          }
-        }
-        mean[x] += rows.weight[j] * sum;
-        cover[x] += rows.weight[j] * there;
+      const float* const sum = &sums[static_cast<std::size_t>(rows.index[j]) * width];
+      const float* const there = &shares[static_cast<std::size_t>(rows.index[j]) * width];
+      const float weight = rows.weight[j];
+      for (int x = 0; x < width; ++x) {
+        mean[x] += weight * sum[x];
+        cover[x] += weight * there[x];
       }
     }
-    for (int x = 0; x < frame.width(); ++x) {
+    for (int x = 0; x < width; ++x) {
       mean[x] = cover[x] > 0.0F ? mean[x] / cover[x] : std::numeric_limits<float>::quiet_NaN();
     }
   }
@@ -115,7 +185,8 @@ Sampled sample(const MapFrame& frame, Filter filter, const Value& value) {
 Raster sample_majority(const MapFrame& frame, std::span<const std::int8_t> categories);
 
 /// Running mean over a square of that many pixels of latitude, three times (nearly Gaussian);
-/// widened with latitude, so that it is round on the ground.
+/// widened with latitude, so that it is round on the ground. On projected pages round on the page,
+/// over the pixels that have a value.
 Raster blur(const MapFrame& frame, const Raster& raster, double radius_px);
 
 /// Change of a raster per pixel, larger of the two directions (borders are drawn one pixel wide).

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <numeric>
+#include <optional>
 
 namespace geo::io {
 namespace {
@@ -54,6 +55,13 @@ struct Step {
   int columns, rows;
 };
 
+/// A point of a river on the grid: columns run on round the planet, rows over the poles.
+struct GridPoint {
+  double column, row;
+  float flow;
+};
+using GridLine = std::vector<GridPoint>;
+
 class Tracer {
  public:
   Tracer(const MapFrame& frame, const State& state)
@@ -63,12 +71,13 @@ class Tracer {
         flow_(flow_of(state)),
         rank_(rank_of(state, flow_)),
         // Lines of small maps are relatively wider and need more room.
-        pixel_m_(frame.pixel_north_m(frame.height() / 2) * map_unit(frame.width())) {
+        pixel_m_(frame.pixel_m() * map_unit(frame.width())) {
     if (state.has(field::drainage_area)) area_m2_ = state.read(field::drainage_area);
     const double cell_m = grid_.spacing_north_m(grid_.ny() / 2);
     source_m2_ = std::pow(std::max(kSourcePx * pixel_m_, kSourceCells * cell_m), 2);
     if (state.has(field::elevation)) elevation_ = state.read(field::elevation);
     if (state.has(field::lake_depth)) lake_depth_ = state.read(field::lake_depth);
+    if (!frame.is_aligned()) projector_.emplace(frame.page());
   }
 
   RiverNetwork trace() {
@@ -76,18 +85,20 @@ class Tracer {
     least_rank_ = least_rank();
     std::vector<std::uint8_t> has_donor(receiver_.size(), 0), drawn(receiver_.size(), 0);
     std::vector<Index> cells;
+    std::vector<GridLine> lines;
     for (Index i = 0; i < grid_.size(); ++i) {
       if (!is_drawn(i)) continue;
-      if (cells.empty()) network.least_flow = network.most_flow = flow_[i];
       cells.push_back(i);
       has_donor[receiver_[i]] = 1;
-      network.least_flow = std::min(network.least_flow, flow_[i]);
-      network.most_flow = std::max(network.most_flow, flow_[i]);
     }
     for (const Index source : cells) {
-      if (has_donor[source] == 0) follow(source, network, drawn);
+      if (has_donor[source] == 0) follow(source, lines, drawn);
     }
-    for (auto& line : network.lines) smooth(line);
+    for (auto& line : lines) {
+      smooth(line);
+      place(line, network);
+    }
+    measure(network);
     return network;
   }
 
@@ -107,7 +118,7 @@ class Tracer {
 
   [[nodiscard]] Step step(Index from, Index to) const {
     int columns = grid_.column(to) - grid_.column(from);
-    if (frame_.wraps_east()) {
+    if (grid_.topology() != Topology::plane) {
       if (2 * columns > grid_.nx()) columns -= grid_.nx();
       if (2 * columns < -grid_.nx()) columns += grid_.nx();
     }
@@ -135,19 +146,20 @@ class Tracer {
     return value_of(1);
   }
 
-  void follow(Index cell, RiverNetwork& network, std::vector<std::uint8_t>& drawn) {
+  void follow(Index cell, std::vector<GridLine>& lines, std::vector<std::uint8_t>& drawn) {
     double column = grid_.column(cell), row = grid_.row(cell);
-    auto* line = &network.lines.emplace_back();
-    const auto add = [&](Index i) {
-      line->push_back({frame_.x_of(column), frame_.y_of(row), flow_[i]});
-    };
+    auto* line = &lines.emplace_back();
+    const auto add = [&](Index i) { line->push_back({column, row, flow_[i]}); };
     add(cell);
     while (is_drawn(cell) && drawn[cell] == 0) {
       drawn[cell] = 1;
       const Index to = receiver_[cell];
       const Step by = step(cell, to);
-      if (std::abs(by.columns) > 1 || std::abs(by.rows) > 1) {  // over a pole: the pen is lifted
-        line = &network.lines.emplace_back();
+      if (std::abs(by.columns) > 1 || std::abs(by.rows) > 1) {  // over a pole: a new line beyond it
+        row = grid_.row(to) < grid_.ny() / 2 ? -1.0 - grid_.row(to)
+                                             : 2.0 * grid_.ny() - 1.0 - grid_.row(to);
+        add(to);
+        line = &lines.emplace_back();
         column = grid_.column(to);
         row = grid_.row(to);
       } else {
@@ -159,15 +171,60 @@ class Tracer {
     }
   }
 
+  // A line on the pixels of the map, cut where the map does not show it.
+  void place(const GridLine& line, RiverNetwork& network) const {
+    if (frame_.is_aligned()) {
+      auto& drawn = network.lines.emplace_back();
+      for (const GridPoint& point : line) {
+        drawn.push_back({(point.column + 0.5) * frame_.pixels_per_column(),
+                         frame_.height() - (point.row + 0.5) * frame_.pixels_per_row(),
+                         point.flow});
+      }
+      return;
+    }
+    const Window& window = grid_.window();
+    const double column_deg = (window.east_deg - window.west_deg) / grid_.nx();
+    const double row_deg = (window.north_deg - window.south_deg) / grid_.ny();
+    const double lon_0 = frame_.page().centre().longitude_deg;
+    bool pen_down = false;
+    double east_before = 0.0;
+    for (const GridPoint& point : line) {
+      Centre here{window.south_deg + (point.row + 0.5) * row_deg,
+                  window.west_deg + (point.column + 0.5) * column_deg};
+      if (std::abs(here.latitude_deg) > 90.0) {
+        here = {std::copysign(180.0, here.latitude_deg) - here.latitude_deg,
+                here.longitude_deg + 180.0};
+      }
+      const double east = std::remainder(here.longitude_deg - lon_0, 360.0);
+      const bool cut = !frame_.page().is_azimuthal() && std::abs(east - east_before) > 180.0;
+      const auto at = projector_->point_of(here);
+      if (at && (!pen_down || cut)) network.lines.emplace_back();
+      if (at) network.lines.back().push_back({at->x, at->y, point.flow});
+      pen_down = at.has_value();
+      east_before = east;
+    }
+  }
+
+  static void measure(RiverNetwork& network) {
+    bool first = true;
+    for (const auto& line : network.lines) {
+      for (const RiverPoint& point : line) {
+        network.least_flow = first ? point.flow : std::min(network.least_flow, point.flow);
+        network.most_flow = first ? point.flow : std::max(network.most_flow, point.flow);
+        first = false;
+      }
+    }
+  }
+
   // Binomial smoothing with fixed ends takes away the steps of the eight directions.
-  void smooth(std::vector<RiverPoint>& line) const {
+  void smooth(GridLine& line) const {
     const int passes = frame_.pixels_per_row() < 0.75 ? 3 : 5;
     for (int pass = 0; pass < passes && line.size() > 2; ++pass) {
-      RiverPoint before = line.front();
+      GridPoint before = line.front();
       for (std::size_t i = 1; i + 1 < line.size(); ++i) {
-        const RiverPoint here = line[i];
-        line[i].x = 0.25 * before.x + 0.5 * here.x + 0.25 * line[i + 1].x;
-        line[i].y = 0.25 * before.y + 0.5 * here.y + 0.25 * line[i + 1].y;
+        const GridPoint here = line[i];
+        line[i].column = 0.25 * before.column + 0.5 * here.column + 0.25 * line[i + 1].column;
+        line[i].row = 0.25 * before.row + 0.5 * here.row + 0.25 * line[i + 1].row;
         before = here;
       }
     }
@@ -178,6 +235,7 @@ class Tracer {
   std::span<const std::int32_t> receiver_;
   std::vector<float> flow_, rank_;
   double pixel_m_, source_m2_ = 0.0;
+  std::optional<MapPage::Projector> projector_;
   float least_rank_ = 0.0F;
   std::span<const float> elevation_, lake_depth_;
   std::span<const double> area_m2_;

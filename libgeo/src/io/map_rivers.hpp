@@ -11,7 +11,7 @@
 namespace geo::io {
 
 struct RiverPoint {
-  double x, y;  ///< pixels from the map's upper left corner; x runs on beyond the map's edges
+  double x, y;  ///< pixels from the map's upper left corner; on aligned pages x runs on beyond it
   float flow;   ///< discharge, or drainage area where that is not known
 };
 
@@ -25,8 +25,9 @@ struct RiverNetwork {
 bool has_rivers(const State& state);
 
 /// Traces rivers along `flow_receiver`. Only the largest by discharge and drainage area are kept,
-/// about the same length of line per area of map at any scale. Lines are smoothed over a few cells;
-/// one that crosses the date line runs on, one that crosses a pole is cut.
+/// about the same length of line per area of map at any scale. Lines are smoothed over a few cells.
+/// On aligned pages one that crosses the date line runs on and one that crosses a pole is cut; on
+/// projected ones they are cut at the edge of the map alone.
 RiverNetwork trace_rivers(const MapFrame& frame, const State& state);
 
 /// Width of a river on a map 1800 px wide.

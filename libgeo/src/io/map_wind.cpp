@@ -40,11 +40,11 @@ class Arrows {
   [[nodiscard]] std::vector<Point> walk(Point at, double length_px, double sense) const {
     std::vector<Point> way{at};
     for (double gone = 0.0; gone < length_px; gone += kStepPx) {
-      const double east = value(wind_.east, at), north = value(wind_.north, at);
-      const double norm = std::hypot(east, north);
+      const double right = value(wind_.right, at), down = value(wind_.down, at);
+      const double norm = std::hypot(right, down);
       if (!(norm > 1e-6)) break;
-      at.x += sense * kStepPx * east / norm;
-      at.y -= sense * kStepPx * north / norm;
+      at.x += sense * kStepPx * right / norm;
+      at.y += sense * kStepPx * down / norm;
       if (at.y < 0 || at.y > wind_.speed.height) break;
       way.push_back(at);
     }
@@ -74,7 +74,9 @@ void draw_arrow(MapCanvas& canvas, const std::vector<Point>& way, double shift_p
 
 float high_speed(const Raster& speed) {
   std::vector<float> some;
-  for (std::size_t i = 0; i < speed.values.size(); i += 97) some.push_back(speed.values[i]);
+  for (std::size_t i = 0; i < speed.values.size(); i += 97) {
+    if (speed.values[i] == speed.values[i]) some.push_back(speed.values[i]);
+  }
   const auto at = some.begin() + static_cast<std::ptrdiff_t>(some.size() * 95 / 100);
   std::nth_element(some.begin(), at, some.end());
   return std::max(*at, 1e-3F);
@@ -90,10 +92,16 @@ WindRasters sample_wind(const MapFrame& frame, const State& state) {
                   [&](Index i) { return values[i] == values[i] ? values[i] : 0.0F; })
         .mean;
   };
-  WindRasters wind{sampled(field::wind_east), sampled(field::wind_north), {}};
-  wind.speed = wind.east;
-  for (std::size_t i = 0; i < wind.speed.values.size(); ++i) {
-    wind.speed.values[i] = std::hypot(wind.east.values[i], wind.north.values[i]);
+  WindRasters wind{sampled(field::wind_east), sampled(field::wind_north), Raster(frame)};
+  for (int y = 0; y < frame.height(); ++y) {
+    for (int x = 0; x < frame.width(); ++x) {
+      const float east = wind.right.at(x, y), north = wind.down.at(x, y);
+      wind.speed.at(x, y) = std::hypot(east, north);
+      if (!frame.shows(x, y)) continue;
+      const PagePoint way = frame.on_page(x, y, east, north);
+      wind.right.at(x, y) = static_cast<float>(way.x);
+      wind.down.at(x, y) = static_cast<float>(way.y);
+    }
   }
   return wind;
 }
@@ -113,7 +121,7 @@ void draw_wind_arrows(MapCanvas& canvas, const WindRasters& wind, bool wraps_eas
       for (int i = 0; i < columns; ++i) {
         const Point start{(i + (row % 2 == 0 ? 0.25 : 0.75)) * spacing, y};
         const float relative = std::min(arrows.speed(start) / fast, 1.2F);
-        if (relative < 0.05F) continue;
+        if (!(relative >= 0.05F)) continue;
         const auto way = arrows.path(start, (0.15 + 0.85 * relative) * spacing);
         draw_arrow(canvas, way, 0.0);
         if (wraps_east && start.x < spacing) draw_arrow(canvas, way, width);

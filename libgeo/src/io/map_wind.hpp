@@ -8,7 +8,7 @@ namespace geo::io {
 
 /// Winds on the pixels of a map.
 struct WindRasters {
-  Raster east, north, speed;  ///< m/s
+  Raster right, down, speed;  ///< m/s along the page, NaN beyond its edge
 };
 WindRasters sample_wind(const MapFrame& frame, const State& state);
 

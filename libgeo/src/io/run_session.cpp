@@ -224,7 +224,7 @@ void RunSession::write_summaries(const RunEvents& events) {
   if (settings_.maps) {
     tell(events.stage_begins, "maps", static_cast<double>(settings_.map_width_px));
     const auto start = Clock::now();
-    draw_run(folder_, static_cast<int>(settings_.map_width_px));
+    draw_run(folder_, settings_.map_view());
     tell(events.stage_ends, "maps", seconds_since(start));
   }
   check_stop();

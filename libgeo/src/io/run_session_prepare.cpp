@@ -20,9 +20,15 @@ namespace geo::io {
 namespace {
 
 // What may differ between a run and its continuation: how far it goes and what else is written.
-constexpr std::string_view kFreeOnResume[] = {
-    "run.to",      "output.vtk",          "output.globe",      "output.globe_exaggeration",
-    "output.maps", "output.map_width_px", "output.compression"};
+constexpr std::string_view kFreeOnResume[] = {"run.to",
+                                              "output.vtk",
+                                              "output.globe",
+                                              "output.globe_exaggeration",
+                                              "output.maps",
+                                              "output.map_width_px",
+                                              "output.map_projection",
+                                              "output.map_center",
+                                              "output.compression"};
 // The same where stages are computed again behind others that stay.
 constexpr std::string_view kFreeOnPartialOverwrite[] = {"run.from", "run.to"};
 
@@ -132,6 +138,7 @@ std::string RunSession::resolved_config() const {
 void RunSession::prepare() {
   now_or_given();  // refuses a bad SOURCE_DATE_EPOCH
   if (!settings_.grid_is_automatic()) parse_grid_size(settings_.grid);
+  (void)settings_.map_view();  // refuses a centre that the projection cannot have
   choose_stages();
   look_at_folder();
   load_complete_stages();

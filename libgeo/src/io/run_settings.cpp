@@ -6,8 +6,18 @@
 #include <limits>
 
 #include "geo/core/error.hpp"
+#include "geo/io/maps.hpp"
 
 namespace geo::io {
+namespace {
+
+std::vector<std::string_view> names_of_projections() {
+  std::vector<std::string_view> names;
+  for (const MapProjection& each : map_projections()) names.push_back(each.name);
+  return names;
+}
+
+}  // namespace
 
 std::vector<Parameter> RunSettings::parameters() {
   return {
@@ -60,9 +70,23 @@ std::vector<Parameter> RunSettings::parameters() {
       flag("output.maps", maps, "draw the maps and the report", "design"),
       integer("output.map_width_px", map_width_px, "1", 300, 20000, "width of the maps in pixels",
               "design"),
+      choice("output.map_projection", map_projection, names_of_projections(),
+             "projection of the maps of a planet; islands keep their own", "snyder1987"),
+      text("output.map_center", map_center,
+           "LAT,LON of the middle of the maps; empty is 0,0; only azimuthal projections take a "
+           "latitude",
+           "design"),
       integer("output.compression", compression, "1", 0, 9,
               "how hard NetCDF files are compressed; 0 stores them as they are", "design"),
   };
+}
+
+MapView RunSettings::map_view() const {
+  MapView view(static_cast<int>(map_width_px));
+  view.projection = map_projection;
+  if (!map_center.empty()) view.centre = parse_centre("output.map_center", map_center);
+  static_cast<void>(map_layout(Grid::sphere(8, 4), view));
+  return view;
 }
 
 GridSize parse_grid_size(const std::string& text) {

@@ -268,7 +268,7 @@ RiverCourses trace_river_courses(const PlanetCells& cells, const PlanetWater& wa
 
   // For each place of the courses, the planet cell that its step goes to.
   std::vector<Index> goal_of;
-  std::vector<float> sinks;  // to this share of its level
+  std::vector<std::uint8_t> on_lake;
   for (const Index from : river_steps(cells, water, beds)) {
     const Index to = water.receiver[from];
     const bool starts_inside = beds.inside(from), ends_inside = beds.inside(to);
@@ -288,11 +288,19 @@ RiverCourses trace_river_courses(const PlanetCells& cells, const PlanetWater& wa
       network.connect(source, goal, margin, joins, true);
     }
     goal_of.resize(network.size(), to);
-    sinks.resize(network.size(), beds.on_lake(from) && beds.on_lake(to) ? 1.0F : 0.25F);
+    on_lake.resize(network.size(), beds.on_lake(from) && beds.on_lake(to) ? 1 : 0);
   }
   RiverCourses courses = network.take();
-  courses.least_m = std::move(sinks);
-  for (std::size_t k = 0; k < courses.cell.size(); ++k) courses.least_m[k] *= courses.level_m[k];
+  constexpr float kShare = 0.25F, kAnywhere_m = 30.0F;
+  for (std::size_t k = 0; k < courses.cell.size(); ++k) {
+    const float level_m = courses.level_m[k];
+    const float sunk_m = std::max(0.0F, std::min(kShare * level_m, level_m - kAnywhere_m));
+    courses.least_m.push_back(on_lake[k] != 0 ? level_m : sunk_m);
+    // What sank upstream of a lake would drain it.
+    if (const std::int32_t next = courses.next[k]; next != kCourseEnds) {
+      courses.least_m[k] = std::max(courses.least_m[k], courses.least_m[next]);
+    }
+  }
   return courses;
 }
 

@@ -31,6 +31,31 @@ double seam_m(const PlanetCells& cells) {
   return std::min(0.25 * cells.planet().face_east_m(cells.first_row()), 0.05 * extent_m);
 }
 
+/// 1 on the planet's land out of sight of the sea, one value per covered cell.
+std::vector<float> inland(const PlanetCells& cells, std::span<const float> planet_elevation_m) {
+  const Grid& planet = cells.planet();
+  std::vector<float> share(cells.size());
+  for (int j = cells.first_row(); j < cells.first_row() + cells.rows(); ++j) {
+    for (int i = 0; i < planet.nx(); ++i) {
+      bool dry = planet_elevation_m[planet.cell(i, j)] >= 0.0F;
+      for (int k = 0; k < kDirections; ++k) {
+        const Index next = planet.neighbour(planet.cell(i, j), k);
+        dry = dry && (next == kNoCell || planet_elevation_m[next] >= 0.0F);
+      }
+      share[cells.at(i, j)] = dry ? 1.0F : 0.0F;
+    }
+  }
+  return share;
+}
+
+/// A height with detail on it. Plains near the level of the sea would become flats at it wherever
+/// detail dips further: inland, h exp(d / h) stays above it and drains.
+double with_detail(double height_m, double detail_m, double inland) {
+  const double plainly = height_m + detail_m;
+  if (!(detail_m < 0.0 && height_m > 0.0 && inland > 0.0)) return plainly;
+  return plainly + inland * (height_m * std::exp(detail_m / height_m) - plainly);
+}
+
 /// Fractional Brownian motion from about twice the planet's cells down to twice the island's.
 DetailLaw detail_law(const PlanetCells& cells, const IslandParameters& p) {
   const double spacing_m = cells.planet().face_east_m(cells.first_row());
@@ -96,11 +121,15 @@ std::vector<float> exemplary_detail(const PlanetCells& cells, const PlanetRelief
 }
 
 /// Takes the mean of detail over each planet cell out and adds what is left.
-void add_centred(const PlanetCells& cells, std::span<const float> detail, std::span<float> z) {
+void add_centred(const PlanetCells& cells, std::span<const float> planet_elevation_m,
+                 std::span<const float> detail, std::span<float> z) {
   const std::vector<float> mean = cells.means(detail, {}, 0.0F);
+  const std::vector<float> dry = inland(cells, planet_elevation_m);
   on_cells(cells.fine(), [&](int i, int j, Index c) {
-    const double centred = detail[c] - cells.interpolate(mean, i, j);
-    z[c] += static_cast<float>(edge_ramp(cells.fine(), i, j, seam_m(cells)) * centred);
+    const double centred_m = detail[c] - cells.interpolate(mean, i, j);
+    const double ramp = edge_ramp(cells.fine(), i, j, seam_m(cells));
+    z[c] = static_cast<float>(
+        with_detail(z[c], ramp * centred_m, std::clamp(cells.interpolate(dry, i, j), 0.0, 1.0)));
   });
 }
 
@@ -227,7 +256,7 @@ void raise_island(const PlanetCells& cells, const PlanetRelief& planet, const Is
     if (exemplars != nullptr) {
       take_exemplars(cells, planet, p, law, *exemplars, seed, planet_m, detail);
     }
-    add_centred(cells, detail, elevation_m);
+    add_centred(cells, planet.elevation_m, detail, elevation_m);
   }
   dry_inland_dips(cells, planet.elevation_m, elevation_m);
   if (p.edge_fade) sink_edges(cells.fine(), p, seed, elevation_m);

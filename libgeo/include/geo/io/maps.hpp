@@ -1,12 +1,15 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "geo/core/state.hpp"
+#include "geo/io/map_view.hpp"
 
 namespace geo::io {
 
@@ -32,41 +35,54 @@ struct MapLayout {
   int map_left, map_top, map_width, map_height;
 };
 
-/// Layout of every map of that grid. The whole planet is drawn as plate carrée, 2:1; windows of it
-/// as an equirectangular map true to scale along their middle parallel; planes and tori to scale.
-/// Maps higher than `width_px` are narrowed so that their height equals it. `width_px` must be
-/// 300 to 20000; throws ConfigurationError.
-MapLayout map_layout(const Grid& grid, int width_px = 1800);
+/// Layout of every map of that grid in that view. By default the whole planet is drawn as plate
+/// carrée, 2:1; windows of it as an equirectangular map true to scale along their middle parallel;
+/// planes and tori to scale. Maps higher than wide are narrowed so that their height equals the
+/// width asked for, which must be 300 to 20000; throws ConfigurationError.
+MapLayout map_layout(const Grid& grid, const MapView& view = {});
+
+/// Where a place lies on a map, pixels from the map's upper left corner; nothing where the map does
+/// not show it.
+std::optional<std::array<double, 2>> position_on_map(const Grid& grid, const MapView& view,
+                                                     Centre place);
 
 /// The fields that maps are drawn from.
 std::vector<const FieldSpec*> map_fields();
 
 /// Draws the PNG maps that the fields of a state allow into a folder (created when absent), with
 /// title, units, legend and graticule: elevation, plates, crust_age, crust_thickness, rock_type,
-/// temperature, precipitation, wind, rivers, biomes, koppen, productivity, settlement. `width_px`
-/// is the width of the map itself, `note` a short remark for the upper right corner (seed,
-/// version). The map of elevation bears the `marks`. Maps are drawn at the same time on as many
-/// threads as OpenMP has; the pictures do not depend on how many. Each appears under its name only
-/// when it is whole. Throws IoError.
+/// temperature, precipitation, wind, rivers, biomes, koppen, productivity, settlement. `note` is a
+/// short remark for the upper right corner (seed, version). The map of elevation bears the `marks`.
+/// Maps are drawn at the same time on as many threads as OpenMP has; the pictures do not depend on
+/// how many. Each appears under its name only when it is whole. Throws IoError.
 std::vector<MapFile> draw_map_files(const State& state, const std::filesystem::path& folder,
-                                    int width_px = 1800, std::string_view note = {},
+                                    const MapView& view = {}, std::string_view note = {},
                                     std::span<const EventMark> marks = {});
 
 /// What `draw_map_files` would draw, without drawing it.
 std::vector<MapFile> list_map_files(const State& state, const std::filesystem::path& folder,
-                                    int width_px = 1800);
-/// Draws an island: `name`.png (shaded relief with rivers), `name`-biomes.png, `name`-koppen.png.
+                                    const MapView& view = {});
+/// Draws an island: `name`.png (shaded relief with contours and rivers), `name`-biomes.png,
+/// `name`-koppen.png.
 std::vector<MapFile> draw_island_files(const State& state, const std::filesystem::path& folder,
-                                       const std::string& name, int width_px = 1800,
+                                       const std::string& name, const MapView& view = {},
                                        std::string_view note = {});
 /// What `draw_island_files` would draw, without drawing it.
 std::vector<MapFile> list_island_files(const State& state, const std::filesystem::path& folder,
-                                       const std::string& name, int width_px = 1800);
+                                       const std::string& name, const MapView& view = {});
 
 /// The same as `draw_map_files`; returns the paths alone.
 std::vector<std::filesystem::path> draw_maps(const State& state,
                                              const std::filesystem::path& folder,
-                                             int width_px = 1800, std::string_view note = {});
+                                             const MapView& view = {}, std::string_view note = {});
+
+/// Draws one field of a state into a PNG file: relief in hypsometric colours that break at the
+/// shore, categories with their names, numbers in a perceptual colour map that follows their
+/// spread, all over the coast and the shading of `elevation` where the state has it. Throws Bug
+/// when the state lacks the field, IoError.
+MapFile draw_field_file(const State& state, const FieldSpec& spec,
+                        const std::filesystem::path& file, const MapView& view = {},
+                        std::string_view note = {});
 
 /// Area-weighted hypsometric curve of a relief beside Earth's, and the share of the area per 250 m
 /// (hypsometry.png). Throws Bug when the state has no elevation, IoError.

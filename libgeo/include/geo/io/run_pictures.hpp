@@ -1,18 +1,37 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <vector>
 
+#include "geo/io/map_view.hpp"
 #include "geo/io/run_folder.hpp"
 
 namespace geo::io {
 
-/// Draws the maps and the report of a run from its files, by its manifest. With the name of an
-/// island ("island-2") only its maps are drawn, and the report lists those that are there. Returns
-/// the paths of the report and its pictures. Throws InputError or IoError when the folder holds no
-/// such run.
-std::vector<std::filesystem::path> draw_run(const RunFolder& folder, int map_width_px,
+/// Draws the maps and the report of a run from its files, by its manifest. The view is that of a
+/// planet of latitudes and longitudes; other grids and islands are drawn as they lie. With the name
+/// of an island ("island-2") only its maps are drawn, and the report lists those that are there.
+/// Returns the paths of the report and its pictures. Throws InputError or IoError when the folder
+/// holds no such run.
+std::vector<std::filesystem::path> draw_run(const RunFolder& folder, const MapView& view,
                                             std::string_view only_island = {});
+
+/// Draws the maps of a run's planet alone in some view, beside those of the run; no report.
+std::vector<std::filesystem::path> draw_view(const RunFolder& folder, const MapView& view,
+                                             const std::filesystem::path& pictures);
+
+/// A field of a run, and of which stage.
+struct FieldOfRun {
+  std::string field;
+  std::string stage;  ///< "hydrology", "island-2"; empty: the last of the planet that wrote it
+};
+
+/// Draws one field of a run into `pictures`/FIELD.png, or STAGE-FIELD.png where a stage is named,
+/// over the coast and the shading of the relief. Throws ConfigurationError that names what is near
+/// where the run has no such stage or field, InputError, IoError.
+std::filesystem::path draw_field(const RunFolder& folder, const MapView& view,
+                                 const FieldOfRun& wanted, const std::filesystem::path& pictures);
 
 }  // namespace geo::io

@@ -8,6 +8,7 @@
 
 #include "geo/core/event.hpp"
 #include "geo/core/parameter.hpp"
+#include "geo/io/map_view.hpp"
 
 namespace geo::io {
 
@@ -40,11 +41,16 @@ struct RunSettings {
   double globe_exaggeration = 15.0;
   bool maps = true;
   std::int64_t map_width_px = 1800;
+  std::string map_projection = "equirectangular";
+  std::string map_center;  ///< "LAT,LON"; empty: 0,0
   std::int64_t compression = 1;
 
   std::vector<Event> events;
 
   [[nodiscard]] std::vector<Parameter> parameters();
+  /// How maps show the planet. Throws ConfigurationError where projection and centre do not go
+  /// together.
+  [[nodiscard]] MapView map_view() const;
   [[nodiscard]] bool grid_is_automatic() const { return grid == "auto"; }
 };
 

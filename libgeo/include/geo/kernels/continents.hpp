@@ -18,7 +18,7 @@ std::vector<std::uint8_t> continental_plates(const CubedSphere& mesh,
 
 /// How continents are put together from cratons.
 struct Cratons {
-  double share = 0.38;         ///< of the sphere that is continental crust
+  double share = 0.395;        ///< of the sphere that is continental crust
   double plate_share = 0.62;   ///< of the sphere whose plates carry cratons
   double per_sphere = 28.0;    ///< cratons, if they covered all of it
   double smallest_km = 830.0;  ///< radii

@@ -27,7 +27,8 @@ inline constexpr std::int32_t kCourseEnds = -1;
 /// level = the planet's, linear between, n = noise of unit variance, over the fine relief. It keeps
 /// clear of other courses and of the sea where it can. Courses end at the sea, at the edge or at
 /// the bottom of an endorheic basin. On lakes the level is that of their outlet, and does not sink;
-/// elsewhere it may sink to a quarter of the planet's. `elevation_m`: one
+/// elsewhere it may sink to a quarter of the planet's, and by 30 m anywhere: plains near the level
+/// of the sea have no other way out. `elevation_m`: one
 /// value per fine cell. Cost: n log n in the fine cells that each step passes. The same bits for
 /// any number of threads.
 RiverCourses trace_river_courses(const PlanetCells& cells, const PlanetWater& water,

@@ -26,10 +26,10 @@ struct IsostasyParameters {
   double deformation_smoothing_km = 30.0;
 
   double continental_km = 36.4;
-  double ocean_depth_m = 0.0;
+  double ocean_depth_m = 3690.0;
   double oceanic_km = 7.0;
   double thickness_noise_km = 4.5;
-  double collision_km = 18.5;
+  double collision_km = 14.5;
   double arc_km = 13.0;
   double rift_km = 20.0;
   double transpression_km = 2.0;
@@ -38,16 +38,16 @@ struct IsostasyParameters {
 
   double lithosphere = 1.22;
   double craton_compensation = 0.95;
-  double swell_m = 420.0;
-  double ocean_swell_m = 330.0;
-  double margin_tilt_m = 700.0;
+  double swell_m = 430.0;
+  double ocean_swell_m = 430.0;
+  double margin_tilt_m = 660.0;
   double margin_tilt_km = 260.0;
-  double relict_km = 7.5;
-  double heat_m = 700.0;
+  double relict_km = 9.2;
+  double heat_m = 950.0;
   double thermal_coefficient = 0.02;
-  double shelf_depth_m = 130.0;
-  double shelf_edge = 0.7;
-  double trench_depth_m = 3000.0;
+  double shelf_depth_m = 65.0;
+  double shelf_edge = 0.68;
+  double trench_depth_m = 1700.0;
   double seamount_m = 1800.0;
   double seafloor_roughness_m = 130.0;
   double fracture_m = 0.0;

@@ -36,7 +36,7 @@ struct PlatesParameters {
   double land_buffer = 0.20;
   double coast_roughness = 0.9;
   double coast_wavelength_km = 2100.0;
-  double passive_margin_km = 520.0;
+  double passive_margin_km = 320.0;
   double active_margin_km = 130.0;
   double oldest_floor_myr = 150.0;
   double plumes = 12.0;

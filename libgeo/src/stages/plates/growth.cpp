@@ -126,8 +126,7 @@ class PlatesOnGrid {
         const double width_km =
             p_.active_margin_km + passive * (p_.passive_margin_km - p_.active_margin_km);
         const double inland_km = (potential[cell] >= 0.0F ? 1e-3 : -1e-3) * distance_m[cell];
-        fraction_[cell] =
-            static_cast<float>(smooth_step(-0.5 * width_km, 0.5 * width_km, inland_km));
+        fraction_[cell] = static_cast<float>(std::clamp(0.5 + inland_km / width_km, 0.0, 1.0));
       }
     }
     // Distances to a frayed edge are creased; margins are not.

@@ -20,9 +20,10 @@ void float_margins_crust(const Crust<V>& crust, const CoarseGrid& coarse,
 template <class V>
 void fill_sea(const Crust<V>& crust, const V& level_m) {
   using Number = Arithmetic<V>;
+  using std::log;
   const IsostasyParameters& p = crust.parameters;
   const bool shelves = p.crust != "blueprint" && p.crust != "given" && p.shelf_depth_m > 0.0;
-  const double whole_shelf = p.shelf_edge + 5.0 / 6.0 * (1.0 - p.shelf_edge);
+  const double whole_shelf = p.shelf_edge + 0.8 * (1.0 - p.shelf_edge);
   const Number shelf_depth_m = crust.lift(p.shelf_depth_m);
 #pragma omp parallel for schedule(static)
   for (Index cell = 0; cell < crust.grid.size(); ++cell) {
@@ -33,7 +34,7 @@ void fill_sea(const Crust<V>& crust, const V& level_m) {
         smooth_step(p.shelf_edge, whole_shelf, static_cast<double>(crust.fraction[cell]));
     if (on_shelf <= 0.0) continue;
     const Number deep_m(z);
-    const Number filled = -shelf_depth_m * -expm1_of(Number(deep_m / shelf_depth_m));
+    const Number filled = -shelf_depth_m * log(Number(1.0 - deep_m / shelf_depth_m));
     z = lesser(V(-1e-3F), V(deep_m + on_shelf * (filled - deep_m)));
   }
 }

@@ -87,6 +87,7 @@ class Columns {
   }
 
  private:
+  static constexpr double kOldestFloor_myr = 200.0;
   static bool is_rough(double share, double island) { return share > 0.0 || island > 0.02; }
   static bool is_folded(double belt, double relict) { return belt > 0.01 || relict > 0.02; }
 
@@ -217,12 +218,14 @@ class Columns {
   [[nodiscard]] Number sea_floor_m(int i, const Row& along, double age_myr, const Number& island,
                                    double rough) const {
     const Tectonics<V>& row = along.from_afar;
-    return -ocean_depth_m(std::min(age_myr, 200.0)) + floor_cover_m(i, along, age_myr) +
+    return -ocean_depth_m(std::min(age_myr, kOldestFloor_myr)) + floor_cover_m(i, along, age_myr) +
            island * (2600.0 + 1500.0 * rough) + Number(row.trench_m[i]);
   }
-  /// Sediment, swells, hills and seamounts on a floor.
-  [[nodiscard]] Number floor_cover_m(int i, const Row& along, double age_myr) const {
+  /// Sediment, swells, hills and seamounts on a floor. Within margins, ages are partly those of
+  /// continents: their floor is as old as any floor gets.
+  [[nodiscard]] Number floor_cover_m(int i, const Row& along, double crust_age_myr) const {
     const Tectonics<V>& row = along.from_afar;
+    const double age_myr = std::min(crust_age_myr, kOldestFloor_myr);
     const Number in_trench = limited(Number(-Number(row.trench_m[i]) / 1500.0), 0.0, 1.0);
     const Number sediment_m =
         deep_sediment_m(p_.sediment, age_myr, along.offshore_km[i]) * (1.0 - 0.6 * in_trench);
