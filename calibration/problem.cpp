@@ -6,6 +6,7 @@
 
 #include "calibration/objective.hpp"
 #include "geo/core/error.hpp"
+#include "geo/stages/isostasy/freeboard.hpp"
 
 namespace geo::calibration {
 namespace {
@@ -61,6 +62,19 @@ FreeParameter make_free(const Parameter& declaration, std::span<const Range> bou
   return free;
 }
 
+/// The parameters that are free where none is named. How high continents stand follows from the
+/// depth of a sea that reaches onto them, else from how thick they are.
+std::string six_parameters(std::span<const Parameter> configuration, const Model& model) {
+  const Parameter* share = find_parameter(configuration, "plates.continental_share");
+  const double continents = share != nullptr ? *std::get<double*>(share->storage) : 0.0;
+  const bool settles = settles_continents(model.isostasy, model.planet) &&
+                       model.planet.ocean_fraction > 1.0 - continents &&
+                       model.planet.ocean_fraction < 1.0;
+  return std::string(settles ? "isostasy.ocean_depth_m" : "isostasy.continental_km") +
+         ", isostasy.collision_km, isostasy.swell_m, isostasy.margin_tilt_m, "
+         "isostasy.ocean_swell_m, erosion.erodibility_factor";
+}
+
 void check_known(std::string_view key, std::string_view name, std::span<const FreeParameter> free) {
   const bool known = std::any_of(free.begin(), free.end(), [&](const FreeParameter& parameter) {
     return parameter.declaration.name == name;
@@ -87,7 +101,9 @@ Problem::Problem(std::span<const Parameter> configuration, const Settings& setti
       deviation_m(settings.deviation_m) {
   const auto bounds = read_ranges("calibration.bounds", settings.bounds);
   const auto priors = read_estimates("calibration.priors", settings.priors);
-  for (const std::string& name : read_names("calibration.free", settings.free)) {
+  const std::string names =
+      settings.free == "auto" ? six_parameters(configuration, model) : settings.free;
+  for (const std::string& name : read_names("calibration.free", names)) {
     free.push_back(make_free(model.find(name), bounds, priors));
   }
   if (free.empty()) throw ConfigurationError("calibration.free: must name a parameter");

@@ -66,7 +66,9 @@ Triple read_triple(const std::string& key, std::string_view entry, std::string_v
 
 std::vector<Parameter> Settings::parameters() {
   return {
-      list("calibration.free", free, "parameters of planet, isostasy and erosion to be fitted",
+      list("calibration.free", free,
+           "parameters of planet, isostasy and erosion to be fitted; auto: six of isostasy and "
+           "erosion",
            "design"),
       list("calibration.bounds", bounds,
            "narrower bounds than a parameter's range, NAME = LOW .. HIGH each", "design"),

@@ -11,9 +11,7 @@ namespace geo::calibration {
 /// What a calibration does, section [calibration]. Lists are arrays in TOML, or words with commas
 /// between.
 struct Settings {
-  std::string free =
-      "isostasy.ocean_depth_m, isostasy.collision_km, isostasy.swell_m, isostasy.margin_tilt_m, "
-      "isostasy.ocean_swell_m, erosion.erodibility_factor";
+  std::string free = "auto";  ///< six that shape such a planet
   std::string bounds, priors, terms;
   std::string seeds = "1-8";
   std::string held_out = "9-16";

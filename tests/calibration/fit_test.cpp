@@ -136,6 +136,19 @@ TEST(Fit, RecordsTheDistanceOfTheBestPlaceNotOfTheLastTried) {
   EXPECT_GT(rejected, 0);
 }
 
+TEST(Fit, FreesTheDepthOfTheSeaOnlyWhereItReachesContinents) {
+  for (const auto& [setting, first] :
+       {std::pair{"planet.ocean_fraction=0.71", "isostasy.ocean_depth_m"},
+        {"planet.ocean_fraction=0.4", "isostasy.continental_km"},
+        {"planet.ocean_fraction=0", "isostasy.continental_km"},
+        {"isostasy.ocean_depth_m=0", "isostasy.continental_km"}}) {
+    const SmallRun run(setting);
+    const Problem problem(run.parameters, run.settings, run.earth());
+    ASSERT_EQ(problem.free.size(), 6U);
+    EXPECT_EQ(problem.free.front().declaration.name, first) << setting;
+  }
+}
+
 TEST(Fit, WarnsInWordsOfWhatTheTargetDoesNotTell) {
   SmallRun run;
   // Thickness of continents and weight of their roots shift all land alike.
