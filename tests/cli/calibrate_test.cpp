@@ -115,7 +115,8 @@ TEST_F(Calibrate, RefusesWhatCannotBeFitted) {
   expect_refusal({"--set=calibration.held_out=2"}, 2, {"must not be one of calibration.seeds"});
   expect_refusal({"--set=calibration.priors=isostasy.swell_m = 1 +- 1"}, 2, {"calibration.free"});
   expect_refusal({"--set=calibration.terms=height = 1 +- 1"}, 2, {"land_fraction"});
-  expect_refusal({"--set=calibration.bounds=isostasy.margin_tilt_m = 2000 .. 3000"}, 2, {"its start"});
+  expect_refusal({"--set=calibration.bounds=isostasy.margin_tilt_m = 2000 .. 3000"}, 2,
+                 {"its start"});
   expect_refusal({"--resume"}, 2, {"no calibration to go on with"});
   expect_refusal({}, 3, {"no such file"}, "mars");
   EXPECT_EQ(terrane({"calibrate", "-o", out_.string()}).code, 2);
