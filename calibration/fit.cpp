@@ -33,7 +33,7 @@ class HeldFastCost final : public ceres::CostFunction {
     const bool wants_rates = jacobians != nullptr && jacobians[0] != nullptr;
     // Those after the last step serve Ceres's test of convergence alone, which routing anew makes
     // idle: the last ones stand for them.
-    const bool renews = wants_rates && renewals_ < kStepsHeldFast;
+    const bool renews = wants_rates && renewals_ == 0;
     if (renews) ++renewals_;
     const Eigen::VectorXd residual = objective_.follow(x, renews ? &rates_ : nullptr);
     Eigen::Map<Eigen::VectorXd>(residuals, residual.size()) = residual;
@@ -77,6 +77,7 @@ Eigen::VectorXd solve_held_fast(Objective& objective, const Problem& problem,
   options.initial_trust_region_radius = state.radius;
   options.num_threads = 1;
   options.logging_type = ceres::SILENT;
+  options.max_num_line_search_step_size_iterations = 0;
   options.jacobi_scaling = false;  // the scales are set already
   ceres::Solver::Summary summary;
   ceres::Solve(options, &held, &summary);

@@ -15,9 +15,8 @@
 namespace geo {
 namespace {
 
-constexpr int kRows = 4;      // rows solved side by side
-constexpr int kColumns = 16;  // columns solved side by side: one cache line of floats
-constexpr int kBand = 64;     // columns that exchange side by side
+constexpr int kLanes = TridiagonalBlock::kLanes;  // rows or columns solved side by side
+constexpr int kBand = 64;                         // columns that exchange side by side
 constexpr double kGamma = 1.0 - 1.0 / std::numbers::sqrt2;
 // Exchange per step with one neighbour below which forward Euler does what backward Euler does:
 // they differ by its square, and neither leaves the range of the field.
@@ -32,60 +31,63 @@ class SplitDiffusion {
       : grid_(grid), field_(field), diffusivity_m2_yr_(diffusivity_m2_yr), options_(options) {}
 
   void solve_rows(double dt_yr) {
-    const int nx = grid_.nx(), ny = grid_.ny(), blocks = (ny + kRows - 1) / kRows;
+    const int nx = grid_.nx();
     const bool periodic = grid_.topology() != Topology::plane;
     const double strength = stage_strength(dt_yr);
+    std::vector<int> weak, strong;
+    for (int row = 0; row < grid_.ny(); ++row) {
+      (is_weak_along_row(row, strength) ? weak : strong).push_back(row);
+    }
+    const int count = static_cast<int>(strong.size());
 #pragma omp parallel if (worth_threads())
     {
-      TridiagonalBlock<kRows> system(nx, periodic);
-      std::vector<double> value(std::size_t(nx) * kRows), stage(value.size());
+#pragma omp for schedule(static) nowait
+      for (std::size_t r = 0; r < weak.size(); ++r) exchange_along_row(weak[r], strength);
+      TridiagonalBlock system(nx, periodic);
+      std::vector<double> value(std::size_t(nx) * kLanes), stage(value.size());
 #pragma omp for schedule(static)
-      for (int b = 0; b < blocks; ++b) {
-        const int row = b * kRows;
-        if (is_weak_along_rows(row, strength)) {
-          for (int k = 0; k < std::min(kRows, ny - row); ++k) exchange_along_row(row + k, strength);
-          continue;
+      for (int first = 0; first < count; first += kLanes) {
+        std::array<int, kLanes> row;  // behind the last it is written again, alike
+        std::array<Real*, kLanes> z;
+        for (int k = 0; k < kLanes; ++k) {
+          row[k] = strong[std::min(first + k, count - 1)];
+          z[k] = &field_[std::size_t(row[k]) * nx];
         }
         couple_rows(system, row, strength);
-        std::array<Real*, kRows> rows;
-        for (int k = 0; k < kRows; ++k) {
-          rows[k] = &field_[std::size_t(std::min(row + k, ny - 1)) * nx];
-        }
         for (int i = 0; i < nx; ++i) {
-          for (int k = 0; k < kRows; ++k) value[i * kRows + k] = rows[k][i];
+          for (int k = 0; k < kLanes; ++k) value[i * kLanes + k] = z[k][i];
         }
         step(system, value, stage);
-        // Beyond the last row it is written again, alike.
         for (int i = 0; i < nx; ++i) {
-          for (int k = 0; k < kRows; ++k) rows[k][i] = static_cast<Real>(value[i * kRows + k]);
+          for (int k = 0; k < kLanes; ++k) z[k][i] = static_cast<Real>(value[i * kLanes + k]);
         }
       }
     }
   }
 
   void solve_columns(double dt_yr) {
-    const int nx = grid_.nx(), ny = grid_.ny(), blocks = (nx + kColumns - 1) / kColumns;
+    const int nx = grid_.nx(), ny = grid_.ny(), blocks = (nx + kLanes - 1) / kLanes;
     const bool periodic = grid_.topology() == Topology::torus;
     const double strength = stage_strength(dt_yr);
     if (is_weak_along_columns(strength)) return exchange_along_columns(strength);
 #pragma omp parallel if (worth_threads())
     {
-      TridiagonalBlock<kColumns> system(ny, periodic);
-      std::vector<double> value(std::size_t(ny) * kColumns), stage(value.size());
+      TridiagonalBlock system(ny, periodic);
+      std::vector<double> value(std::size_t(ny) * kLanes), stage(value.size());
       // Without marked cells all columns are one and the same system.
       if (!has_marks()) couple_columns(system, 0, strength);
 #pragma omp for schedule(static)
       for (int b = 0; b < blocks; ++b) {
-        const int column = b * kColumns, width = std::min(kColumns, nx - column);
+        const int column = b * kLanes, width = std::min(kLanes, nx - column);
         if (has_marks()) couple_columns(system, column, strength);
         for (int j = 0; j < ny; ++j) {
           const Real* from = &field_[std::size_t(j) * nx + column];
-          for (int k = 0; k < width; ++k) value[j * kColumns + k] = from[k];
+          for (int k = 0; k < width; ++k) value[j * kLanes + k] = from[k];
         }
         step(system, value, stage);
         for (int j = 0; j < ny; ++j) {
           Real* to = &field_[std::size_t(j) * nx + column];
-          for (int k = 0; k < width; ++k) to[k] = static_cast<Real>(value[j * kColumns + k]);
+          for (int k = 0; k < width; ++k) to[k] = static_cast<Real>(value[j * kLanes + k]);
         }
       }
     }
@@ -119,13 +121,9 @@ class SplitDiffusion {
     return options_.scheme == DiffusionScheme::positive && grid_.topology() != Topology::torus &&
            options_.excluded.empty();
   }
-  [[nodiscard]] bool is_weak_along_rows(int first_row, double strength) const {
-    if (!may_be_explicit()) return false;
-    double most = 0.0;
-    for (int row = first_row; row < std::min(first_row + kRows, grid_.ny()); ++row) {
-      most = std::max(most, coupling_east(row, strength));
-    }
-    return most < kWeak;
+  [[nodiscard]] bool is_weak_along_row(int row, double strength) const {
+    constexpr double kTimes = 2.0;  // that rows exchange in a step: before the columns and after
+    return may_be_explicit() && kTimes * coupling_east(row, strength) < kWeak;
   }
   [[nodiscard]] bool is_weak_along_columns(double strength) const {
     if (!may_be_explicit()) return false;
@@ -185,35 +183,33 @@ class SplitDiffusion {
     return options_.excluded[cell] == 0 && options_.excluded[neighbour] == 0;
   }
 
-  void couple_rows(TridiagonalBlock<kRows>& system, int first_row, double strength) const {
-    const int nx = grid_.nx(), ny = grid_.ny();
+  void couple_rows(TridiagonalBlock& system, const std::array<int, kLanes>& row,
+                   double strength) const {
+    const int nx = grid_.nx();
     const bool periodic = grid_.topology() != Topology::plane;
-    double coupling[kRows];
-    for (int k = 0; k < kRows; ++k) {
-      const int row = std::min(first_row + k, ny - 1);
-      coupling[k] = coupling_east(row, strength);
-    }
+    double coupling[kLanes];
+    for (int k = 0; k < kLanes; ++k) coupling[k] = coupling_east(row[k], strength);
     for (int i = 0; i < nx; ++i) {
       const int west = i > 0 ? i - 1 : nx - 1, east = i < nx - 1 ? i + 1 : 0;
       double* lower = system.lower(i);
       double* upper = system.upper(i);
-      for (int k = 0; k < kRows; ++k) lower[k] = upper[k] = coupling[k];
+      for (int k = 0; k < kLanes; ++k) lower[k] = upper[k] = coupling[k];
       if (has_marks()) {
-        for (int k = 0; k < kRows; ++k) {
-          const std::size_t row = std::size_t(std::min(first_row + k, ny - 1)) * nx;
-          if (!coupled(row + i, row + west)) lower[k] = 0.0;
-          if (!coupled(row + i, row + east)) upper[k] = 0.0;
+        for (int k = 0; k < kLanes; ++k) {
+          const std::size_t begin = std::size_t(row[k]) * nx;
+          if (!coupled(begin + i, begin + west)) lower[k] = 0.0;
+          if (!coupled(begin + i, begin + east)) upper[k] = 0.0;
         }
       }
     }
     if (!periodic) {
-      std::fill_n(system.lower(0), kRows, 0.0);
-      std::fill_n(system.upper(nx - 1), kRows, 0.0);
+      std::fill_n(system.lower(0), kLanes, 0.0);
+      std::fill_n(system.upper(nx - 1), kLanes, 0.0);
     }
     system.factorise();
   }
 
-  void couple_columns(TridiagonalBlock<kColumns>& system, int first_column, double strength) const {
+  void couple_columns(TridiagonalBlock& system, int first_column, double strength) const {
     const int nx = grid_.nx(), ny = grid_.ny();
     const bool periodic = grid_.topology() == Topology::torus;
     for (int j = 0; j < ny; ++j) {
@@ -221,12 +217,12 @@ class SplitDiffusion {
       const auto [down, up] = couplings_north(j, strength);
       double* lower = system.lower(j);
       double* upper = system.upper(j);
-      for (int k = 0; k < kColumns; ++k) {
+      for (int k = 0; k < kLanes; ++k) {
         lower[k] = down;
         upper[k] = up;
       }
       if (has_marks()) {
-        for (int k = 0; k < kColumns; ++k) {
+        for (int k = 0; k < kLanes; ++k) {
           const std::size_t i = std::min(first_column + k, nx - 1);
           const std::size_t here = std::size_t(j) * nx + i;
           if (!coupled(here, std::size_t(south) * nx + i)) lower[k] = 0.0;
@@ -235,14 +231,13 @@ class SplitDiffusion {
       }
     }
     if (!periodic) {
-      std::fill_n(system.lower(0), kColumns, 0.0);
-      std::fill_n(system.upper(ny - 1), kColumns, 0.0);
+      std::fill_n(system.lower(0), kLanes, 0.0);
+      std::fill_n(system.upper(ny - 1), kLanes, 0.0);
     }
     system.factorise();
   }
 
-  template <int kLanes>
-  void step(const TridiagonalBlock<kLanes>& system, std::vector<double>& value,
+  void step(const TridiagonalBlock& system, std::vector<double>& value,
             std::vector<double>& stage) const {
     system.solve(value.data());
     if (options_.scheme == DiffusionScheme::positive) return;
