@@ -165,7 +165,7 @@ TEST(RegionScore, FindsTheCoastAndKeepsAwayFromThePoles) {
 TEST(FineRelief, DetailHasUnitVarianceAndNoEdge) {
   const Grid fine = Grid::equal_area(256, 128, 400.0, Centre{30, 40});
   std::vector<float> detail(fine.size());
-  unit_detail(fine, {}, 3, detail);
+  unit_detail(fine, {}, 3, "island.detail", detail);
   double sum = 0.0, squares = 0.0;
   for (const float value : detail) {
     sum += value;

@@ -92,8 +92,8 @@ void local_roughness(const PlanetCells& cells, std::span<const float> planet_ele
 }
 
 void unit_detail(const Grid& fine, const DetailLaw& law, std::uint64_t seed,
-                 std::span<float> detail) {
-  const Noise noise(seed, "island.detail");
+                 std::string_view stream, std::span<float> detail) {
+  const Noise noise(seed, stream);
   double sum = 0.0, squares = 0.0, amplitude = 1.0;
   for (int octave = 0; octave < law.octaves; ++octave) {
     sum += amplitude;

@@ -251,7 +251,7 @@ std::vector<float> winding(const PlanetCells& cells, std::uint64_t seed) {
   const double octaves = std::log2(law.wavelength_m / cells.fine().step_north_m());
   law.octaves = static_cast<int>(std::clamp(octaves, 1.0, 6.0));
   std::vector<float> noise(cells.fine().size());
-  unit_detail(cells.fine(), law, seed, noise);
+  unit_detail(cells.fine(), law, seed, "island.detail", noise);
   return noise;
 }
 

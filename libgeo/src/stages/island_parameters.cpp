@@ -21,6 +21,10 @@ std::vector<Parameter> IslandParameters::declarations() {
            "Hurst exponent of detail that follows roughness", "huang1989"),
       real("island.least_roughness_m", least_roughness_m, "m", 0.0, 1000.0,
            "roughness that even plains and flat shores have", "design"),
+      real(
+          "island.coast_fray", coast_fray, "1", 0.0, 1.0,
+          "standard deviation by which bays and headlands displace a coast, in cells of the planet",
+          "design"),
       real("island.height_amplitude", height_amplitude, "1", 0.0, 1.0,
            "amplitude of detail over height, where it follows height", "tectonica2026"),
       real("island.height_frequency", height_frequency, "1", 0.1, 1000.0,

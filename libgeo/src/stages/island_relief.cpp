@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "geo/kernels/catmull_rom.hpp"
 #include "geo/kernels/depressions.hpp"
@@ -29,21 +30,66 @@ double seam_m(const PlanetCells& cells) {
   return std::min(0.25 * cells.planet().face_east_m(cells.first_row()), 0.05 * extent_m);
 }
 
-/// 1 on the planet's land out of sight of the sea, one value per covered cell.
-std::vector<float> inland(const PlanetCells& cells, std::span<const float> planet_elevation_m) {
+/// 1 in the planet's cells with nothing but land, or nothing but sea, in and around them; one value
+/// per covered cell.
+std::vector<float> all_round(const PlanetCells& cells, std::span<const float> planet_elevation_m,
+                             bool land) {
   const Grid& planet = cells.planet();
+  const auto fits = [&](Index c) { return (planet_elevation_m[c] >= 0.0F) == land; };
   std::vector<float> share(cells.size());
   for (int j = cells.first_row(); j < cells.first_row() + cells.rows(); ++j) {
     for (int i = 0; i < planet.nx(); ++i) {
-      bool dry = planet_elevation_m[planet.cell(i, j)] >= 0.0F;
+      bool all = fits(planet.cell(i, j));
       for (int k = 0; k < kDirections; ++k) {
         const Index next = planet.neighbour(planet.cell(i, j), k);
-        dry = dry && (next == kNoCell || planet_elevation_m[next] >= 0.0F);
+        all = all && (next == kNoCell || fits(next));
       }
-      share[cells.at(i, j)] = dry ? 1.0F : 0.0F;
+      share[cells.at(i, j)] = all ? 1.0F : 0.0F;
     }
   }
   return share;
+}
+
+int octaves_down_to(double cell_m, double wavelength_m) {
+  return std::clamp(static_cast<int>(std::lround(std::log2(wavelength_m / (2.0 * cell_m)))) + 1, 1,
+                    16);
+}
+
+/// The planet's relief from Catmull-Rom. Next to a shore, which would follow the sides of the
+/// planet's cells, it is read from a place nearby: bays and headlands shorter than two cells,
+/// with as much land in each.
+void read_planet(const PlanetCells& cells, std::span<const float> planet_elevation_m,
+                 const IslandParameters& p, std::uint64_t seed, std::span<const float> planet_m,
+                 std::span<float> z) {
+  const Grid& fine = cells.fine();
+  std::copy(planet_m.begin(), planet_m.end(), z.begin());
+  if (p.coast_fray <= 0.0) return;
+  const double spacing_m = cells.planet().face_east_m(cells.first_row());
+  DetailLaw law;
+  law.wavelength_m = 2.0 * spacing_m;
+  law.octaves = octaves_down_to(p.cell_m, law.wavelength_m);
+  std::vector<float> east(fine.size()), north(fine.size());
+  unit_detail(fine, law, seed, "island.coast_east", east);
+  unit_detail(fine, law, seed, "island.coast_north", north);
+  const std::vector<float> dry = all_round(cells, planet_elevation_m, /*land=*/true);
+  const std::vector<float> wet = all_round(cells, planet_elevation_m, /*land=*/false);
+  const std::vector<float> mean_east = cells.means(east, {}, 0.0F);
+  const std::vector<float> mean_north = cells.means(north, {}, 0.0F);
+  const double degrees_per_m = 180.0 / (std::numbers::pi * fine.figure().radius_m);
+  on_cells(fine, [&](int i, int j, Index c) {
+    const double far = cells.interpolate(dry, i, j) + cells.interpolate(wet, i, j);
+    const double near = std::clamp(1.0 - far, 0.0, 1.0);
+    if (near <= 0.0) return;
+    const double reach = p.coast_fray * spacing_m * degrees_per_m * near *
+                         edge_ramp(fine, i, j, p.coast_fray * spacing_m);
+    const Centre here = fine.position(i, j);
+    const double across = std::cos(here.latitude_deg * std::numbers::pi / 180.0);
+    const double up = reach * (north[c] - cells.interpolate(mean_north, i, j));
+    const double right = reach * (east[c] - cells.interpolate(mean_east, i, j));
+    const Centre there{std::clamp(here.latitude_deg + up, -90.0, 90.0),
+                       here.longitude_deg + right / std::max(across, 1e-3)};
+    z[c] = static_cast<float>(CatmullRom(cells.planet(), there).of(planet_elevation_m));
+  });
 }
 
 /// A height with detail on it. Plains near the level of the sea would become flats at it wherever
@@ -61,11 +107,10 @@ void add_rough_detail(const PlanetCells& cells, std::span<const float> planet_el
   const double spacing_m = cells.planet().face_east_m(cells.first_row());
   DetailLaw law;
   law.wavelength_m = 2.0 * spacing_m;
-  law.octaves = std::clamp(
-      static_cast<int>(std::lround(std::log2(law.wavelength_m / (2.0 * p.cell_m)))) + 1, 1, 16);
+  law.octaves = octaves_down_to(p.cell_m, law.wavelength_m);
   law.gain = std::exp2(-p.detail_hurst);
   std::vector<float> detail(fine.size()), roughness(cells.size());
-  unit_detail(fine, law, seed, detail);
+  unit_detail(fine, law, seed, "island.detail", detail);
   local_roughness(cells, planet_elevation_m, roughness);
   for (float& rough_m : roughness) {
     rough_m = std::max(rough_m, static_cast<float>(p.least_roughness_m));
@@ -75,7 +120,7 @@ void add_rough_detail(const PlanetCells& cells, std::span<const float> planet_el
     detail[c] *= static_cast<float>(p.detail_amplitude * rough_m);
   });
   const std::vector<float> mean = cells.means(detail, {}, 0.0F);
-  const std::vector<float> dry = inland(cells, planet_elevation_m);
+  const std::vector<float> dry = all_round(cells, planet_elevation_m, /*land=*/true);
   on_cells(fine, [&](int i, int j, Index c) {
     const double centred_m = detail[c] - cells.interpolate(mean, i, j);
     z[c] = static_cast<float>(with_detail(z[c], edge_ramp(fine, i, j, seam_m(cells)) * centred_m,
@@ -168,10 +213,11 @@ void raise_island(const PlanetCells& cells, const PlanetRelief& planet, const Is
     const CatmullRom stencil(cells.planet(), cells.fine().position(i, j));
     planet_m[c] = static_cast<float>(stencil.of(planet.elevation_m));
   });
-  std::copy(planet_m.begin(), planet_m.end(), elevation_m.begin());
   if (p.detail == "roughness") {
+    read_planet(cells, planet.elevation_m, p, seed, planet_m, elevation_m);
     add_rough_detail(cells, planet.elevation_m, p, seed, elevation_m);
   } else {
+    std::copy(planet_m.begin(), planet_m.end(), elevation_m.begin());
     add_height_detail(cells, p, seed, elevation_m);
   }
   dry_inland_dips(cells, planet.elevation_m, elevation_m);

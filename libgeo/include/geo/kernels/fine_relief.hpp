@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "geo/core/grid.hpp"
@@ -59,9 +60,10 @@ struct DetailLaw {
   double gain = 0.5;  ///< amplitude of each octave over that of the one before, 2^-Hurst
 };
 
-/// Fractional Brownian motion of unit variance at every cell: a function of seed and position.
+/// Fractional Brownian motion of unit variance at every cell: a function of seed, stream and
+/// position.
 void unit_detail(const Grid& fine, const DetailLaw& law, std::uint64_t seed,
-                 std::span<float> detail);
+                 std::string_view stream, std::span<float> detail);
 
 /// Smooth step from 0 at the edge of a plane to 1 at `width_m` from it, at one cell.
 double edge_ramp(const Grid& fine, int column, int row, double width_m);

@@ -20,6 +20,7 @@ struct IslandParameters {
   double detail_amplitude = 1.0;
   double detail_hurst = 0.75;
   double least_roughness_m = 2.0;
+  double coast_fray = 0.5;
   double height_amplitude = 0.15;
   double height_frequency = 8.0;
   std::int64_t height_octaves = 6;
