@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <set>
 
 #include "geo/core/error.hpp"
@@ -160,6 +161,36 @@ TEST(Island, MeansOverThePlanetsCellsAreThePlanetsWithinTheDetail) {
   }
   ASSERT_GT(whole, 20);
   EXPECT_LT(std::abs(bias_m), 0.15 * detail_m);
+}
+
+TEST(Island, CoastsWindAboutThePlanetsAndTakeAsMuchAsTheyGive) {
+  IslandParameters p = around(place_of(great_rivers(1).front()));
+  p.detail_amplitude = p.least_roughness_m = 0.0;
+  p.erosion_steps = 0;
+  const double fray = p.coast_fray;
+  const State wound = make(p).island;
+  p.coast_fray = 0.0;
+  const State smooth = make(p).island;
+  const Grid& grid = smooth.grid();
+  const auto z = smooth.read(field::elevation), wound_z = wound.read(field::elevation);
+  double shore_m = 0.0, gained_m2 = 0.0, lost_m2 = 0.0;
+  for (Index c = 0; c < grid.size(); ++c) {
+    for (const int k : {0, 2}) {  // a shore of any direction has 4 / pi times its length in faces
+      const Index next = grid.neighbour(c, k);
+      const bool on_shore = next != kNoCell && (z[c] >= 0.0F) != (z[next] >= 0.0F);
+      if (on_shore) shore_m += 0.25 * std::numbers::pi * p.cell_m;
+    }
+    if (z[c] < 0.0F && wound_z[c] >= 0.0F) gained_m2 += grid.area_m2(0);
+    if (z[c] >= 0.0F && wound_z[c] < 0.0F) lost_m2 += grid.area_m2(0);
+  }
+  ASSERT_GT(shore_m, 500e3);
+  // Of a normal displacement the mean is 0.8 deviations; some of it is taken out with the mean over
+  // each planet cell.
+  const double displaced_m = (gained_m2 + lost_m2) / shore_m;
+  const double spacing_m = planet().grid().face_east_m(planet().grid().ny() / 2);
+  EXPECT_GT(displaced_m, 0.2 * fray * spacing_m);
+  EXPECT_LT(displaced_m, 1.5 * fray * spacing_m);
+  EXPECT_LT(std::abs(gained_m2 - lost_m2), 0.3 * (gained_m2 + lost_m2));
 }
 
 TEST(Island, LandDrainsToTheSeaOffTheEdgeOrIntoALake) {
