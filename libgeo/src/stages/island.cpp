@@ -135,7 +135,7 @@ class IslandStage final : public Stage {
     add_endorheic_bottoms(cells, io.read(field::flow_receiver), z, outlets);
     for (std::size_t c = 0; c < held.size(); ++c) held[c] |= outlets[c];
 
-    const auto erodibility = island_erodibility(cells, planet, p_, law.erodibility_yr);
+    const auto erodibility = island_erodibility(cells, planet, p_, law);
     const IslandErosion done = wear_island(
         cells, p_, law, {outlets, held, inflow_area, erodibility},
         [&](double share) { context.advance(0.2 + 0.4 * share); }, z);

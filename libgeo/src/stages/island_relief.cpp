@@ -9,6 +9,7 @@
 #include "geo/kernels/diffusion.hpp"
 #include "geo/kernels/noise.hpp"
 #include "geo/kernels/stream_power.hpp"
+#include "geo/stages/erosion/ground.hpp"
 
 namespace geo {
 namespace {
@@ -225,11 +226,13 @@ void raise_island(const PlanetCells& cells, const PlanetRelief& planet, const Is
 }
 
 std::vector<float> island_erodibility(const PlanetCells& cells, const PlanetRelief& planet,
-                                      const IslandParameters& p, double everywhere_yr) {
+                                      const IslandParameters& p, const ErosionParameters& law) {
   const bool by_boundary = p.erodibility == "boundary";
-  if (by_boundary ? planet.boundary_type.empty() : planet.erodibility.empty()) {
-    const double one = by_boundary ? p.interior_erodibility_yr : everywhere_yr;
-    return {static_cast<float>(one)};
+  if (by_boundary && planet.boundary_type.empty()) {
+    return {static_cast<float>(p.interior_erodibility_yr)};
+  }
+  if (!by_boundary && planet.erodibility.empty()) {
+    return resolved_erodibility<float>(law, {}, cells.fine(), {});
   }
   const auto of_type = [&](std::int8_t type) {
     switch (static_cast<BoundaryType>(type)) {
@@ -251,7 +254,8 @@ std::vector<float> island_erodibility(const PlanetCells& cells, const PlanetReli
     };
     erodibility[c] = static_cast<float>(std::max(0.0, stencil.of(at)));
   });
-  return erodibility;
+  if (by_boundary) return erodibility;
+  return resolved_erodibility<float>(law, {}, cells.fine(), erodibility);
 }
 
 IslandErosion wear_island(const PlanetCells& cells, const IslandParameters& p,

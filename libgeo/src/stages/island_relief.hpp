@@ -22,9 +22,10 @@ struct PlanetRelief {
 void raise_island(const PlanetCells& cells, const PlanetRelief& planet, const IslandParameters& p,
                   std::uint64_t seed, std::span<float> planet_m, std::span<float> elevation_m);
 
-/// Erodibility of each fine cell.
+/// Erodibility of each fine cell, or one for all: by boundary as given, else the planet's resolved
+/// for the fine cells by the law of its own erosion.
 std::vector<float> island_erodibility(const PlanetCells& cells, const PlanetRelief& planet,
-                                      const IslandParameters& p, double everywhere_yr);
+                                      const IslandParameters& p, const ErosionParameters& law);
 
 /// What the fine steps start from and what holds them.
 struct IslandGround {
