@@ -24,7 +24,7 @@ struct FreeParameter {
   double low = 0.0, high = 0.0;
   bool logarithmic = false;
   double scale = 1.0;
-  std::optional<Estimate> prior;
+  std::optional<Estimate> prior{};
 
   [[nodiscard]] double to_x(double value) const;
   [[nodiscard]] double to_value(double x) const;

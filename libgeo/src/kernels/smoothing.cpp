@@ -1,6 +1,5 @@
 #include "geo/kernels/smoothing.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -8,7 +7,6 @@
 #include "geo/core/error.hpp"
 #include "geo/kernels/diffusion.hpp"
 #include "geo/kernels/overlay.hpp"
-#include "tridiagonal.hpp"
 
 namespace geo {
 namespace {
@@ -26,55 +24,6 @@ void smooth_in(const Grid& grid, std::span<Real> field, double length_m,
   for (std::size_t c = 0; c < mask.size(); ++c) excluded[c] = mask[c] == 0;
   options.excluded = excluded;
   diffuse(grid, field, 0.5 * length_m * length_m, 1.0, options);
-}
-
-template <class Real>
-void smooth_slivers_in(const Grid& grid, std::span<Real> field,
-                       std::span<const std::uint8_t> fixed) {
-  if (grid.topology() != Topology::sphere) return;
-  constexpr double kShare = 0.3;
-  constexpr int kLanes = TridiagonalBlock::kLanes;
-  struct Sliver {
-    Index begin;
-    double exchange;
-  };
-  std::vector<Sliver> slivers;
-  for (int j = 0; j < grid.ny(); ++j) {
-    const double width = grid.spacing_east_m(j), height = grid.face_east_m(j);
-    const double variance_m2 = kShare * (height * height - 4.0 * width * width);
-    if (variance_m2 > 0.0)
-      slivers.push_back({grid.cell(0, j), 0.5 * variance_m2 / (width * width)});
-  }
-  const int nx = grid.nx(), count = static_cast<int>(slivers.size());
-#pragma omp parallel
-  {
-    TridiagonalBlock system(nx, /*periodic=*/true);
-    std::vector<double> value(std::size_t(nx) * kLanes);
-#pragma omp for schedule(static)
-    for (int first = 0; first < count; first += kLanes) {
-      const int width = std::min(kLanes, count - first);
-      for (int k = 0; k < kLanes; ++k) {
-        // Lanes beyond the last row repeat it.
-        const auto [begin, exchange] = slivers[first + std::min(k, width - 1)];
-        const auto wall = [&](int i) { return fixed[begin + i] != 0; };
-        for (int i = 0; i < nx; ++i) {
-          const int west = i > 0 ? i - 1 : nx - 1, east = i + 1 < nx ? i + 1 : 0;
-          system.lower(i)[k] = wall(i) || wall(west) ? 0.0 : exchange;
-          system.upper(i)[k] = wall(i) || wall(east) ? 0.0 : exchange;
-          value[std::size_t(i) * kLanes + k] = field[begin + i];
-        }
-      }
-      system.factorise();
-      system.solve(value.data());
-      for (int k = 0; k < width; ++k) {
-        const Index begin = slivers[first + k].begin;
-        for (int i = 0; i < nx; ++i) {
-          if (fixed[begin + i] != 0) continue;
-          field[begin + i] = static_cast<Real>(value[std::size_t(i) * kLanes + k]);
-        }
-      }
-    }
-  }
 }
 
 }  // namespace
@@ -114,14 +63,6 @@ void smooth_broadly(const Grid& grid, std::span<float> field, double length_m) {
 }
 void smooth_broadly(const Grid& grid, std::span<double> field, double length_m) {
   smooth(grid, field, length_m);
-}
-
-void smooth_slivers(const Grid& grid, std::span<float> field, std::span<const std::uint8_t> fixed) {
-  smooth_slivers_in(grid, field, fixed);
-}
-void smooth_slivers(const Grid& grid, std::span<double> field,
-                    std::span<const std::uint8_t> fixed) {
-  smooth_slivers_in(grid, field, fixed);
 }
 
 }  // namespace geo

@@ -31,12 +31,4 @@ void smooth_broadly(const Grid& grid, std::span<float> field, double length_m);
 /// In double precision: `smooth` itself, at its own cost.
 void smooth_broadly(const Grid& grid, std::span<double> field, double length_m);
 
-/// Blurs the cells of a sphere that are narrower than half their height along their parallels, to
-/// about the width that they have elsewhere: a variance of 0.3 (height^2 - 4 width^2). Where
-/// meridians converge a field then holds nothing finer from east to west than from south to north.
-/// Positive, and conservative along each row; cells with a non-zero byte in `fixed` keep their
-/// values and nothing crosses to them. Other grids stay as they are.
-void smooth_slivers(const Grid& grid, std::span<float> field, std::span<const std::uint8_t> fixed);
-void smooth_slivers(const Grid& grid, std::span<double> field, std::span<const std::uint8_t> fixed);
-
 }  // namespace geo

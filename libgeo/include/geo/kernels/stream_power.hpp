@@ -11,6 +11,7 @@
 #include "geo/core/numeric.hpp"
 #include "geo/kernels/flow_graph.hpp"
 #include "geo/kernels/receiver_distance.hpp"
+#include "geo/kernels/valley_width.hpp"
 
 namespace geo {
 
@@ -35,10 +36,11 @@ using StreamPower = BasicStreamPower<double>;
 /// elevation; so do cells that do not stand above their receiver (flooded ground on the way from a
 /// pit to its sill): no step climbs, none digs a pit.
 ///
-/// `area_m2`: drainage area, m2, one per cell. `erodibility`: K, m^(1-2m) yr-1, one per cell, or a
-/// single value for all. `elevation_m` in and out: hold uplift of the step already.
-/// Elevations and erodibilities may carry derivatives (core/numeric.hpp), which are those of the
-/// step along these receivers. The solve is in double.
+/// `area_m2`: drainage area, m2, one per cell; where meridians converge a bed is as wide as its
+/// valley (valley_width.hpp) and A has that much more than the cell's own. `erodibility`: K,
+/// m^(1-2m) yr-1, one per cell, or a single value for all. `elevation_m` in and out: hold uplift of
+/// the step already. Elevations and erodibilities may carry derivatives (core/numeric.hpp), which
+/// are those of the step along these receivers. The solve is in double.
 template <class K, class Z>
 void incise(const Grid& grid, const FlowGraph& graph, std::span<const double> area_m2,
             std::span<const K> erodibility, const BasicStreamPower<Arithmetic<Z>>& law,
@@ -113,11 +115,12 @@ std::vector<K> incision_factors(const Grid& grid, const FlowGraph& graph,
 #pragma omp parallel for schedule(static)
   for (int j = 0; j < grid.ny(); ++j) {
     const ReceiverDistance distance(grid, j);
+    const double beyond_m2 = valley_floor_beyond_cell_m2(grid, j);
     for (int i = 0; i < grid.nx(); ++i) {
       const Index cell = grid.cell(i, j), to = graph.receiver[cell];
       if (to == cell) continue;
       factor[cell] = static_cast<K>(law.dt_yr * T(at_or_single(erodibility, cell)) *
-                                    power(area_m2[cell], law.area_exponent) /
+                                    power(area_m2[cell] + beyond_m2, law.area_exponent) /
                                     power(distance(cell, i, to), law.slope_exponent));
     }
   }

@@ -8,6 +8,7 @@
 
 #include "geo/core/grid.hpp"
 #include "geo/core/numeric.hpp"
+#include "geo/kernels/valley_width.hpp"
 #include "geo/stages/erosion.hpp"
 
 namespace geo {
@@ -53,7 +54,7 @@ std::vector<V> resolved_erodibility(const ErosionParameters& p, const Lift<V>& l
   std::vector<V> resolved(grid.size());
 #pragma omp parallel for schedule(static)
   for (int j = 0; j < grid.ny(); ++j) {
-    const double cell_km = 1e-3 * std::sqrt(grid.area_m2(j));
+    const double cell_km = 1e-3 * valley_width_m(grid, j);
     const V factor(pow(Arithmetic<V>(cell_km / lift(p.reference_cell_km)),
                        Arithmetic<V>(-lift(p.subgrid_exponent))));
     for (Index cell = grid.cell(0, j); cell < grid.cell(0, j) + grid.nx(); ++cell) {

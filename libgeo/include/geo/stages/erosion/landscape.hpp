@@ -12,6 +12,7 @@
 #include "geo/kernels/diffusion.hpp"
 #include "geo/kernels/smoothing.hpp"
 #include "geo/kernels/stream_power.hpp"
+#include "geo/kernels/valley_width.hpp"
 #include "geo/stages/erosion/drainage.hpp"
 
 namespace geo {
@@ -61,8 +62,7 @@ class Landscape {
     incise(grid_, drainage.graph, std::span<const double>(drainage.area_m2), erodibility_, law(),
            z_);
     creep();
-    // Near a pole a river would cut a valley as narrow as its cells are there.
-    apply_linear(z_, [&](auto values) { smooth_slivers(grid_, values, outlets_); });
+    widen_valleys<V>(grid_, before_, outlets_, z_);
     book_lowering();
     if (p_.rebound_fraction > 0.0) rebound();
   }
