@@ -31,19 +31,19 @@ struct EnergyBalance {
   double obliquity_deg = 23.44;
   double outgoing_w_m2 = 204.6;         ///< A at 0 degC
   double outgoing_slope_w_m2_k = 2.09;  ///< B
-  double diffusivity_w_m2_k = 0.62;     ///< D at 15 degC, on the unit sphere
+  double diffusivity_w_m2_k = 0.53;     ///< D at 15 degC, on the unit sphere
   double moist_transport = 1.0;         ///< share of latent heat in D's change with temperature
   double coalbedo = 0.697;              ///< mean absorbed share without ice
   double coalbedo_p2 = -0.0779;         ///< its second Legendre coefficient in latitude
-  double ice_coalbedo = 0.20;           ///< of ice sheets and snow on land
+  double ice_coalbedo = 0.27;           ///< of ice sheets and snow on land
   double sea_ice_coalbedo = 0.55;       ///< of sea ice, broken and wet in summer
-  double ice_temperature_c = -13.0;     ///< annual mean at which half the surface is ice
+  double ice_temperature_c = -16.0;     ///< annual mean at which half the surface is ice
   double ice_width_k = 3.0;             ///< width of the transition; 0: no ice at all
-  double land_heat_capacity_w_yr_m2_k = 0.4;
+  double land_heat_capacity_w_yr_m2_k = 0.27;
   double ocean_heat_capacity_w_yr_m2_k = 5.4;
   double gyre_heat_w_m2 = 120.0;  ///< heat that gyres release along a western coast of an ocean
   double gyre_reach_km = 3200.0;  ///< e-folding distance of a coast's influence
-  double lapse_k_m = 0.006;
+  double lapse_k_m = 0.0057;
 };
 
 /// Heat that wind-driven gyres bring to the sea, W m-2: trades push warm water west and let cold

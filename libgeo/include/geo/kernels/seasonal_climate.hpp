@@ -15,15 +15,15 @@ struct SeasonalClimate {
   EnergyBalance energy;
   Circulation circulation;
   MoistureBudget moisture;
-  double itcz_share = 1.2;  ///< of the thermal equator's excursion that the cells follow
-  double base_diffusivity_m2_s = 9.3e5;
-  double eddy_diffusivity_m2_s = 5.0e5;  ///< at the reference temperature gradient
-  double eddy_rain = 4.0;                ///< extra rain-out activity there
-  double eddy_gradient_k_1000km = 7.0;   ///< the reference gradient
-  double ascent_time_d = 4.1;            ///< convergence over this time multiplies rain-out by e
-  double orographic_share = 0.2;  ///< of the mean height by which moist air is lifted over a cell
-  double blocking_height_m = 4900.0;  ///< height at which relief halves the moist flow
-  double land_transpiration = 0.95;   ///< share of Budyko's evaporation that returns to the air
+  double itcz_share = 1.22;  ///< of the thermal equator's excursion that the cells follow
+  double base_diffusivity_m2_s = 7.5e5;
+  double eddy_diffusivity_m2_s = 3.7e5;  ///< at the reference temperature gradient
+  double eddy_rain = 5.8;                ///< extra rain-out activity there
+  double eddy_gradient_k_1000km = 6.6;   ///< the reference gradient
+  double ascent_time_d = 5.2;            ///< convergence over this time multiplies rain-out by e
+  double orographic_share = 0.19;  ///< of the mean height by which moist air is lifted over a cell
+  double blocking_height_m = 5000.0;  ///< height at which relief halves the moist flow
+  double land_transpiration = 0.97;   ///< share of Budyko's evaporation that returns to the air
 };
 
 /// Fields of a coarse grid, one value per cell.
