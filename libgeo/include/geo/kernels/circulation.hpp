@@ -22,11 +22,11 @@ struct Circulation {
   double rotation_period_h = 23.934;
   double air_density_kg_m3 = 1.2;
   double drag_ocean_s = 1.5e-5;  ///< r over the sea, s-1
-  double drag_land_s = 3.4e-5;
+  double drag_land_s = 3.0e-5;
   double subtropical_high_hpa = 4.9;  ///< above the equatorial trough
-  double subpolar_low_hpa = 11.0;     ///< below the subtropical high
+  double subpolar_low_hpa = 17.0;     ///< below the subtropical high
   double polar_high_hpa = 6.0;        ///< above the subpolar low
-  double thermal_low_hpa_k = 0.84;    ///< fall of pressure per kelvin of heat anomaly
+  double thermal_low_hpa_k = 0.8;     ///< fall of pressure per kelvin of heat anomaly
 };
 
 /// Pressure of the three cells at a latitude, hPa relative to the equatorial trough: half cosines

@@ -12,7 +12,7 @@ struct MoistureBudget {
   double rain_time_d = 0.77;           ///< rain-out time of a saturated column
   std::int64_t humidity_exponent = 4;  ///< how sharply rain follows the column's relative humidity
   double evaporation_velocity_1_d = 0.25;  ///< v over open water that energy does not limit
-  double evaporating_share = 0.93;         ///< of the annual insolation, at most
+  double evaporating_share = 0.95;         ///< of the annual insolation, at most
   int sweeps = 30;
 };
 
