@@ -96,6 +96,11 @@ TEST(RegionOutline, TellsWhichEdgesCross) {
 
 TEST(RegionOutline, LinesThatOnlyTouchDoNotCross) {
   EXPECT_FALSE(first_crossing({{0, 0}, {0, 10}, {10, 10}, {10, 0}}).has_value());
+  // A loop of a hundredth of a square degree where a drawn line closes.
+  EXPECT_FALSE(
+      first_crossing({{0, 0}, {0, 10}, {10, 10}, {10, 0}, {-0.1, 0.2}, {0.1, 0.3}}).has_value());
+  EXPECT_TRUE(
+      first_crossing({{0, 0}, {0, 10}, {10, 10}, {10, 0}, {-1.0, 2.0}, {1.0, 3.0}}).has_value());
   // Two boxes that meet in a corner; a spike; the frame of a polar cap; a line round the planet.
   EXPECT_FALSE(
       first_crossing({{0, 0}, {0, 10}, {10, 10}, {10, 20}, {20, 20}, {20, 10}, {10, 10}, {10, 0}})

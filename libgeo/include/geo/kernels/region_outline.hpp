@@ -11,7 +11,8 @@
 namespace geo {
 
 /// The first two edges of a closed line that cross each other, each by the place that it begins at,
-/// from 0. Edges are as RegionOutline takes them. Lines that only touch do not cross.
+/// from 0. Edges are as RegionOutline takes them. Lines that only touch do not cross, and loops of
+/// less than 0.1 square degrees are taken for the rounding of drawn lines.
 [[nodiscard]] std::optional<std::pair<std::size_t, std::size_t>> first_crossing(
     const std::vector<Centre>& ring);
 

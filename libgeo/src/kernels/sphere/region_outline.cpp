@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 namespace geo {
 namespace {
@@ -53,19 +54,36 @@ bool edges_cross(const Centre& a, const Centre& b, const Centre& c, const Centre
   return turn(a, b, c) * turn(a, b, d) < 0.0 && turn(c, d, a) * turn(c, d, b) < 0.0;
 }
 
+/// Area between a line and a place that closes it, square degrees; above 0 where it turns left.
+double area_deg2(std::span<const Centre> line, const Centre& from) {
+  double twice = 0.0;
+  for (std::size_t k = 1; k < line.size(); ++k) twice += turn(from, line[k - 1], line[k]);
+  return 0.5 * twice;
+}
+
+/// The smaller of the two loops of a closed line whose edges behind i and k, i < k, cross.
+double smaller_loop_deg2(std::span<const Centre> line, std::size_t i, std::size_t k) {
+  const Centre &a = line[i], &b = line[i + 1], &c = line[k], &d = line[k + 1];
+  const double along = turn(c, d, a) / (turn(c, d, a) - turn(c, d, b));
+  const Centre at{std::lerp(a.latitude_deg, b.latitude_deg, along),
+                  std::lerp(a.longitude_deg, b.longitude_deg, along)};
+  const double loop = area_deg2(line.subspan(i + 1, k - i), at);
+  return std::min(std::abs(loop), std::abs(area_deg2(line, line.front()) - loop));
+}
+
 }  // namespace
 
 std::optional<std::pair<std::size_t, std::size_t>> first_crossing(const std::vector<Centre>& ring) {
+  constexpr double kRounding_deg2 = 0.1;
   const std::vector<Centre> line = unrolled(ring);
   std::array<std::vector<std::size_t>, 180> edges;  // by degrees of latitude
   for (std::size_t k = 0; k + 1 < line.size(); ++k) {
     const auto [low, high] = std::minmax(line[k].latitude_deg, line[k + 1].latitude_deg);
     for (int band = band_of(low); band <= band_of(high); ++band) {
       for (const std::size_t other : edges[band]) {
-        for (const double image : {-kCircle, 0.0, kCircle}) {
-          const Centre from{line[k].latitude_deg, line[k].longitude_deg + image};
-          const Centre to{line[k + 1].latitude_deg, line[k + 1].longitude_deg + image};
-          if (edges_cross(line[other], line[other + 1], from, to)) return {{other, k}};
+        if (edges_cross(line[other], line[other + 1], line[k], line[k + 1]) &&
+            smaller_loop_deg2(line, other, k) > kRounding_deg2) {
+          return {{other, k}};
         }
       }
       edges[band].push_back(k);
