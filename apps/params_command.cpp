@@ -105,7 +105,8 @@ std::vector<geo::Event> events_of_all_kinds() {
           {.name = "", .what = geo::OceanShift{}},
           {.name = "", .what = geo::PlateMotion{}},
           {.name = "", .what = geo::PlateRift{}},
-          {.name = "", .what = geo::CrustChange{}}};
+          {.name = "", .what = geo::CrustChange{}},
+          {.name = "", .what = geo::PlumeChange{}}};
 }
 
 void print_events(const std::string& format) {

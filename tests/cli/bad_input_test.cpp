@@ -507,6 +507,63 @@ const BadInput kFolders[] = {
      [](const fs::path& folder) { return quick_run(folder / "relief.nc", "/proc/terrane/out"); }},
 };
 
+/// A run of drifting plates that are in such a file.
+auto drift_of(std::string plates, Words more = {}) {
+  return [plates = std::move(plates), more = std::move(more)](const fs::path& folder) {
+    if (!plates.empty()) std::ofstream(folder / "plates.geojson", std::ios::binary) << plates;
+    Words arguments{"run",
+                    "-o",
+                    (folder / "out").string(),
+                    "--grid",
+                    "64x32",
+                    "--to",
+                    "plates",
+                    "--set",
+                    "plates.model=sphere",
+                    "--set",
+                    "fields.plates=" + (folder / "plates.geojson").string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  };
+}
+
+std::string two_plates(const std::string& properties, const std::string& ring) {
+  return R"({"type": "FeatureCollection", "features": [)"
+         R"({"properties": {"Code": "PA"}, "geometry": {"type": "Polygon", "coordinates": )"
+         R"([[[0, 0], [90, 0], [90, 45], [0, 0]]]}}, {"properties": {)" +
+         properties + R"(}, "geometry": {"type": "Polygon", "coordinates": [)" + ring + "]}}]}";
+}
+
+const BadInput kPlates[] = {
+    {"NoFile", kInput, {"fields.plates", "no such file", "must be earth or"}, drift_of("")},
+    {"NoJson", kInput, {"plates.geojson: is no JSON"}, drift_of("<kml/>")},
+    {"UnknownCode",
+     kInput,
+     {"plates.geojson: feature 2 (XY): XY is no Code of PB2002"},
+     drift_of(two_plates(R"("Code": "XY")", "[[0, 0], [9, 0], [9, 9], [0, 0]]"))},
+    {"CrossesItself",
+     kInput,
+     {"feature 2 (AF): a ring crosses itself"},
+     drift_of(two_plates(R"("Code": "AF")", "[[0, 0], [9, 9], [9, 0], [0, 9], [0, 0]]"))},
+    {"InMetres",
+     kInput,
+     {"feature 2 (AF): 900000, 0 is no longitude"},
+     drift_of(two_plates(R"("Code": "AF")", "[[0, 0], [9e5, 0], [9e5, 9], [0, 0]]"))},
+    {"NoFirstRelief",
+     kConfiguration,
+     {"plates.first_relief = given", "fields.first_relief"},
+     drift_of("", {"--set", "fields.plates=earth", "--set", "plates.first_relief=given"})},
+    {"FirstReliefOfAPart",
+     kInput,
+     {"fields.first_relief", "must cover the whole planet"},
+     [](const fs::path& folder) {
+       ReliefFile{.north_deg = 60.0}.write(folder / "part.nc");
+       return drift_of(
+           "", {"--set", "fields.plates=earth", "--set", "plates.first_relief=given", "--set",
+                "fields.first_relief=" + (folder / "part.nc").string()})(folder);
+     }},
+};
+
 class BadInputTest : public testing::TestWithParam<BadInput> {};
 
 TEST_P(BadInputTest, IsRefusedInOneLineAndHarmsNothing) {
@@ -533,6 +590,7 @@ const auto name_of = [](const testing::TestParamInfo<BadInput>& info) { return i
 INSTANTIATE_TEST_SUITE_P(Configuration, BadInputTest, testing::ValuesIn(kConfigurations), name_of);
 INSTANTIATE_TEST_SUITE_P(CommandLine, BadInputTest, testing::ValuesIn(kCommandLines), name_of);
 INSTANTIATE_TEST_SUITE_P(Relief, BadInputTest, testing::ValuesIn(kReliefs), name_of);
+INSTANTIATE_TEST_SUITE_P(Plates, BadInputTest, testing::ValuesIn(kPlates), name_of);
 INSTANTIATE_TEST_SUITE_P(Folder, BadInputTest, testing::ValuesIn(kFolders), name_of);
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/program.hpp"
+#include "geo/core/grid.hpp"
 #include "io/temporary_folder.hpp"
 
 namespace geo {
@@ -17,6 +18,7 @@ using Words = std::vector<std::string>;
 struct Happening {
   std::string kind;
   double time_myr, area_km2;
+  Centre place;
 };
 
 /// What stage plates tells of a run.
@@ -25,7 +27,10 @@ std::vector<Happening> happenings(const fs::path& folder) {
   const auto manifest = nlohmann::json::parse(file);
   std::vector<Happening> all;
   for (const auto& event : manifest.at("stages").at(0).at("events")) {
-    all.push_back({event.at("kind"), event.at("time_myr"), event.value("area_km2", 0.0)});
+    all.push_back({event.at("kind"),
+                   event.at("time_myr"),
+                   event.value("area_km2", 0.0),
+                   {event.at("latitude_deg"), event.at("longitude_deg")}});
   }
   return all;
 }
@@ -64,6 +69,32 @@ TEST_F(Scenario, AnIslandIsDrivenIntoAContinentAndASupercontinentBreaks) {
   ASSERT_NE(large, collisions.end());
   EXPECT_NEAR(large->time_myr, 191.0, 20.0);
   EXPECT_TRUE(broke);
+}
+
+/// Today's Earth, 80 million years on. Needs the Earth's relief, which Debian installs.
+class FutureEarth : public Scenario {
+ protected:
+  void SetUp() override {
+    if (!fs::exists("/usr/share/ferret-vis/data/etopo20.cdf")) {
+      GTEST_SKIP() << "no ferret-datasets here";
+    }
+  }
+};
+
+TEST_F(FutureEarth, AfricaBreaksAndAustraliaMeetsAsia) {
+  run("earth-in-80-million-years.toml");
+  bool left = false, broke = false, met = false;
+  for (const Happening& one : happenings(out_)) {
+    left = left || (one.kind == "plate-motion" && one.time_myr == 0.0);
+    broke = broke || (one.kind == "plate-rift" && one.time_myr == 10.0);
+    // All of Australia and New Guinea, which have come 2000 km north.
+    met = met || (one.kind == "continental-collision" && one.area_km2 > 7e6 &&
+                  one.place.latitude_deg < 0.0 && one.place.latitude_deg > -20.0 &&
+                  one.place.longitude_deg > 120.0 && one.time_myr > 10.0 && one.time_myr < 50.0);
+  }
+  EXPECT_TRUE(left);
+  EXPECT_TRUE(broke);
+  EXPECT_TRUE(met);
 }
 
 TEST_F(Scenario, ItsFramesAreWrittenAndGoOn) {

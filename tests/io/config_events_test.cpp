@@ -68,6 +68,35 @@ TEST(ConfigEvents, WhatIsWrittenIsReadBackAsItWas) {
   EXPECT_THAT(text, HasSubstr("path_deg = [[30.0, -170.25], [10.0, 175.0]]"));
 }
 
+TEST(ConfigEvents, TimelinesHaveLinesRegionsAndPlumes) {
+  const std::string text =
+      "[[event]]\nkind = 'plate-rift'\ntime_myr = 5\npath_deg = [[0, 30], [10, 35]]\n"
+      "[[event]]\nkind = 'crust-change'\ntime_myr = 5\npath_deg = [[0, 30], [10, 35], [10, 30]]\n"
+      "[[event]]\nkind = 'plume'\ntime_myr = 5\nlatitude_deg = 3\nlongitude_deg = 4\n"
+      "active = false\n";
+  const auto events = events_of(text);
+  ASSERT_EQ(events.size(), 3U);
+  EXPECT_EQ(std::get<PlateRift>(events[0].what).path.size(), 2U);
+  EXPECT_EQ(std::get<CrustChange>(events[1].what).path[2].longitude_deg, 30.0);
+  EXPECT_FALSE(std::get<PlumeChange>(events[2].what).active);
+  const std::string written = write_config({}, "heading", events);
+  EXPECT_EQ(write_config({}, "heading", events_of(written)), written);
+  EXPECT_THAT(written, HasSubstr("path_deg = [[0.0, 30.0], [10.0, 35.0], [10.0, 30.0]]"));
+  EXPECT_THAT(refusal("[[event]]\nkind = 'plate-rift'\ntime_myr = 5\n"),
+              HasSubstr("needs latitude_deg"));
+  EXPECT_THAT(
+      refusal("[[event]]\nkind = 'crust-change'\ntime_myr = 5\npath_deg = [[0, 3], [1, 3]]\n"),
+      HasSubstr("needs three places or more"));
+  EXPECT_THAT(refusal("[[event]]\nkind = 'crust-change'\ntime_myr = 5\n"
+                      "path_deg = [[0, 0], [10, 0], [10, 10], [5, -5]]\n"),
+              HasSubstr("the outline crosses itself behind its places 1 and 3"));
+  EXPECT_THAT(
+      refusal("[[event]]\nkind = 'plate-rift'\ntime_myr = 5\npath_deg = [[90, 3], [90, 5]]\n"),
+      HasSubstr("places 1 and 2 are the same"));
+  EXPECT_THAT(refusal("[[event]]\nkind = 'plume'\ntime_myr = 5\npath_deg = [[0, 3], [1, 3]]\n"),
+              HasSubstr("unknown key event.path_deg"));
+}
+
 TEST(ConfigEvents, AFileReplacesThoseBeforeIt) {
   auto events = events_of(kAll);
   apply_toml("", "planet.toml", {}, &events);

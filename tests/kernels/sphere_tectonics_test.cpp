@@ -8,6 +8,7 @@
 #include <cstring>
 #include <numbers>
 
+#include "geo/kernels/great_circle_line.hpp"
 #include "geo/kernels/ocean_depth.hpp"
 #include "geo/kernels/sphere_start.hpp"
 
@@ -242,12 +243,12 @@ TEST(SphereTectonics, APlumeLeavesAChainOfVolcanoes) {
   const World world(40000);
   SphereSettings settings = quiet();
   settings.law.damping_mm_yr = 0.0;
-  settings.plumes = {place(10.0, 60.0)};
-  settings.plume_mm_yr = 1.0;
   settings.plume_km = 120.0;
   settings.least_steps = 60;
   // Plate 1 turns eastwards at 50 mm/yr: 24 Myr later its first volcano is 1200 km east.
-  SphereTectonics model(world.mesh, settings, hemispheres(world, 100.0), 1);
+  SphereState state = hemispheres(world, 100.0);
+  state.plumes = {{place(10.0, 60.0), 1.0}};
+  SphereTectonics model(world.mesh, settings, std::move(state), 1);
   for (int k = 0; k < 12; ++k) model.advance();
   const Matrix3 frame = model.state().plates[1].turn.matrix();
   double west = 400.0, east = -400.0;
@@ -262,6 +263,80 @@ TEST(SphereTectonics, APlumeLeavesAChainOfVolcanoes) {
   }
   EXPECT_NEAR(west, 60.0, 3.5);
   EXPECT_NEAR(east, 60.0 + 1200.0 / kKmPerDegree, 4.0);
+}
+
+TEST(SphereTectonics, RiftsAlongALineToBothSidesOfIt) {
+  const World world(20000);
+  SphereTectonics model(world.mesh, quiet(), hemispheres(world, 0.0), 1);
+  // Northwards along 90 E, then north-east from 30 N.
+  const std::vector<Vector3> line{place(-30.0, 90.0), place(30.0, 90.0), place(50.0, 120.0)};
+  model.rift_along(1, GreatCircleLine(line), 2, 30.0);
+  ASSERT_EQ(model.state().plates.size(), 3U);
+  const auto plate_of = [&](double latitude, double longitude) {
+    return model.state().crust.plate[world.samples.nearest(place(latitude, longitude))];
+  };
+  for (double latitude = -60.0; latitude <= 30.0; latitude += 5.0) {
+    EXPECT_EQ(plate_of(latitude, 87.0), 1) << latitude;
+    EXPECT_EQ(plate_of(latitude, 93.0), 2) << latitude;
+  }
+  for (const double along : {0.2, 0.5, 0.8, 1.3}) {
+    const Vector3 turn = normalised(cross(line[1], line[2]));
+    const Vector3 on = rotated(line[1], scaled(turn, along * angle_between(line[1], line[2])));
+    EXPECT_EQ(model.state()
+                  .crust.plate[world.samples.nearest(rotated(on, scaled(cross(turn, on), -0.05)))],
+              1)
+        << along;
+    EXPECT_EQ(model.state()
+                  .crust.plate[world.samples.nearest(rotated(on, scaled(cross(turn, on), 0.05)))],
+              2)
+        << along;
+  }
+  EXPECT_EQ(plate_of(0.0, -90.0), 0);
+  // They part at twice the speed, across the line.
+  const Vector3 middle = place(10.0, 90.0);
+  const Vector3 parting =
+      scaled(cross(add(model.rotations()[2], model.rotations()[1], -1.0), middle), 6370.0);
+  EXPECT_GT(dot(parting, Vector3{-1.0, 0.0, 0.0}), 45.0);  // eastwards
+  EXPECT_LT(length(parting), 60.1);
+  EXPECT_EQ(model.budget().rifts, 1);
+}
+
+TEST(SphereTectonics, ALineCutsThreeAndFourFragments) {
+  const World world(20000);
+  const std::vector<Vector3> line{place(-30.0, 90.0), place(30.0, 90.0)};
+  for (const int fragments : {3, 4}) {
+    SphereTectonics model(world.mesh, quiet(), hemispheres(world, 0.0), 1);
+    model.rift_along(1, GreatCircleLine(line), fragments, 30.0);
+    const auto plate_of = [&](double latitude, double longitude) {
+      return model.state().crust.plate[world.samples.nearest(place(latitude, longitude))];
+    };
+    EXPECT_EQ(plate_of(-20.0, 60.0), 1);
+    EXPECT_EQ(plate_of(-20.0, 120.0), 2);
+    EXPECT_EQ(plate_of(20.0, 120.0), 3);
+    EXPECT_EQ(plate_of(20.0, 60.0), fragments == 4 ? 4 : 1);
+    EXPECT_NEAR(model.partition().cap(3).samples, 5000 / 2, 100);
+  }
+}
+
+TEST(SphereTectonics, ChangesTheCrustOfARegionWhereverItsPlatesAre) {
+  const World world(20000);
+  SphereTectonics model(world.mesh, quiet(), hemispheres(world, 60.0), 1);
+  for (int k = 0; k < 3; ++k) model.advance();
+  const auto within = [](const Vector3& at) {
+    return std::abs(latitude_deg(at)) < 15.0 && longitude_deg(at) > 60.0 &&
+           longitude_deg(at) < 90.0;
+  };
+  const double area_km2 = model.change_crust(within, true);
+  // The region's own area, 30 degrees wide.
+  const double wanted_km2 =
+      6370.0 * 6370.0 * std::numbers::pi / 6.0 * 2.0 * std::sin(std::numbers::pi / 12.0);
+  EXPECT_NEAR(area_km2, wanted_km2, 0.03 * wanted_km2);
+  for (std::int32_t i = 0; i < world.mesh.size(); ++i) {
+    const Matrix3 frame = model.state().plates[model.state().crust.plate[i]].turn.matrix();
+    EXPECT_EQ(model.state().crust.continental[i] != 0,
+              within(times(frame, world.samples.position(i))));
+  }
+  EXPECT_EQ(model.change_crust(within, true), 0.0);
 }
 
 TEST(SphereTectonics, TakesTheNetRotationAway) {
@@ -284,6 +359,89 @@ TEST(SphereTectonics, TakesTheNetRotationAway) {
   }
   EXPECT_GT(speeds * 6370.0 / world.mesh.size(), 10.0);  // mm/yr
   EXPECT_LT(6370.0 * length(sum) / world.mesh.size(), 1e-12);
+}
+
+/// Plates of a seed, all of them ocean.
+SphereState bare_plates(const World& world, const SphereSettings& settings) {
+  SphereStart start;
+  start.continental_share = 0.0;
+  return start_sphere(world.mesh, start, settings, 3);
+}
+
+TEST(SphereTectonics, AMotionThatIsGivenHoldsAndNoOtherPlateFeelsIt) {
+  const World world(5000);
+  SphereSettings settings;
+  settings.rift_per_myr = 0.0;
+  settings.slab_pull = 0.0;
+  SphereTectonics model(world.mesh, settings, bare_plates(world, settings), 3);
+  model.begin_step();
+  const auto before = model.rotations();
+  const Vector3 given = scaled(place(20.0, 70.0), 90.0 / 6370.0);
+  model.set_motion(5, given, length(given));
+  model.advance();
+  model.begin_step();
+  for (std::size_t p = 0; p < before.size(); ++p) {
+    const Vector3& wanted = p == 5 ? given : before[p];
+    // Others that made room for plate 5 would change by 2 mm/yr; as plates turn, the weights of
+    // their common rotation change a little.
+    const double most = p == 5 ? 1e-9 : 0.2;
+    EXPECT_LT(6370.0 * length(add(model.rotations()[p], wanted, -1.0)), most) << p;
+  }
+}
+
+TEST(SphereTectonics, AMotionThatIsGivenHoldsAgainstSlabPullAndFrame) {
+  const World world(5000);
+  SphereSettings settings;
+  settings.rift_per_myr = 0.0;
+  settings.slab_pull = 0.02;
+  for (const bool holds : {true, false}) {
+    settings.hold_motions = holds;
+    SphereTectonics model(world.mesh, settings, bare_plates(world, settings), 3);
+    model.begin_step();
+    const Vector3 given = scaled(place(20.0, 70.0), 90.0 / 6370.0);
+    model.set_motion(5, given, length(given));
+    const Vector3 other = model.rotations()[6];
+    for (int k = 0; k < 12; ++k) model.advance();
+    const double changed_mm_yr = 6370.0 * length(add(model.rotations()[5], given, -1.0));
+    if (holds) {
+      EXPECT_LT(changed_mm_yr, 1e-9);
+    } else {
+      EXPECT_GT(changed_mm_yr, 5.0);
+    }
+    EXPECT_GT(6370.0 * length(add(model.rotations()[6], other, -1.0)), 5.0);  // it is pulled
+  }
+}
+
+TEST(SphereTectonics, BothHalvesOfAPlateThatIsHeldAreHeld) {
+  const World world(5000);
+  SphereSettings settings;
+  settings.rift_per_myr = 0.0;
+  SphereTectonics model(world.mesh, settings, bare_plates(world, settings), 3);
+  model.hold_motions();
+  const Vector3 centre = model.partition().cap(5).centre;
+  const std::vector<Vector3> line{centre, rotated(centre, scaled(place(0.0, 0.0), 0.1))};
+  const auto plates = model.state().plates.size();
+  model.rift_along(5, GreatCircleLine(line), 2, 20.0);
+  const auto rotations = model.rotations();
+  ASSERT_EQ(rotations.size(), plates + 1);
+  for (int k = 0; k < 5; ++k) model.advance();
+  EXPECT_EQ(model.rotations(), rotations);
+}
+
+TEST(SphereTectonics, WhatIsDoneBetweenStepsIsInTheBooksOfTheNext) {
+  const World world(5000);
+  SphereTectonics model(world.mesh, quiet(), hemispheres(world, 0.0), 1);
+  model.advance();
+  model.begin_step();
+  const std::vector<Vector3> line{place(-30.0, 90.0), place(30.0, 90.0)};
+  model.rift_along(1, GreatCircleLine(line), 2, 0.0);
+  const double area_km2 = model.change_crust(place(0.0, -90.0), 1000.0, true);
+  model.advance();
+  EXPECT_EQ(model.budget().rifts, 1);
+  EXPECT_NEAR(model.budget().changed_km3, 36.0 * area_km2, 1e-6 * area_km2);
+  model.advance();
+  EXPECT_EQ(model.budget().rifts, 0);
+  EXPECT_EQ(model.budget().changed_km3, 0.0);
 }
 
 bool same_bits(const SphereState& a, const SphereState& b) {
@@ -318,6 +476,82 @@ TEST(SphereTectonics, GivesTheSameBitsOnAnyNumberOfThreads) {
   omp_set_num_threads(threads);
   EXPECT_TRUE(same_bits(ends[0], ends[1]));
   EXPECT_TRUE(same_bits(ends[0], ends[2]));
+}
+
+TEST(SphereTectonics, IslandArcsStandOneToFourHundredKilometresBehindTheirTrench) {
+  const World world(60000);
+  SphereSettings settings = quiet();
+  settings.floor_by_age = true;
+  settings.arc_reach_km = 600.0;
+  settings.elevation_weight = 0.7;
+  settings.most_steps = settings.least_steps = 1000;
+  SphereTectonics model(world.mesh, settings, hemispheres(world, 100.0), 1);
+  int arcs = 0;
+  for (int k = 0; k < 40 && arcs < 40; ++k) {
+    model.advance();
+    const SphereCrust& crust = model.state().crust;
+    arcs = 0;
+    for (std::int32_t i = 0; i < world.mesh.size(); ++i) {
+      if (crust.continental[i] == 0) continue;
+      ++arcs;
+      // On the plate that stays up, the younger one.
+      ASSERT_EQ(crust.plate[i], 0);
+      const std::int32_t front = model.nearest_front()[i];
+      ASSERT_GE(front, 0);
+      const double far_km =
+          6370.0 * angle_between(world.samples.position(i),
+                                 world.samples.position(model.fronts()[front].sample));
+      EXPECT_GE(far_km, 100.0);
+      EXPECT_LE(far_km, 400.0);
+    }
+  }
+  EXPECT_GE(arcs, 40);
+}
+
+TEST(SphereTectonics, CordillerasRiseBehindTheTrenchesOfAWholePlanet) {
+  const World world(40000);
+  SphereSettings settings;
+  settings.floor_by_age = true;
+  settings.law.erosion_mm_yr = 0.24;
+  settings.arc_reach_km = 600.0;
+  settings.elevation_weight = 0.7;
+  SphereStart start;
+  start.continental_share = 0.38;
+  SphereTectonics model(world.mesh, settings, start_sphere(world.mesh, start, settings, 3), 3);
+  // Mean height of continental ground beside active trenches, by distance.
+  constexpr int kBins = 10;
+  constexpr double kBin_km = 100.0;  // as far as samples are apart
+  std::vector<double> sum(kBins, 0.0), count(kBins, 0.0);
+  for (int k = 0; k < 60; ++k) {
+    model.advance();
+    if (k < 20) continue;
+    const SphereCrust& crust = model.state().crust;
+    for (std::int32_t i = 0; i < world.mesh.size(); ++i) {
+      const std::int32_t front = model.nearest_front()[i];
+      if (front < 0 || crust.continental[i] == 0 || crust.plate[i] < 0) continue;
+      EXPECT_EQ(model.hidden()[i], 0);  // the side that stays up
+      if (crust.orogeny[i] == static_cast<std::int8_t>(OrogenyType::himalayan)) continue;
+      const double far_km =
+          6370.0 * angle_between(world.samples.position(i),
+                                 world.samples.position(model.fronts()[front].sample));
+      const int bin = static_cast<int>(far_km / kBin_km);
+      if (bin >= kBins) continue;
+      sum[bin] += crust.elevation_m[i];
+      count[bin] += 1.0;
+    }
+  }
+  double highest_m = -1e9, highest_km = 0.0;
+  for (int bin = 0; bin < kBins; ++bin) {
+    ASSERT_GT(count[bin], 100.0) << bin;
+    if (sum[bin] / count[bin] > highest_m) {
+      highest_m = sum[bin] / count[bin];
+      highest_km = (bin + 0.5) * kBin_km;
+    }
+  }
+  EXPECT_GE(highest_km, 100.0);
+  EXPECT_LE(highest_km, 400.0);
+  EXPECT_GT(highest_m, sum[0] / count[0] + 200.0);
+  EXPECT_GT(highest_m, sum[kBins - 1] / count[kBins - 1] + 200.0);
 }
 
 TEST(SphereTectonics, PlanetsOfManySeedsStayWhole) {

@@ -108,6 +108,27 @@ std::vector<Parameter> CrustChange::declarations() {
   };
 }
 
+std::vector<Parameter> PlumeChange::declarations() {
+  return {
+      time_of(time_myr),
+      latitude_of(latitude_deg, "above the plume"),
+      longitude_of(longitude_deg, "above the plume"),
+      flag("event.active", active,
+           "whether a plume begins there, or the one nearest to the place ends", "cortial2019"),
+      real("event.growth_mm_yr", growth_mm_yr, "mm yr-1", 0.0, 100.0,
+           "growth of volcanoes on the sea floor above it", "cortial2019"),
+  };
+}
+
+std::vector<Centre>* Event::path() {
+  return std::visit(
+      [](auto& event) -> std::vector<Centre>* {
+        if constexpr (requires { event.path; }) return &event.path;
+        return nullptr;
+      },
+      what);
+}
+
 std::string_view Event::kind() const {
   return std::visit([](const auto& event) { return event.kKind; }, what);
 }

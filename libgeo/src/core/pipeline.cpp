@@ -97,6 +97,7 @@ void Pipeline::run(State& state, Context& context, int first, int last,
     const StageInfo& info = stages_[at]->info();
     if (observer.before) observer.before(at);
     context.budget.clear();
+    context.steps = {};
     context.event_records.clear();
     context.advance(0.0);
     StageIo io(state, info);

@@ -9,13 +9,14 @@
 #include "config_nodes.hpp"
 #include "geo/core/error.hpp"
 #include "geo/io/config.hpp"
+#include "geo/kernels/region_outline.hpp"
 
 namespace geo::io {
 namespace {
 
-constexpr std::array<std::string_view, 6> kKinds{Impact::kKind,     Rift::kKind,
-                                                 OceanShift::kKind, PlateMotion::kKind,
-                                                 PlateRift::kKind,  CrustChange::kKind};
+constexpr std::array<std::string_view, 7> kKinds{
+    Impact::kKind,    Rift::kKind,        OceanShift::kKind, PlateMotion::kKind,
+    PlateRift::kKind, CrustChange::kKind, PlumeChange::kKind};
 constexpr std::string_view kPathKey = "path_deg";
 
 Event event_of_kind(std::string_view kind) {
@@ -25,6 +26,7 @@ Event event_of_kind(std::string_view kind) {
   if (kind == PlateMotion::kKind) event.what = PlateMotion{};
   if (kind == PlateRift::kKind) event.what = PlateRift{};
   if (kind == CrustChange::kKind) event.what = CrustChange{};
+  if (kind == PlumeChange::kKind) event.what = PlumeChange{};
   return event;
 }
 
@@ -83,9 +85,10 @@ std::vector<Centre> path_of(const toml::node& node, const std::string& where) {
     const double apart_deg =
         std::remainder(path[i].longitude_deg - path[i - 1].longitude_deg, 360.0);
     const double north_deg = path[i].latitude_deg - path[i - 1].latitude_deg;
-    const bool same = north_deg == 0.0 && apart_deg == 0.0;
-    const bool opposite =
-        path[i].latitude_deg == -path[i - 1].latitude_deg && std::abs(apart_deg) == 180.0;
+    const bool polar = std::abs(path[i].latitude_deg) == 90.0;
+    const bool same = north_deg == 0.0 && (apart_deg == 0.0 || polar);
+    const bool opposite = path[i].latitude_deg == -path[i - 1].latitude_deg &&
+                          (std::abs(apart_deg) == 180.0 || polar);
     if (same || opposite) {
       throw ConfigurationError(
           fmt::format("{}event.path_deg: places {} and {} are {}: no great circle joins them",
@@ -93,6 +96,18 @@ std::vector<Centre> path_of(const toml::node& node, const std::string& where) {
     }
   }
   return path;
+}
+
+void check_region(const std::vector<Centre>& path, const std::string& where) {
+  if (path.size() < 3) {
+    throw ConfigurationError(
+        fmt::format("{}event.path_deg: the outline of a region needs three places or more", where));
+  }
+  if (const auto crossing = first_crossing(path)) {
+    throw ConfigurationError(
+        fmt::format("{}event.path_deg: the outline crosses itself behind its places {} and {}",
+                    where, crossing->first + 1, crossing->second + 1));
+  }
 }
 
 /// What a kind cannot do without.
@@ -106,7 +121,12 @@ void check_whole(const Event& event, const toml::table& table, const std::string
   } else if (std::holds_alternative<Rift>(event.what)) {
     needs(kPathKey);
   } else if (event.is_of_plates()) {
-    for (const auto* key : {"time_myr", "latitude_deg", "longitude_deg"}) needs(key);
+    needs("time_myr");
+    if (!table.contains(kPathKey)) {
+      for (const auto* key : {"latitude_deg", "longitude_deg"}) needs(key);
+    }
+    const auto* region = std::get_if<CrustChange>(&event.what);
+    if (region != nullptr && !region->path.empty()) check_region(region->path, where);
   } else {
     const auto& shift = std::get<OceanShift>(event.what);
     if ((shift.rise_m != 0.0) == (shift.water_km3 != 0.0)) {
@@ -127,9 +147,8 @@ Event event_of(const toml::table& table, const std::string& source_name) {
       const auto* name = node.as_string();
       if (name == nullptr) throw ConfigurationError(here + "event.name: must be a string");
       event.name = name->get();
-    } else if (auto* rift = std::get_if<Rift>(&event.what);
-               rift != nullptr && key.str() == kPathKey) {
-      rift->path = path_of(node, here);
+    } else if (auto* path = event.path(); path != nullptr && key.str() == kPathKey) {
+      *path = path_of(node, here);
     } else {
       apply_node(node, fmt::format("{}.{}", kEventKey, key.str()), here, declarations);
     }
@@ -158,11 +177,10 @@ std::string write_events(std::span<const Event> events) {
   for (Event event : events) {
     text += fmt::format("\n[[{}]]\nkind = \"{}\"\nname = {}\n", kEventKey, event.kind(),
                         to_toml(ParameterValue(event.name)));
-    if (const auto* rift = std::get_if<Rift>(&event.what)) {
-      text +=
-          fmt::format("# the line it follows, [latitude, longitude] in degrees\n{} = [", kPathKey);
-      for (const Centre& place : rift->path) {
-        text += fmt::format("{}[{}, {}]", &place == rift->path.data() ? "" : ", ",
+    if (const auto* path = event.path(); path != nullptr && !path->empty()) {
+      text += fmt::format("# the line, [latitude, longitude] in degrees\n{} = [", kPathKey);
+      for (const Centre& place : *path) {
+        text += fmt::format("{}[{}, {}]", &place == path->data() ? "" : ", ",
                             to_toml(ParameterValue(place.latitude_deg)),
                             to_toml(ParameterValue(place.longitude_deg)));
       }

@@ -212,12 +212,12 @@ std::optional<Centre> find_centre(const nc::File& file, int variable, const DemA
 }
 
 Relief read_from(const nc::File& file, const std::string& wanted, const std::string& units,
-                 const Planet& planet) {
+                 Gaps gaps, const Planet& planet) {
   const int variable = choose_variable(file, wanted);
   const auto dimensions = file.dimensions_of(variable);
   const DemAxis rows = read_axis(file, dimensions[dimensions.size() - 2]);
   const DemAxis columns = read_axis(file, dimensions.back());
-  const auto values = read_values(file, variable, rows, columns, units);
+  const auto values = read_values(file, variable, rows, columns, units, gaps);
   const auto finish = [&](Relief relief) {
     relief.variable = file.variable_name(variable);
     return relief;
@@ -241,14 +241,14 @@ Relief read_from(const nc::File& file, const std::string& wanted, const std::str
 }
 
 Relief read_raster(const std::string& file_and_variable, const std::string& otherwise,
-                   const std::string& units, const Planet& planet) {
+                   const std::string& units, Gaps gaps, const Planet& planet) {
   const Request request = split(file_and_variable);
   const std::string path = request.path.string();
   const nc::File file = open_input(request.path);
   check_classic_size(request.path);
   try {
     const bool named = !request.variable.empty() || !file.find_variable(otherwise);
-    Relief relief = read_from(file, named ? request.variable : otherwise, units, planet);
+    Relief relief = read_from(file, named ? request.variable : otherwise, units, gaps, planet);
     relief.source = path + ":" + relief.variable;
     return relief;
   } catch (const nc::Failure& failure) {
@@ -263,12 +263,19 @@ Relief read_raster(const std::string& file_and_variable, const std::string& othe
 }  // namespace
 
 Relief read_relief(const std::string& file_and_variable, const Planet& planet) {
-  return read_raster(file_and_variable, "", "m", planet);
+  return read_raster(file_and_variable, "", "m", Gaps::refused, planet);
 }
 
 Relief read_field(const std::string& file_and_variable, const FieldSpec& spec,
                   const Planet& planet) {
-  return read_raster(file_and_variable, std::string(spec.name), std::string(spec.units), planet);
+  return read_raster(file_and_variable, std::string(spec.name), std::string(spec.units),
+                     Gaps::refused, planet);
+}
+
+Relief read_field_with_gaps(const std::string& file_and_variable, const FieldSpec& spec,
+                            const Planet& planet) {
+  return read_raster(file_and_variable, std::string(spec.name), std::string(spec.units), Gaps::nan,
+                     planet);
 }
 
 std::vector<float> resample(const Relief& relief, const Grid& target) {

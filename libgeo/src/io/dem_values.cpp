@@ -85,12 +85,12 @@ Packing read_packing(const nc::File& file, int variable, const std::string& unit
 }
 
 /// Missing cells so far.
-struct Gaps {
+struct Missing {
   long count = 0;
   int row = 0, column = 0;
 };
 
-[[noreturn]] void refuse(const std::string& name, const Gaps& gaps, const DemAxis& rows,
+[[noreturn]] void refuse(const std::string& name, const Missing& gaps, const DemAxis& rows,
                          const DemAxis& columns) {
   const bool degrees = rows.kind == AxisKind::latitude;
   throw InputError(fmt::format(
@@ -103,7 +103,7 @@ struct Gaps {
 }  // namespace
 
 std::vector<float> read_values(const nc::File& file, int variable, const DemAxis& rows,
-                               const DemAxis& columns, const std::string& units) {
+                               const DemAxis& columns, const std::string& units, Gaps allowed) {
   const std::string name = file.variable_name(variable);
   const Packing packing = read_packing(file, variable, units);
   const auto dimensions = file.dimensions_of(variable).size();
@@ -115,7 +115,7 @@ std::vector<float> read_values(const nc::File& file, int variable, const DemAxis
   constexpr std::size_t kBlockRows = 512;
   std::vector<double> block(std::min(kBlockRows, ny) * nx);
   count.back() = nx;
-  Gaps gaps;
+  Missing gaps;
   for (std::size_t from = 0; from < ny; from += kBlockRows) {
     start[dimensions - 2] = from;
     count[dimensions - 2] = std::min(kBlockRows, ny - from);
@@ -132,10 +132,12 @@ std::vector<float> read_values(const nc::File& file, int variable, const DemAxis
           gaps.column = static_cast<int>(k % nx);
         }
       }
-      values[from * nx + k] = static_cast<float>(block[k] * packing.scale + packing.offset);
+      values[from * nx + k] = packing.is_missing(block[k])
+                                  ? std::numeric_limits<float>::quiet_NaN()
+                                  : static_cast<float>(block[k] * packing.scale + packing.offset);
     }
   }
-  if (gaps.count > 0) refuse(name, gaps, rows, columns);
+  if (gaps.count > 0 && allowed == Gaps::refused) refuse(name, gaps, rows, columns);
   return values;
 }
 

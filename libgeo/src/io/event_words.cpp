@@ -61,6 +61,7 @@ std::string words_of(const EventRecord& event) {
     const char* what = event.kind == PlateMotion::kKind        ? "A plate takes a new course"
                        : event.kind == "continental-collision" ? "Continents collide"
                        : event.kind == CrustChange::kKind      ? "Crust changes its type"
+                       : event.kind == PlumeChange::kKind      ? "A plume begins or ends"
                                                                : "A plate breaks";
     return fmt::format("{}{} after {:.4g} million years, at {} {}.", what, name,
                        get(event, "time_myr"), degrees(get(event, "latitude_deg"), 'N', 'S'),

@@ -40,7 +40,8 @@ bool is_stage_file(const fs::path& path) {
   const std::string name = path.filename().string();
   return name.size() > 6 && std::isdigit(static_cast<unsigned char>(name[0])) != 0 &&
          std::isdigit(static_cast<unsigned char>(name[1])) != 0 && name[2] == '-' &&
-         (path.extension() == ".nc" || path.extension() == ".vti" || path.extension() == ".vtp");
+         (path.extension() == ".nc" || path.extension() == ".vti" || path.extension() == ".vtp" ||
+          path.extension() == ".csv");
 }
 
 }  // namespace
@@ -106,7 +107,7 @@ void RunFolder::open() {
 }
 
 void RunFolder::remove_stage(int number, std::string_view stage) const {
-  for (const std::string_view extension : {".nc", ".vti", ".vtp"}) {
+  for (const std::string_view extension : {".nc", ".vti", ".vtp", ".csv"}) {
     remove_file(stage_file(number, stage, extension));
   }
 }

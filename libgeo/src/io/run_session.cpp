@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <utility>
 
 #include "frame_files.hpp"
@@ -33,11 +34,25 @@ void tell(const Function& function, Arguments&&... arguments) {
   if (function) function(std::forward<Arguments>(arguments)...);
 }
 
+/// A table as comma-separated values with a line of names.
+std::string text_of(const StepTable& steps) {
+  std::string text = fmt::format("{}\n", fmt::join(steps.columns, ","));
+  for (const auto& row : steps.rows) {
+    for (std::size_t k = 0; k < steps.columns.size(); ++k) {
+      if (k > 0) text += ',';
+      if (k < row.size() && std::isfinite(row[k])) text += fmt::format("{}", row[k]);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
 /// One background job: the files of a stage, then its entry in the manifest.
 struct StageJob {
   Snapshot snapshot;
   Provenance provenance;
-  std::filesystem::path netcdf, vti;
+  std::filesystem::path netcdf, vti, csv;
+  StepTable steps;
   StageRecord record;
 
   void write(bool vtk, int compression) {
@@ -46,6 +61,10 @@ struct StageJob {
     if (vtk) {
       write_vti(vti, snapshot, provenance);
       record.files.push_back(vti.filename().string());
+    }
+    if (!steps.rows.empty()) {
+      write_text_file(csv, text_of(steps));
+      record.files.push_back(csv.filename().string());
     }
     for (const auto& [spec, values] : snapshot.fields) {
       record.fields.push_back(summarise(*spec, *values, *snapshot.grid));
@@ -119,6 +138,8 @@ void RunSession::write_stage(BackgroundWriter& writer, int position, const State
   job->provenance = provenance_of(position);
   job->netcdf = file_of(position, ".nc");
   job->vti = file_of(position, ".vti");
+  job->csv = file_of(position, ".csv");
+  job->steps = context.steps;
   job->record.name = name_of(position);
   job->record.seconds = time_is_given() ? 0.0 : seconds;
   job->record.budget = context.budget;
@@ -155,6 +176,8 @@ void RunSession::compute(const RunEvents& events) {
   context.planet = planet_;
   context.seed = static_cast<std::uint64_t>(settings_.seed);
   context.hypsography = hypsography();
+  context.plates = plates_;
+  context.first_relief = first_relief_;
   context.events = settings_.events;
   context.on_progress = events.progress;
   context.stop = events.stop;

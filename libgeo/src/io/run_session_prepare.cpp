@@ -10,6 +10,7 @@
 #include "geo/io/config.hpp"
 #include "geo/io/dem.hpp"
 #include "geo/io/hypsography.hpp"
+#include "geo/io/plate_outlines.hpp"
 #include "geo/io/run_session.hpp"
 #include "geo/io/source_date.hpp"
 #include "geo/kernels/impact_crater.hpp"
@@ -49,6 +50,12 @@ Grid grid_for(const Relief& relief, const RunSettings& settings, const Planet& p
   const double height_m = source.step_north_m() * source.ny();
   return Grid::plane(nx, ny, width_m / nx, height_m / ny, source.edges(), source.centre(),
                      planet.figure());
+}
+
+/// Refuses a relief of a part of a planet where a whole one is needed.
+void check_whole_planet(const Relief& relief, std::string_view key) {
+  if (relief.grid.topology() == Topology::sphere) return;
+  throw InputError(fmt::format("{}: {}: must cover the whole planet", key, relief.source));
 }
 
 /// Refuses events that this planet has no place for.
@@ -149,6 +156,7 @@ void RunSession::prepare() {
   leave_out_island();
   check_events(settings_.events, grid(), planet_);
   read_given_fields();
+  read_beginning();
   if (!settings_.start_frame.empty()) (void)read_checkpoint(settings_.start_frame);
   (void)hypsography();  // refuses a bad one before anything is computed
   pipeline_.check(state_->present(), first_, last_);
@@ -398,6 +406,35 @@ void RunSession::read_given_fields() {
   read(field::erodibility, settings_.erodibility);
   read(field::uplift_rate, settings_.uplift_rate);
   read(field::ranking, settings_.ranking);
+}
+
+/// The first plates and the first relief, as far as the first stage is still to come. Cells of the
+/// relief are of one size whatever the grid of the run, so that the same planet comes of it.
+void RunSession::read_beginning() {
+  if (first_ != 0) return;
+  if (!settings_.plates.empty()) plates_ = read_plate_outlines(settings_.plates);
+  if (settings_.first_relief.empty()) {
+    for (const Parameter& row : pipeline_.stages().front()->parameters()) {
+      if (row.name != "plates.first_relief" || row.value() != ParameterValue(std::string("given")))
+        continue;
+      throw ConfigurationError(
+          "plates.first_relief = given needs fields.first_relief, a NetCDF file of a planet's "
+          "relief");
+    }
+    return;
+  }
+  constexpr GridSize kCells{2160, 1080};
+  GivenRelief given{Grid::sphere(kCells.nx, kCells.ny, planet_.figure()), {}, {}};
+  const Relief relief = read_relief(settings_.first_relief, planet_);
+  check_whole_planet(relief, "fields.first_relief");
+  check_heights(relief);
+  given.elevation_m = resample(relief, given.grid);
+  if (!settings_.first_age.empty()) {
+    const Relief age = read_field_with_gaps(settings_.first_age, field::crust_age, planet_);
+    check_whole_planet(age, "fields.first_age");
+    given.age_myr = resample(age, given.grid);
+  }
+  first_relief_ = std::make_shared<const GivenRelief>(std::move(given));
 }
 
 Prediction RunSession::prediction() const {

@@ -55,6 +55,18 @@ std::vector<Parameter> RunSettings::parameters() {
            "FILE[:VARIABLE] of any unit, a mask or a relief, that orders places by height where "
            "plates follow a hypsography",
            "davidson2013"),
+      text("fields.plates", plates,
+           "plates from which drift begins: earth, or a GeoJSON file of polygons with their Euler "
+           "poles; empty draws plates.count of them",
+           "bird2003"),
+      text("fields.first_relief", first_relief,
+           "FILE[:VARIABLE] of a planet's relief from which drift begins where plates.first_relief "
+           "is given",
+           "cortial2019"),
+      text("fields.first_age", first_age,
+           "FILE[:VARIABLE] of the age of its sea floor, Myr, missing on land; empty tells it by "
+           "depth",
+           "muller2008"),
       text("fields.start_frame", start_frame,
            "frame of an earlier run, from which drifting plates go on, bit for bit", "design"),
       flag("output.vtk", vtk, "write a VTK file beside each NetCDF file", "design"),

@@ -69,27 +69,41 @@ struct PlateMotion {
   [[nodiscard]] std::vector<Parameter> declarations();
 };
 
-/// A plate that drifts breaks about a place.
+/// A plate that drifts breaks about a place, or along a line.
 struct PlateRift {
   static constexpr std::string_view kKind = "plate-rift";
   double time_myr = 0.0;
   double latitude_deg = 0.0;
   double longitude_deg = 0.0;
   double bearing_deg = 0.0;
+  std::vector<Centre> path;  ///< where not empty: the line, in place of place and bearing
   std::int64_t fragments = 2;
   double speed_mm_yr = 30.0;
 
   [[nodiscard]] std::vector<Parameter> declarations();
 };
 
-/// The crust within a circle becomes continental or oceanic while plates drift.
+/// The crust within a circle or a region becomes continental or oceanic while plates drift.
 struct CrustChange {
   static constexpr std::string_view kKind = "crust-change";
   double time_myr = 0.0;
   double latitude_deg = 0.0;
   double longitude_deg = 0.0;
   double radius_km = 500.0;
+  std::vector<Centre> path;  ///< where not empty: the region's outline, in place of the circle
   bool continental = true;
+
+  [[nodiscard]] std::vector<Parameter> declarations();
+};
+
+/// A plume of the mantle begins below a place, or the one nearest to it ends, while plates drift.
+struct PlumeChange {
+  static constexpr std::string_view kKind = "plume";
+  double time_myr = 0.0;
+  double latitude_deg = 0.0;
+  double longitude_deg = 0.0;
+  bool active = true;
+  double growth_mm_yr = 1.0;
 
   [[nodiscard]] std::vector<Parameter> declarations();
 };
@@ -98,17 +112,19 @@ struct CrustChange {
 template <class What>
 inline constexpr bool kIsOfPlates =
     std::is_same_v<What, PlateMotion> || std::is_same_v<What, PlateRift> ||
-    std::is_same_v<What, CrustChange>;
+    std::is_same_v<What, CrustChange> || std::is_same_v<What, PlumeChange>;
 
 struct Event {
   std::string name;  ///< for maps and reports; may be empty
-  std::variant<Impact, Rift, OceanShift, PlateMotion, PlateRift, CrustChange> what;
+  std::variant<Impact, Rift, OceanShift, PlateMotion, PlateRift, CrustChange, PlumeChange> what;
 
   [[nodiscard]] bool is_of_plates() const {
     return std::visit([]<class What>(const What&) { return kIsOfPlates<What>; }, what);
   }
 
   [[nodiscard]] std::string_view kind() const;
+  /// The line that it follows or surrounds, of kinds that have one; else null.
+  [[nodiscard]] std::vector<Centre>* path();
   /// Declarations of the keys of its kind, bound to this event.
   [[nodiscard]] std::vector<Parameter> declarations();
 };

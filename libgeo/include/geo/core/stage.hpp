@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "geo/core/beginning.hpp"
 #include "geo/core/checkpoint.hpp"
 #include "geo/core/event.hpp"
 #include "geo/core/field.hpp"
@@ -36,6 +37,13 @@ struct StageInfo {
 /// Named sums that must close: rock, water. Written to the manifest.
 using Budget = std::map<std::string, double>;
 
+/// Numbers that a stage which runs through time tells after each of its steps: a row a step. Rows
+/// may be shorter than there are columns, and NaN is nothing. Written beside its fields.
+struct StepTable {
+  std::vector<std::string> columns;
+  std::vector<std::vector<double>> rows;
+};
+
 /// A distribution of elevations by its quantiles: `fraction` of the area below `elevation_m`, both
 /// ascending, `fraction` strictly from 0 to 1.
 struct Hypsography {
@@ -48,6 +56,9 @@ struct Context {
   std::uint64_t seed = 1;
   /// What hypsometry by rank aims at; empty unless asked for.
   Hypsography hypsography;
+  /// The first plates and the first relief of a history; empty unless given.
+  std::vector<PlateOutline> plates;
+  std::shared_ptr<const GivenRelief> first_relief;
   /// What befalls the planet; empty unless asked for.
   std::vector<Event> events;
   /// Called with the fraction of the stage that is done; may be empty.
@@ -60,6 +71,8 @@ struct Context {
   const std::atomic<bool>* stop = nullptr;
   /// Budgets of the stage that runs now.
   Budget budget;
+  /// Its steps.
+  StepTable steps;
   /// What events did in the stage that runs now.
   std::vector<EventRecord> event_records;
   /// Facts worth a warning to the user, one line each.

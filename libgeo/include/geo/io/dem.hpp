@@ -35,6 +35,10 @@ Relief read_relief(const std::string& file_and_variable, const Planet& planet);
 Relief read_field(const std::string& file_and_variable, const FieldSpec& spec,
                   const Planet& planet);
 
+/// The same where cells may be missing: they are NaN.
+Relief read_field_with_gaps(const std::string& file_and_variable, const FieldSpec& spec,
+                            const Planet& planet);
+
 /// Area-weighted mean of a relief on another grid (conservative where coarser, bilinear where
 /// finer). Both must cover the same region, or `target` lie within. Throws InputError otherwise.
 std::vector<float> resample(const Relief& relief, const Grid& target);

@@ -86,6 +86,7 @@ class RunSession {
   void begin_with_bare_planet();
   void read_initial_relief();
   void read_given_fields();
+  void read_beginning();
   [[nodiscard]] Hypsography hypsography() const;
   [[nodiscard]] int count_complete_stages() const;
   [[nodiscard]] bool is_complete(int position) const;
@@ -119,6 +120,8 @@ class RunSession {
   std::string config_;
   std::string note_;  // why a stage of the pipeline is left out
   std::optional<State> state_;
+  std::vector<PlateOutline> plates_;
+  std::shared_ptr<const GivenRelief> first_relief_;
 };
 
 }  // namespace geo::io

@@ -32,7 +32,10 @@ struct RunSettings {
   std::string uplift_rate;  ///< FILE[:VARIABLE]
   std::string hypsography = "earth";
   std::string hypsography_ocean = "planet";
-  std::string ranking;  ///< FILE[:VARIABLE]
+  std::string ranking;       ///< FILE[:VARIABLE]
+  std::string plates;        ///< "earth" or a file
+  std::string first_relief;  ///< FILE[:VARIABLE]
+  std::string first_age;     ///< FILE[:VARIABLE]
   std::string start_frame;
 
   bool vtk = true;

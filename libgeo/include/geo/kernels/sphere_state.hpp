@@ -37,6 +37,7 @@ struct SpherePlate {
   /// one at the next resampling.
   std::int16_t carrier = -1;
   double born_myr = 0.0;
+  bool is_held = false;  ///< its motion was given: neither slab pull nor the frame changes it
 };
 
 /// What is remembered of two plates, the one of lower number first.
@@ -46,14 +47,23 @@ struct PlatePair {
   float last_contact_myr = -1e9F;
 };
 
+/// A plume of the mantle, below the plates and at rest.
+struct SpherePlume {
+  Vector3 place;              ///< unit vector
+  double growth_mm_yr = 0.0;  ///< of volcanoes on the sea floor above it
+};
+
 /// All that a run of the sphere model needs to go on.
 struct SphereState {
   SphereCrust crust;
   std::vector<SpherePlate> plates;
   std::vector<PlatePair> pairs;  ///< plates.size() squared; used where row < column
+  std::vector<SpherePlume> plumes;
   double time_myr = 0.0;
   std::int64_t steps = 0;
   double resampled_myr = 0.0;  ///< time of the last resampling
+  /// Common rotation that plates which are not held keep, rad/Myr.
+  Vector3 kept_rotation_rad_myr{};
 
   [[nodiscard]] PlatePair& pair(int a, int b) {
     return pairs[static_cast<std::size_t>(a < b ? a : b) * plates.size() + (a < b ? b : a)];

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -12,6 +13,8 @@
 #include "geo/kernels/tectonic_laws.hpp"
 
 namespace geo {
+
+class GreatCircleLine;
 
 /// Settings of the plates of a sphere through time.
 struct SphereSettings {
@@ -40,11 +43,11 @@ struct SphereSettings {
   double rift_warp_km = 400.0;        ///< of their borders
   double mean_area_km2 = 1.27e7;      ///< A_0
   double smallest_piece_km2 = 5e5;    ///< detached pieces below join a neighbour
-  std::vector<Vector3> plumes;        ///< places of hot spots, fixed in the mantle, unit vectors
-  double plume_mm_yr = 0.0;           ///< growth of volcanoes above them
+  double plume_mm_yr = 0.0;           ///< growth of volcanoes above the first plumes
   double plume_km = 60.0;             ///< over which it falls to a half
   double plume_top_km = 2.0;          ///< height that volcanoes of the sea floor reach
   bool no_net_rotation = true;
+  bool hold_motions = true;  ///< whether a plate goes on turning as it is told to
   std::int64_t least_steps = 10, most_steps = 60;  ///< between resamplings
   double rebound = 6.6;  ///< thickness of a root per height: rho_m / (rho_m - rho_c)
 };
@@ -63,11 +66,13 @@ struct SphereBudget {
   double ocean_error_km2 = 0.0;   ///< created - consumed - turned into continent - change
   double emerged_km2 = 0.0;       ///< ocean floor that became continental
   double continental_km3 = 0.0;   ///< volume of continental crust at the end of the step
+  double accreted_km3 = 0.0;      ///< sediment that the wedges behind trenches grew by
   double raised_km3 = 0.0;        ///< added by subduction: magma and accretion
   double eroded_km3 = 0.0;
   double emerged_km3 = 0.0;     ///< of arcs when they became continental
   double stretched_km2 = 0.0;   ///< margins that broken continents grew
   double swallowed_km3 = 0.0;   ///< taken by collisions from below and given back as mountains
+  double changed_km3 = 0.0;     ///< made or taken by change_crust
   double lost_km3 = 0.0;        ///< gone below oceanic crust or beyond the highest summit
   double resampling_km3 = 0.0;  ///< what interpolation added or took
 };
@@ -98,6 +103,12 @@ class SphereTectonics {
   SphereTectonics(const SphereMesh& mesh, const SphereSettings& settings, SphereState state,
                   std::uint64_t seed);
 
+  /// Takes the common rotation of the plates away that are not held, but for what they keep.
+  void subtract_net_rotation();
+  /// Opens the books of the next step and, with settings.no_net_rotation, subtracts that. What is
+  /// done to the model from outside before advance() is in those books. advance() does it where it
+  /// has not been done.
+  void begin_step();
   /// One step of settings.law.step_myr.
   void advance();
   /// Reads the crust anew at the places of the lattice and fills gaps with new floor.
@@ -106,14 +117,24 @@ class SphereTectonics {
   void finish();
   /// Splits a plate by the nearest of some places, warped; the fragments part at the speed.
   void rift(int plate, std::span<const Vector3> places, double speed_mm_yr);
+  /// Splits a plate along a line; with three or four fragments the sides are cut across at the
+  /// middle of the line, the right one first. They leave that middle at the speed.
+  void rift_along(int plate, const GreatCircleLine& line, int fragments, double speed_mm_yr);
 
   /// The plate that is on top at a place, or -1 in a gap.
   [[nodiscard]] int plate_at(const Vector3& place) const;
-  /// From now on a plate turns about an axis (unit vector), rad/Myr.
+  /// From now on a plate turns about an axis (unit vector), rad/Myr. With settings.hold_motions it
+  /// is held, and the others keep the common rotation that they have without it.
   void set_motion(int plate, const Vector3& axis, double speed_rad_myr);
+  /// Holds all plates as they move now.
+  void hold_motions();
   /// The crust within a circle, whatever its plates, becomes continental or oceanic. Returns the
   /// area that changed, km2.
   double change_crust(const Vector3& place, double radius_km, bool continental);
+  /// The same of all places (unit vectors) of which something holds.
+  double change_crust(const std::function<bool(const Vector3&)>& holds, bool continental);
+  /// Area of each plate with all that it carries, km2; 0 of those that are no more.
+  [[nodiscard]] std::vector<double> plate_areas_km2() const;
 
   [[nodiscard]] const SphereState& state() const noexcept { return state_; }
   /// For what changes a state from outside, between steps; call repartition() after changing
@@ -157,7 +178,11 @@ class SphereTectonics {
   void surge(int upper, std::span<const std::int32_t> terrane, const Vector3& centroid,
              double area_km2, double speed_mm_yr);
   void rift_by_chance();
-  void subtract_net_rotation();
+  void part(int plate, std::span<const std::int8_t> fragment, std::span<const Vector3> away,
+            double speed_mm_yr);
+  template <class Within>
+  double change_samples(Within&& within, bool continental);
+  [[nodiscard]] Vector3 net_rotation() const;
   void fill_gaps(SphereCrust& now, std::vector<std::int16_t>& owner);
   void stretch_margins(std::span<const std::int32_t> gaps, std::span<const std::int32_t> nearest,
                        SphereCrust& now, std::span<const std::int16_t> owner);
@@ -175,6 +200,7 @@ class SphereTectonics {
   std::uint64_t seed_;
   Noise warp_;
   SphereBudget budget_;
+  bool has_begun_ = false;  // the next step
   std::vector<SphereEvent> events_;
   SpherePartition partition_;
   std::vector<Matrix3> frame_;     // of each plate

@@ -46,6 +46,7 @@ struct PlatesParameters {
   std::int64_t samples = 500'000;
   double time_myr = 250.0;
   double frames_myr = 0.0;
+  std::string given_motions = "held";
   std::string uplift_profile = "piecewise";
   std::string ocean_floor = "damping";
   SphereSettings sphere;

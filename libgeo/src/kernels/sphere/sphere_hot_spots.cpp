@@ -8,11 +8,11 @@ namespace geo {
 /// Volcanoes grow on the ocean floor that lies over a plume and move away with it: chains of
 /// islands and seamounts, the older the farther.
 void SphereTectonics::erupt() {
-  if (settings_.plume_mm_yr <= 0.0) return;
   constexpr double kReach = 2.5;  // half widths
   SphereCrust& crust = state_.crust;
   std::vector<std::int32_t> around;
-  for (const Vector3& plume : settings_.plumes) {
+  for (const auto& [plume, growth_mm_yr] : state_.plumes) {
+    if (growth_mm_yr <= 0.0) continue;
     const int plate = plate_at(plume);
     if (plate < 0) continue;
     for (std::size_t p = 0; p < state_.plates.size(); ++p) {
@@ -31,7 +31,7 @@ void SphereTectonics::erupt() {
             hidden_[i] != 0) {
           continue;
         }
-        const double grown_m = 1e3 * settings_.plume_mm_yr * settings_.law.step_myr *
+        const double grown_m = 1e3 * growth_mm_yr * settings_.law.step_myr *
                                std::exp2(-std::pow(far_km / settings_.plume_km, 2));
         const double top_m = 1e3 * settings_.plume_top_km;
         const double z_m = crust.elevation_m[i];

@@ -38,7 +38,7 @@ void SphereTectonics::raise() {
         uplift_by_elevation(1e-3 * fronts_[k].lower_elevation_m, law.trench_km, law.summit_km),
         s.elevation_weight);
   }
-  enum { kRaised, kEroded, kEmerged, kEmergedArea, kSums };
+  enum { kRaised, kEroded, kEmerged, kEmergedArea, kAccreted, kSums };
   constexpr std::int32_t kBlock = 4096;
   const std::int32_t n = crust.size(), blocks = (n + kBlock - 1) / kBlock;
   std::vector<std::array<double, kSums>> sums(blocks, std::array<double, kSums>{});
@@ -90,7 +90,9 @@ void SphereTectonics::raise() {
                                    : damping_km(z_km, law);
         z_km += raised_km + sunk_km;
         if (wedge && z_km < s.accretion_top_km) {
-          z_km = std::min(s.accretion_top_km, z_km + accretion_km(law));
+          const double piled_km = std::min(s.accretion_top_km, z_km + accretion_km(law));
+          sum[kAccreted] += piled_km - z_km;
+          z_km = piled_km;
         }
         crust.age_myr[i] += step_myr;
         if (z_km > 0.0 && raised_km > 0.0) {
@@ -109,6 +111,7 @@ void SphereTectonics::raise() {
     budget_.raised_km3 += sample_km2() * sum[kRaised];
     budget_.eroded_km3 += sample_km2() * sum[kEroded];
     budget_.emerged_km3 += sample_km2() * sum[kEmerged];
+    budget_.accreted_km3 += sample_km2() * sum[kAccreted];
     budget_.emerged_km2 += sample_km2() * sum[kEmergedArea];
   }
 }

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "geo/core/random.hpp"
+#include "geo/kernels/great_circle_line.hpp"
 #include "geo/kernels/sphere_tectonics.hpp"
 
 namespace geo {
@@ -38,10 +39,8 @@ void SphereTectonics::rift_by_chance() {
 
 void SphereTectonics::rift(int plate, std::span<const Vector3> places, double speed_mm_yr) {
   const FibonacciSphere& samples = mesh_->samples();
-  auto& of = state_.crust.plate;
-  const auto& cap = partition_.cap(plate);
-  const Vector3 centre = times(frame_[plate], cap.centre);
-  const double area_km2 = sample_km2() * cap.samples;
+  const auto& of = state_.crust.plate;
+  const Vector3 centre = times(frame_[plate], partition_.cap(plate).centre);
   std::vector<Vector3> local;
   for (const Vector3& place : places) local.push_back(back(frame_[plate], place));
   const double most = 2.2 * settings_.rift_warp_km / settings_.radius_km;
@@ -65,14 +64,47 @@ void SphereTectonics::rift(int plate, std::span<const Vector3> places, double sp
       }
     }
   }
+  // Away from the middle of the plate that was.
+  std::vector<Vector3> away;
+  for (const Vector3& place : places) away.push_back(normalised(cross(centre, place)));
+  part(plate, fragment, away, speed_mm_yr);
+}
+
+void SphereTectonics::rift_along(int plate, const GreatCircleLine& line, int fragments,
+                                 double speed_mm_yr) {
+  const std::int32_t n = mesh_->size();
+  std::vector<std::int8_t> fragment(n, -1);
+#pragma omp parallel for schedule(static)
+  for (std::int32_t i = 0; i < n; ++i) {
+    if (state_.crust.plate[i] != plate) continue;
+    const Vector3 at = times(frame_[plate], mesh_->samples().position(i));
+    const bool is_left = line.is_left(at), is_cut = line.is_beyond_middle(at);
+    fragment[i] = is_left ? (is_cut && fragments > 3 ? 3 : 0) : (is_cut && fragments > 2 ? 2 : 1);
+  }
+  std::vector<Vector3> sum(fragments, Vector3{}), away;
+  for (std::int32_t i = 0; i < n; ++i) {
+    if (fragment[i] >= 0) sum[fragment[i]] = add(sum[fragment[i]], mesh_->samples().position(i));
+  }
+  for (const Vector3& of : sum) {
+    away.push_back(normalised(cross(line.middle(), times(frame_[plate], of))));
+  }
+  part(plate, fragment, away, speed_mm_yr);
+}
+
+/// Fragments of a plate become plates, each turned about an axis on top of the old motion. One that
+/// has no samples comes to nothing.
+void SphereTectonics::part(int plate, std::span<const std::int8_t> fragment,
+                           std::span<const Vector3> away, double speed_mm_yr) {
+  auto& of = state_.crust.plate;
+  const auto& cap = partition_.cap(plate);
+  const Vector3 centre = times(frame_[plate], cap.centre);
+  const double area_km2 = sample_km2() * cap.samples;
   const SpherePlate whole = state_.plates[plate];
   const Vector3 drift = scaled(whole.axis, whole.speed_rad_myr);
-  for (std::size_t k = 0; k < local.size(); ++k) {
+  for (std::size_t k = 0; k < away.size(); ++k) {
     SpherePlate part = whole;
     part.born_myr = state_.time_myr;
-    // Away from the middle of the plate that was.
-    const Vector3 away = normalised(cross(centre, places[k]));
-    const Vector3 rotation = add(drift, away, speed_mm_yr / settings_.radius_km);
+    const Vector3 rotation = add(drift, away[k], speed_mm_yr / settings_.radius_km);
     part.speed_rad_myr =
         std::min(length(rotation), settings_.law.speed_mm_yr / settings_.radius_km);
     if (part.speed_rad_myr > 0.0) part.axis = normalised(rotation);

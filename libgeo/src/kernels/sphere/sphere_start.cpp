@@ -13,6 +13,19 @@
 namespace geo {
 namespace {
 
+/// Age at which floor of GDH1 lies at a depth once sediment has filled it up. The load takes half
+/// of its thickness back. Sediment outgrows subsidence at 123 Myr: older floor cannot be told.
+double age_below_sediment_myr(double depth_m, double oldest_myr) {
+  constexpr double kShallower = 0.5, kNoApron_km = 1e4, kTold_myr = 120.0;
+  double low = 0.0, high = std::min(oldest_myr, kTold_myr);
+  for (int k = 0; k < 30; ++k) {
+    const double age = 0.5 * (low + high);
+    const double sediment_m = deep_sediment_m(DeepSediment{}, age, kNoApron_km);
+    (ocean_depth_m(age) - kShallower * sediment_m < depth_m ? low : high) = age;
+  }
+  return low;
+}
+
 class Beginning {
  public:
   Beginning(const SphereMesh& mesh, const SphereStart& start, const SphereSettings& settings,
@@ -29,8 +42,19 @@ class Beginning {
   }
 
  private:
+  void take_plates() {
+    for (const Vector3& rotation : start_.rotation_rad_myr) {
+      SpherePlate plate;
+      plate.speed_rad_myr = length(rotation);
+      if (plate.speed_rad_myr > 0.0) plate.axis = normalised(rotation);
+      state_.add_plate(plate);
+    }
+    state_.crust.plate = start_.plate;
+  }
+
   /// Voronoi cells of centroids that keep apart, as warped distances see them.
   void cut_plates() {
+    if (!start_.plate.empty()) return take_plates();
     const RandomStream random(seed_, "plates.sphere");
     std::vector<Vector3> centroids;
     for (std::int64_t k = 0; k < start_.plates; ++k) {
@@ -164,7 +188,44 @@ class Beginning {
       crust.age_myr[i] =
           static_cast<float>(ocean_age_of_depth_myr(-elevation_m, start_.oldest_floor_myr));
     }
+    if (start_.real_floor) date_real_floor();
   }
+
+  /// Ages by what is known of them, else by the depth of plain floor, away from what continents
+  /// have put on it; the rest is as old as the nearest plain floor.
+  void date_real_floor() {
+    SphereCrust& crust = state_.crust;
+    const std::int32_t n = mesh_.size();
+    const auto is_known = [&](std::int32_t i) {
+      return !start_.age_myr.empty() && std::isfinite(start_.age_myr[i]);
+    };
+    const double apron = kApron_km / settings_.radius_km;
+    std::vector<std::int32_t> continental, plain;
+    for (std::int32_t i = 0; i < n; ++i) {
+      if (crust.continental[i] != 0) continental.push_back(i);
+    }
+    const auto shore = nearest_samples(mesh_, continental, apron);
+    for (std::int32_t i = 0; i < n; ++i) {
+      if (crust.continental[i] != 0) continue;
+      if (is_known(i)) {
+        crust.age_myr[i] = std::max(0.0F, start_.age_myr[i]);
+      } else if (shore[i] < 0) {
+        crust.age_myr[i] = static_cast<float>(
+            age_below_sediment_myr(-crust.elevation_m[i], start_.oldest_floor_myr));
+      } else {
+        continue;
+      }
+      plain.push_back(i);
+    }
+    const auto nearest = nearest_samples(mesh_, plain, kFarthest_km / settings_.radius_km);
+    for (std::int32_t i = 0; i < n; ++i) {
+      if (crust.continental[i] != 0 || nearest[i] < 0) continue;
+      crust.age_myr[i] = crust.age_myr[plain[nearest[i]]];
+    }
+  }
+
+  static constexpr double kApron_km = 300.0;      // from continents, where depth says nothing
+  static constexpr double kFarthest_km = 1500.0;  // from plain floor of the same sea
 
   [[nodiscard]] std::vector<float> distance_to_boundary_km() const {
     const FibonacciSphere& samples = mesh_.samples();

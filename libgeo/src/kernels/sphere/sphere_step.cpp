@@ -89,13 +89,15 @@ double SphereTectonics::distance_km(std::int32_t a, std::int32_t b) const {
          angle_between(mesh_->samples().position(a), mesh_->samples().position(b));
 }
 
-/// The rotation whose angular momentum is that of all plates together, as if all crust weighed the
-/// same: the sums of 1 - r r^T over the samples take the place of the integral's 8 pi / 3.
-void SphereTectonics::subtract_net_rotation() {
+/// The rotation whose angular momentum is that of all plates that are not held together, as if all
+/// crust weighed the same: the sums of 1 - r r^T over the samples take the place of the integral's
+/// 8 pi / 3. Zero where all are held.
+Vector3 SphereTectonics::net_rotation() const {
   Vector3 momentum{};
   Matrix3 inertia{};
   for (std::size_t p = 0; p < state_.plates.size(); ++p) {
-    if (!state_.plates[p].alive) continue;
+    const bool is_held = state_.plates[state_.root(static_cast<int>(p))].is_held;
+    if (!state_.plates[p].alive || is_held) continue;
     const Matrix3& own = partition_.cap(static_cast<int>(p)).inertia;
     momentum = add(momentum, times(frame_[p], times(own, back(frame_[p], rotation_[p]))));
     for (int c = 0; c < 3; ++c) {
@@ -107,11 +109,18 @@ void SphereTectonics::subtract_net_rotation() {
   // The tensor is symmetric: its rows are its columns.
   const Vector3 first = cross(inertia[1], inertia[2]);
   const double determinant = dot(inertia[0], first);
-  const Vector3 net =
-      scaled(Vector3{dot(momentum, first), dot(momentum, cross(inertia[2], inertia[0])),
-                     dot(momentum, cross(inertia[0], inertia[1]))},
-             1.0 / determinant);
+  const double trace = inertia[0][0] + inertia[1][1] + inertia[2][2];
+  constexpr double kNothing = 1e-12;
+  if (determinant <= kNothing * trace * trace * trace) return {};
+  return scaled(Vector3{dot(momentum, first), dot(momentum, cross(inertia[2], inertia[0])),
+                        dot(momentum, cross(inertia[0], inertia[1]))},
+                1.0 / determinant);
+}
+
+void SphereTectonics::subtract_net_rotation() {
+  const Vector3 net = add(net_rotation(), state_.kept_rotation_rad_myr, -1.0);
   for (SpherePlate& plate : state_.plates) {
+    if (plate.is_held) continue;
     const Vector3 rotation = add(scaled(plate.axis, plate.speed_rad_myr), net, -1.0);
     plate.speed_rad_myr = length(rotation);
     if (plate.speed_rad_myr > 0.0) plate.axis = normalised(rotation);
@@ -120,7 +129,6 @@ void SphereTectonics::subtract_net_rotation() {
 }
 
 void SphereTectonics::move() {
-  if (settings_.no_net_rotation) subtract_net_rotation();
   for (std::size_t p = 0; p < state_.plates.size(); ++p) {
     SpherePlate& plate = state_.plates[p];
     if (!plate.alive) continue;
@@ -142,6 +150,7 @@ void SphereTectonics::pull_slabs() {
     pull[lower] = add(pull[lower], slab_pull(centre, at));
   }
   for (std::size_t p = 0; p < state_.plates.size(); ++p) {
+    if (state_.plates[p].is_held) continue;
     state_.plates[p].axis = normalised(add(state_.plates[p].axis, pull[p], per_front));
   }
   set_frames();
@@ -187,8 +196,16 @@ void SphereTectonics::finish() {
   }
 }
 
-void SphereTectonics::advance() {
+void SphereTectonics::begin_step() {
+  if (has_begun_) return;
   budget_ = {};
+  if (settings_.no_net_rotation) subtract_net_rotation();
+  has_begun_ = true;
+}
+
+void SphereTectonics::advance() {
+  begin_step();
+  has_begun_ = false;
   partition_.count_continents(state_);
   move();
   find_contacts();

@@ -179,9 +179,9 @@ float seen_at(const Grid& grid, std::span<const float> values, const Vector3& pl
 
 std::vector<Parameter> hypsography_parameters(PlatesParameters& p) {
   return {
-      choice("plates.first_relief", p.first_relief, {"noise", "hypsography"},
-             "sphere: the first continents from noise, or the first crust as the model hypsography "
-             "has it",
+      choice("plates.first_relief", p.first_relief, {"noise", "hypsography", "given"},
+             "sphere: the first continents from noise, the first crust as the model hypsography "
+             "has it, or the relief of fields.first_relief",
              "davidson2013"),
       choice("plates.ranking", p.ranking.by, {"great-circles", "fbm"},
              "hypsography: the noise that orders places by height, unless fields.ranking does",

@@ -98,6 +98,10 @@ std::vector<Parameter> PlatesParameters::declarations() {
       real("plates.subduction_uplift_mm_yr", sphere.law.uplift_mm_yr, "mm yr-1", 0.0, 100.0,
            "sphere: uplift above subduction, before the factors of distance, speed and elevation",
            "cortial2019"),
+      choice("plates.given_motions", given_motions, {"held", "first"},
+             "sphere: plates that fields.plates or an event gives a motion keep it until another "
+             "event, or begin with it as all others do",
+             "cortial2019"),
       choice(
           "plates.uplift_profile", uplift_profile, {"piecewise", "driftworld"},
           "sphere: uplift over the distance from the front, by two cubics or by Driftworld's one",
@@ -194,8 +198,12 @@ class PlatesStage final : public Stage {
   [[nodiscard]] std::vector<Parameter> parameters() override { return parameters_.declarations(); }
 
   void run(StageIo& io, Context& context) const override {
-    if (parameters_.model == "hypsography") return draw_hypsography(parameters_, io, context);
     if (parameters_.model == "sphere") return drift(parameters_, info(), io, context);
+    if (!context.plates.empty() || context.first_relief) {
+      context.warnings.push_back(
+          "fields.plates and fields.first_relief are for plates.model = sphere: not used");
+    }
+    if (parameters_.model == "hypsography") return draw_hypsography(parameters_, io, context);
     if (parameters_.model == "raster") return collide_rasters(parameters_, io, context);
     grow(parameters_, io, context);
   }

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 #include "geo/core/error.hpp"
 #include "geo/kernels/sphere_start.hpp"
-#include "hypsography.hpp"
+#include "sphere_beginning.hpp"
 #include "sphere_checkpoint.hpp"
 #include "sphere_on_grid.hpp"
 #include "sphere_timeline.hpp"
@@ -14,25 +15,25 @@
 namespace geo {
 namespace {
 
-SphereSettings settings_of(const PlatesParameters& p, double radius_km, std::uint64_t seed) {
+SphereSettings settings_of(const PlatesParameters& p, double radius_km, const Context& context) {
   SphereSettings settings = p.sphere;
-  settings.plumes = plume_places(p, seed);
   settings.radius_km = radius_km;
   settings.driftworld_uplift = p.uplift_profile == "driftworld";
   settings.floor_by_age = p.ocean_floor == "age";
   settings.no_net_rotation = p.no_net_rotation;
+  settings.hold_motions = p.given_motions == "held";
   settings.mean_area_km2 =
-      4.0 * std::acos(-1.0) * radius_km * radius_km / static_cast<double>(p.growth.count);
+      4.0 * std::acos(-1.0) * radius_km * radius_km / static_cast<double>(first_plates(p, context));
   return settings;
 }
 
-SphereStart start_of(const PlatesParameters& p) {
-  SphereStart start = p.start;
-  start.plates = p.growth.count;
-  start.continental_share = p.cratons.share;
-  start.whole_plates = p.continents == "plates";
-  start.oldest_floor_myr = p.oldest_floor_myr;
-  return start;
+/// Columns for the areas of as many plates as there ever were at a time.
+void name_plates(StepTable& steps) {
+  std::size_t most = 0;
+  for (const auto& row : steps.rows) most = std::max(most, row.size());
+  for (std::size_t k = 0; steps.columns.size() < most; ++k) {
+    steps.columns.push_back("plate_" + std::to_string(k) + "_km2");
+  }
 }
 
 /// Sums over the whole drift.
@@ -46,12 +47,46 @@ class Books {
     raised_ += step.raised_km3;
     eroded_ += step.eroded_km3;
     emerged_km3_ += step.emerged_km3;
+    changed_ += step.changed_km3;
     lost_ += step.lost_km3;
     resampling_ += step.resampling_km3;
     collisions_ += step.collisions;
     rifts_ += step.rifts;
     if (first_km3_ < 0.0) first_km3_ = step.continental_km3 - change(step);
     last_ = step;
+  }
+  /// What a step is told by, before the areas of its plates.
+  static std::vector<std::string> columns() {
+    return {"time_myr",      "plates",          "resampled",  "collisions",    "rifts",
+            "created_km2",   "consumed_km2",    "buried_km2", "emerged_km2",   "stretched_km2",
+            "accreted_km3",  "continental_km3", "raised_km3", "eroded_km3",    "emerged_km3",
+            "swallowed_km3", "changed_km3",     "lost_km3",   "resampling_km3"};
+  }
+  static std::vector<double> row(const SphereTectonics& model) {
+    const SphereBudget& b = model.budget();
+    std::vector<double> row{b.time_myr,
+                            static_cast<double>(b.plates),
+                            b.resampled ? 1.0 : 0.0,
+                            static_cast<double>(b.collisions),
+                            static_cast<double>(b.rifts),
+                            b.created_km2,
+                            b.consumed_km2,
+                            b.buried_km2,
+                            b.emerged_km2,
+                            b.stretched_km2,
+                            b.accreted_km3,
+                            b.continental_km3,
+                            b.raised_km3,
+                            b.eroded_km3,
+                            b.emerged_km3,
+                            b.swallowed_km3,
+                            b.changed_km3,
+                            b.lost_km3,
+                            b.resampling_km3};
+    for (const double area_km2 : model.plate_areas_km2()) {
+      row.push_back(area_km2 > 0.0 ? area_km2 : std::numeric_limits<double>::quiet_NaN());
+    }
+    return row;
   }
   void close(Budget& budget) const {
     budget["plates"] = last_.plates;
@@ -67,20 +102,22 @@ class Books {
     budget["continental_raised_km3"] = raised_;
     budget["continental_eroded_km3"] = eroded_;
     budget["continental_emerged_km3"] = emerged_km3_;
+    budget["continental_changed_km3"] = changed_;
     budget["continental_lost_km3"] = lost_;
     budget["continental_resampling_km3"] = resampling_;
     budget["continental_closing_error"] = (last_.continental_km3 - first_km3_ - raised_ + eroded_ -
-                                           emerged_km3_ + lost_ - resampling_) /
+                                           emerged_km3_ - changed_ + lost_ - resampling_) /
                                           std::max(1.0, last_.continental_km3);
   }
 
  private:
   static double change(const SphereBudget& step) {
-    return step.raised_km3 - step.eroded_km3 + step.emerged_km3 - step.lost_km3 +
+    return step.raised_km3 - step.eroded_km3 + step.emerged_km3 + step.changed_km3 - step.lost_km3 +
            step.resampling_km3;
   }
   double created_ = 0.0, consumed_ = 0.0, buried_ = 0.0, emerged_ = 0.0;
-  double raised_ = 0.0, eroded_ = 0.0, emerged_km3_ = 0.0, lost_ = 0.0, resampling_ = 0.0;
+  double raised_ = 0.0, eroded_ = 0.0, emerged_km3_ = 0.0, changed_ = 0.0, lost_ = 0.0;
+  double resampling_ = 0.0;
   double first_km3_ = -1.0;
   int collisions_ = 0, rifts_ = 0;
   SphereBudget last_;
@@ -93,16 +130,17 @@ namespace {
 constexpr double kDegrees = 57.29577951308232;
 
 SphereState beginning(const PlatesParameters& parameters, const SphereMesh& mesh,
-                      const SphereSettings& settings, const StageIo& io, const Context& context) {
+                      const SphereSettings& settings, const StageIo& io, Context& context) {
   if (context.checkpoint == nullptr) {
-    SphereStart start = start_of(parameters);
-    if (parameters.first_relief == "hypsography") {
-      start.elevation_m =
-          hypsographic_heights_m(parameters, io, context, mesh.samples().positions());
-    }
-    return start_sphere(mesh, start, settings, context.seed);
+    SphereState state =
+        start_sphere(mesh, sphere_start(parameters, mesh, io, context), settings, context.seed);
+    state.plumes = first_plumes(parameters, context.seed);
+    return state;
   }
   SphereState state = state_of(*context.checkpoint);
+  if (!context.checkpoint->arrays.contains("plumes")) {
+    state.plumes = first_plumes(parameters, context.seed);
+  }
   if (state.crust.size() != mesh.size()) {
     throw InputError("plates: the frame to go on from has " + std::to_string(state.crust.size()) +
                      " samples: plates.samples must be that, not " + std::to_string(mesh.size()));
@@ -149,12 +187,17 @@ void drift(const PlatesParameters& parameters, const StageInfo& info, StageIo& i
   }
   context.advance(0.0);
   const SphereSettings settings =
-      settings_of(parameters, 1e-3 * io.grid().figure().radius_m, context.seed);
+      settings_of(parameters, 1e-3 * io.grid().figure().radius_m, context);
   const FibonacciSphere samples(static_cast<std::int32_t>(parameters.samples));
   const SphereMesh mesh(samples);
   SphereTectonics model(mesh, settings, beginning(parameters, mesh, settings, io, context),
                         context.seed);
+  if (context.checkpoint == nullptr && !context.plates.empty()) {
+    if (settings.no_net_rotation) model.subtract_net_rotation();
+    if (settings.hold_motions) model.hold_motions();
+  }
   Books books;
+  context.steps.columns = Books::columns();
   const auto steps = std::lround(parameters.time_myr / settings.law.step_myr);
   const auto every = std::lround(parameters.frames_myr / settings.law.step_myr);
   const bool shows = context.on_frame && parameters.frames_myr > 0.0;
@@ -162,9 +205,11 @@ void drift(const PlatesParameters& parameters, const StageInfo& info, StageIo& i
     const double from_myr = model.state().time_myr;
     if (shows && k == 0) show(parameters, model, info, io.grid(), context);
     context.advance(0.9 * static_cast<double>(k) / static_cast<double>(steps));
+    model.begin_step();
     strike_plates(io.grid(), from_myr, from_myr + settings.law.step_myr, model, context);
     model.advance();
     books.enter(model.budget());
+    context.steps.rows.push_back(Books::row(model));
     if (shows && (k + 1) % std::max(1L, every) == 0) {
       show(parameters, model, info, io.grid(), context);
     }
@@ -172,6 +217,8 @@ void drift(const PlatesParameters& parameters, const StageInfo& info, StageIo& i
   context.advance(0.9);
   model.finish();
   books.enter(model.budget());
+  name_plates(context.steps);
+  warn_of_later_events(model.state().time_myr, context);
   books.close(context.budget);
   tell(model, io.grid(), context);
   SphereOnGrid(parameters, model, io, context).draw(io);

@@ -22,6 +22,10 @@ Directions directions(const std::vector<float>& values) {
   return all;
 }
 
+[[noreturn]] void refuse() {
+  throw InputError("the frame to go on from is damaged: its arrays do not fit");
+}
+
 constexpr std::size_t kNumbers = 9;  // of a plate: turn, axis, speed, birth
 
 }  // namespace
@@ -41,17 +45,19 @@ Checkpoint checkpoint_of(const SphereState& state) {
   to["ridge"] = flat(crust.ridge);
   to["fold"] = flat(crust.fold);
   std::vector<double> numbers;
-  std::vector<std::int8_t> alive;
+  std::vector<std::int8_t> alive, held;
   std::vector<std::int16_t> carrier;
   for (const SpherePlate& plate : state.plates) {
     numbers.insert(numbers.end(),
                    {plate.turn.w, plate.turn.v[0], plate.turn.v[1], plate.turn.v[2], plate.axis[0],
                     plate.axis[1], plate.axis[2], plate.speed_rad_myr, plate.born_myr});
     alive.push_back(plate.alive ? 1 : 0);
+    held.push_back(plate.is_held ? 1 : 0);
     carrier.push_back(plate.carrier);
   }
   to["plate_numbers"] = numbers;
   to["plate_alive"] = alive;
+  to["plate_held"] = held;
   to["plate_carrier"] = carrier;
   std::vector<std::int8_t> ocean, continent;
   std::vector<float> contact;
@@ -63,6 +69,14 @@ Checkpoint checkpoint_of(const SphereState& state) {
   to["pair_ocean_top"] = ocean;
   to["pair_continent_top"] = continent;
   to["pair_last_contact_myr"] = contact;
+  std::vector<double> plumes;
+  for (const SpherePlume& plume : state.plumes) {
+    plumes.insert(plumes.end(),
+                  {plume.place[0], plume.place[1], plume.place[2], plume.growth_mm_yr});
+  }
+  to["plumes"] = plumes;
+  const Vector3& kept = state.kept_rotation_rad_myr;
+  to["kept_rotation_rad_myr"] = std::vector<double>{kept[0], kept[1], kept[2]};
   to["clock"] =
       std::vector<double>{state.time_myr, static_cast<double>(state.steps), state.resampled_myr};
   return out;
@@ -103,7 +117,7 @@ SphereState state_of(const Checkpoint& from) {
   for (std::size_t p = 0; fits && p < plates; ++p) {
     fits = carrier[p] >= -1 && carrier[p] < static_cast<std::int16_t>(plates);
   }
-  if (!fits) throw InputError("the frame to go on from is damaged: its arrays do not fit");
+  if (!fits) refuse();
   for (std::size_t p = 0; p < plates; ++p) {
     const double* at = numbers.data() + kNumbers * p;
     SpherePlate plate;
@@ -117,6 +131,21 @@ SphereState state_of(const Checkpoint& from) {
   }
   for (std::size_t k = 0; k < ocean.size(); ++k) {
     state.pairs.push_back({ocean[k], continent[k], contact[k]});
+  }
+  // Frames of older versions have none of these.
+  if (from.arrays.contains("plate_held")) {
+    const auto& held = from.get<std::int8_t>("plate_held");
+    const auto& kept = from.get<double>("kept_rotation_rad_myr");
+    if (held.size() != plates || kept.size() != 3) refuse();
+    for (std::size_t p = 0; p < plates; ++p) state.plates[p].is_held = held[p] != 0;
+    state.kept_rotation_rad_myr = {kept[0], kept[1], kept[2]};
+  }
+  if (from.arrays.contains("plumes")) {
+    const auto& plumes = from.get<double>("plumes");
+    if (plumes.size() % 4 != 0) refuse();
+    for (std::size_t k = 0; k < plumes.size(); k += 4) {
+      state.plumes.push_back({{plumes[k], plumes[k + 1], plumes[k + 2]}, plumes[k + 3]});
+    }
   }
   state.time_myr = clock[0];
   state.steps = static_cast<std::int64_t>(clock[1]);

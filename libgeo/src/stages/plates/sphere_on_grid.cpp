@@ -90,13 +90,6 @@ class SphereOnGrid::Bends {
   std::array<std::vector<float>, 3> along_;
 };
 
-std::vector<Vector3> plume_places(const PlatesParameters& parameters, std::uint64_t seed) {
-  const RandomStream random(seed, "plates.plumes");
-  std::vector<Vector3> places(static_cast<std::size_t>(std::lround(parameters.plumes)));
-  for (std::size_t k = 0; k < places.size(); ++k) places[k] = random.direction(k);
-  return places;
-}
-
 SphereOnGrid::SphereOnGrid(const PlatesParameters& parameters, const SphereTectonics& model,
                            StageIo& io, const Context& context)
     : p_(parameters),
@@ -139,7 +132,6 @@ SphereOnGrid::SphereOnGrid(const PlatesParameters& parameters, const SphereTecto
       for (const std::int32_t j : mesh_.neighbours(i)) is_edge_[i] |= inner[j];
     }
   }
-  plumes_ = plume_places(p_, seed_);
 }
 
 void SphereOnGrid::draw(StageIo& io) const {
@@ -235,8 +227,8 @@ void SphereOnGrid::draw_boundary(const Cell& at, Index cell, const Vector3& bent
 float SphereOnGrid::heat(const Vector3& unit) const {
   constexpr double kPlume_km = 260.0, kPlumeHeat = 0.5, kBackground = 0.2;
   double value = kBackground;
-  for (const Vector3& plume : plumes_) {
-    const double far = radius_km_ * length(add(plume, unit, -1.0)) / kPlume_km;
+  for (const SpherePlume& plume : model_.state().plumes) {
+    const double far = radius_km_ * length(add(plume.place, unit, -1.0)) / kPlume_km;
     if (far < 5.0) value += kPlumeHeat * std::exp(-0.5 * far * far);
   }
   return static_cast<float>(std::min(value, 1.0));

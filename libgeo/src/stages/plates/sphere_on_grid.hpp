@@ -8,10 +8,6 @@
 
 namespace geo {
 
-/// Places of the mantle's plumes, unit vectors.
-[[nodiscard]] std::vector<Vector3> plume_places(const PlatesParameters& parameters,
-                                                std::uint64_t seed);
-
 /// Plates and crust of a lattice as the cells of a grid see them. The crust must have just been
 /// resampled.
 class SphereOnGrid {
@@ -42,7 +38,6 @@ class SphereOnGrid {
   std::vector<std::int32_t> nearest_boundary_;  // of each sample, -1 far from any
   std::vector<std::int16_t> number_;            // of each plate in files, the largest first
   std::vector<std::uint8_t> is_edge_;           // samples beside another plate or crust type
-  std::vector<Vector3> plumes_;
 };
 
 }  // namespace geo

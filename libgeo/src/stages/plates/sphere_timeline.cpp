@@ -2,14 +2,24 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "geo/core/place.hpp"
+#include "geo/kernels/great_circle_line.hpp"
 #include "geo/kernels/plate_motion.hpp"
+#include "geo/kernels/region_outline.hpp"
+#include "sphere_beginning.hpp"
 
 namespace geo {
 namespace {
+
+std::vector<Vector3> places_on(const Grid& grid, const std::vector<Centre>& path) {
+  std::vector<Vector3> places;
+  places.reserve(path.size());
+  for (const Centre& place : path) places.push_back(place_on(grid, place));
+  return places;
+}
 
 using Figures = std::vector<std::pair<std::string, double>>;
 
@@ -28,6 +38,7 @@ class Stroke {
     return true;
   }
   bool operator()(const PlateRift& rift, Figures& figures) const {
+    if (!rift.path.empty()) return rift_along(rift, figures);
     const Vector3 at = place_of(rift.latitude_deg, rift.longitude_deg);
     const int plate = model_.plate_at(at);
     if (plate < 0) return false;
@@ -48,25 +59,50 @@ class Stroke {
     return true;
   }
   bool operator()(const CrustChange& change, Figures& figures) const {
-    figures.emplace_back("area_km2",
-                         model_.change_crust(place_of(change.latitude_deg, change.longitude_deg),
-                                             change.radius_km, change.continental));
+    figures.emplace_back("area_km2", area_changed_km2(change));
+    return true;
+  }
+  /// False when there is no plume to end.
+  bool operator()(const PlumeChange& change, Figures& figures) const {
+    const Vector3 at = place_of(change.latitude_deg, change.longitude_deg);
+    auto& plumes = model_.state().plumes;
+    if (change.active) {
+      plumes.push_back({at, change.growth_mm_yr});
+    } else {
+      const auto nearest = std::max_element(plumes.begin(), plumes.end(),
+                                            [&](const SpherePlume& a, const SpherePlume& b) {
+                                              return dot(a.place, at) < dot(b.place, at);
+                                            });
+      if (nearest == plumes.end()) return false;
+      plumes.erase(nearest);
+    }
+    figures.emplace_back("plumes", static_cast<double>(plumes.size()));
     return true;
   }
   bool operator()(const auto&, Figures&) const { return false; }
 
  private:
-  /// A place given by latitude and longitude in the frame of plates, which the grid may have
-  /// turned.
-  [[nodiscard]] Vector3 place_of(double latitude_deg, double longitude_deg) const {
-    const Vector3 on_axis = unit_vector_of({latitude_deg, longitude_deg});
-    Vector3 out{};
-    for (int c = 0; c < 3; ++c) {
-      Vector3 axis{};
-      axis[c] = 1.0;
-      out[c] = dot(grid_.to_axis(axis), on_axis);
+  /// The plate below the middle of the line breaks.
+  [[nodiscard]] bool rift_along(const PlateRift& rift, Figures& figures) const {
+    const GreatCircleLine line(places_on(grid_, rift.path));
+    const int plate = model_.plate_at(line.middle());
+    if (plate < 0) return false;
+    model_.rift_along(plate, line, static_cast<int>(rift.fragments), rift.speed_mm_yr);
+    figures.emplace_back("plate", plate);
+    return true;
+  }
+  [[nodiscard]] double area_changed_km2(const CrustChange& change) const {
+    if (change.path.empty()) {
+      return model_.change_crust(place_of(change.latitude_deg, change.longitude_deg),
+                                 change.radius_km, change.continental);
     }
-    return out;
+    const RegionOutline region(std::span(&change.path, 1));
+    return model_.change_crust(
+        [&](const Vector3& place) { return region.holds(position_of(grid_, place)); },
+        change.continental);
+  }
+  [[nodiscard]] Vector3 place_of(double latitude_deg, double longitude_deg) const {
+    return place_on(grid_, {latitude_deg, longitude_deg});
   }
   /// East and north at a place, in the frame of plates.
   [[nodiscard]] std::pair<Vector3, Vector3> axes_at(const Vector3& at) const {
@@ -81,18 +117,36 @@ class Stroke {
   SphereTectonics& model_;
 };
 
-struct Due {
-  double time_myr = -1.0, latitude_deg = 0.0, longitude_deg = 0.0;
-};
+/// Where a line or a region is told to be: the middle of the line, the mean of the outline.
+Centre middle_of(const Grid& grid, const PlateRift& rift) {
+  return position_of(grid, GreatCircleLine(places_on(grid, rift.path)).middle());
+}
+Centre middle_of(const Grid& grid, const CrustChange& change) {
+  Vector3 sum{};
+  for (const Vector3& place : places_on(grid, change.path)) sum = add(sum, place);
+  return position_of(grid, normalised(sum));
+}
 
-Due due_of(const Event& event) {
+Centre place_of(const Grid& grid, const Event& event) {
   return std::visit(
-      []<class What>(const What& what) -> Due {
+      [&]<class What>(const What& what) -> Centre {
         if constexpr (kIsOfPlates<What>) {
-          return {what.time_myr, what.latitude_deg, what.longitude_deg};
+          if constexpr (requires { what.path; }) {
+            if (!what.path.empty()) return middle_of(grid, what);
+          }
+          return {what.latitude_deg, what.longitude_deg};
         } else {
           return {};
         }
+      },
+      event.what);
+}
+
+double time_of(const Event& event) {
+  return std::visit(
+      []<class What>(const What& what) {
+        if constexpr (kIsOfPlates<What>) return what.time_myr;
+        return -1.0;
       },
       event.what);
 }
@@ -104,23 +158,36 @@ void strike_plates(const Grid& grid, double from_myr, double to_myr, SphereTecto
   const Stroke stroke(grid, model);
   for (std::size_t i = 0; i < context.events.size(); ++i) {
     const Event& event = context.events[i];
-    const Due due = due_of(event);
-    if (due.time_myr < from_myr || due.time_myr >= to_myr) continue;
+    const double time_myr = time_of(event);
+    if (time_myr < from_myr || time_myr >= to_myr) continue;
+    const Centre place = place_of(grid, event);
     EventRecord record{.number = static_cast<int>(i) + 1,
                        .kind = std::string(event.kind()),
                        .name = event.name,
-                       .figures = {{"time_myr", due.time_myr},
-                                   {"latitude_deg", due.latitude_deg},
-                                   {"longitude_deg", due.longitude_deg}}};
+                       .figures = {{"time_myr", time_myr},
+                                   {"latitude_deg", place.latitude_deg},
+                                   {"longitude_deg", place.longitude_deg}}};
     const bool struck =
         std::visit([&](const auto& what) { return stroke(what, record.figures); }, event.what);
     if (!struck) {
-      context.warnings.push_back(fmt::format(
-          "event {} ({}): no plate is at {:g}, {:g} after {:g} Myr, only a gap that opens", i + 1,
-          event.kind(), due.latitude_deg, due.longitude_deg, due.time_myr));
+      const bool is_plume = std::holds_alternative<PlumeChange>(event.what);
+      context.warnings.push_back(
+          fmt::format("event {} ({}): no {} is at {:g}, {:g} after {:g} Myr{}", i + 1, event.kind(),
+                      is_plume ? "plume" : "plate", place.latitude_deg, place.longitude_deg,
+                      time_myr, is_plume ? "" : ", only a gap that opens"));
       continue;
     }
     context.event_records.push_back(std::move(record));
+  }
+}
+
+void warn_of_later_events(double end_myr, Context& context) {
+  for (std::size_t i = 0; i < context.events.size(); ++i) {
+    const Event& event = context.events[i];
+    if (!event.is_of_plates() || time_of(event) < end_myr) continue;
+    context.warnings.push_back(
+        fmt::format("event {} ({}): its time is {:g} Myr, the drift ends after {:g} Myr", i + 1,
+                    event.kind(), time_of(event), end_myr));
   }
 }
 

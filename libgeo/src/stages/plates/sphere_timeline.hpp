@@ -6,8 +6,11 @@
 namespace geo {
 
 /// Does what the events of plates ask for between `from_myr` and `to_myr`, to exclusively, and
-/// records it. `turn` is that of the grid: places are given in the frame of its axis.
+/// records it. Warns of events that find no plate or plume.
 void strike_plates(const Grid& grid, double from_myr, double to_myr, SphereTectonics& model,
                    Context& context);
+
+/// Warns of events that are to come after the drift has ended.
+void warn_of_later_events(double end_myr, Context& context);
 
 }  // namespace geo

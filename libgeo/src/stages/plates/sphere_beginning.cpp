@@ -1,0 +1,182 @@
+#include "sphere_beginning.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "geo/core/error.hpp"
+#include "geo/core/place.hpp"
+#include "geo/core/random.hpp"
+#include "geo/kernels/region_outline.hpp"
+#include "geo/kernels/sphere_boundaries.hpp"
+#include "hypsography.hpp"
+
+namespace geo {
+namespace {
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+/// The plate of each sample: the last one whose outline holds it, in gaps the nearest.
+std::vector<std::int16_t> plates_at_samples(const Grid& grid, const SphereMesh& mesh,
+                                            Context& context) {
+  const std::vector<PlateOutline>& outlines = context.plates;
+  std::vector<RegionOutline> regions;
+  regions.reserve(outlines.size());
+  for (const PlateOutline& outline : outlines) regions.emplace_back(outline.rings);
+  std::vector<std::int16_t> plate(mesh.size(), -1);
+  std::int32_t shared = 0;
+#pragma omp parallel for schedule(dynamic, 1024) reduction(+ : shared)
+  for (std::int32_t i = 0; i < mesh.size(); ++i) {
+    const Centre at = position_of(grid, mesh.samples().position(i));
+    int holding = 0;
+    for (std::size_t p = 0; p < regions.size(); ++p) {
+      if (!regions[p].holds(at)) continue;
+      plate[i] = static_cast<std::int16_t>(p);
+      ++holding;
+    }
+    shared += holding > 1 ? 1 : 0;
+  }
+  std::vector<std::int32_t> within;
+  for (std::int32_t i = 0; i < mesh.size(); ++i) {
+    if (plate[i] >= 0) within.push_back(i);
+  }
+  if (within.empty()) throw InputError("plates: fields.plates: no outline holds any place");
+  const auto percent = [&](double samples) { return 100.0 * samples / mesh.size(); };
+  constexpr double kTold_percent = 0.1;
+  if (const double gap = percent(mesh.size() - std::ssize(within)); gap > kTold_percent) {
+    context.warnings.push_back(
+        fmt::format("fields.plates: {:.1f} % of the planet lies within no outline and goes to the "
+                    "nearest plate",
+                    gap));
+  }
+  if (percent(shared) > kTold_percent) {
+    context.warnings.push_back(
+        fmt::format("fields.plates: {:.1f} % of the planet lies within several outlines and goes "
+                    "to the last of them",
+                    percent(shared)));
+  }
+  const auto nearest = nearest_samples(mesh, within, std::numbers::pi);
+  for (std::int32_t i = 0; i < mesh.size(); ++i) plate[i] = plate[within[nearest[i]]];
+  return plate;
+}
+
+void take_plates(const Grid& grid, const SphereMesh& mesh, Context& context, SphereStart& start) {
+  start.plate = plates_at_samples(grid, mesh, context);
+  std::vector<std::int16_t> number(context.plates.size(), -1);
+  for (const std::int16_t plate : start.plate) number[plate] = 0;
+  for (std::size_t p = 0; p < number.size(); ++p) {
+    const PlateOutline& outline = context.plates[p];
+    if (number[p] < 0) {
+      context.warnings.push_back(fmt::format(
+          "fields.plates: {} is too small for plates.samples and left out", outline.name));
+      continue;
+    }
+    number[p] = static_cast<std::int16_t>(start.rotation_rad_myr.size());
+    start.rotation_rad_myr.push_back(
+        scaled(place_on(grid, outline.pole), outline.rate_deg_myr / kDegrees));
+  }
+  for (std::int16_t& plate : start.plate) plate = number[plate];
+}
+
+/// Means of cells over the samples that are nearest to them; a sample without cells takes the cell
+/// that it lies in. NaN where the cells are.
+std::vector<float> means_at_samples(const GivenRelief& given, const std::vector<float>& values,
+                                    const Grid& turned, const SphereMesh& mesh) {
+  const Grid& grid = given.grid;
+  std::vector<std::int32_t> nearest(grid.size());
+#pragma omp parallel for schedule(dynamic, 8)
+  for (int j = 0; j < grid.ny(); ++j) {
+    for (int i = 0; i < grid.nx(); ++i) {
+      nearest[grid.cell(i, j)] = mesh.samples().nearest(place_on(turned, grid.position(i, j)));
+    }
+  }
+  std::vector<double> sum(mesh.size(), 0.0), area(mesh.size(), 0.0);
+  for (Index cell = 0; cell < grid.size(); ++cell) {
+    if (std::isnan(values[cell])) continue;
+    const double weight = grid.area_m2(grid.row(cell));
+    sum[nearest[cell]] += weight * values[cell];
+    area[nearest[cell]] += weight;
+  }
+  std::vector<float> mean(mesh.size());
+  for (std::int32_t i = 0; i < mesh.size(); ++i) {
+    if (area[i] > 0.0) {
+      mean[i] = static_cast<float>(sum[i] / area[i]);
+      continue;
+    }
+    const Centre at = position_of(turned, mesh.samples().position(i));
+    const int column = static_cast<int>((at.longitude_deg / 360.0 + 0.5) * grid.nx());
+    const int row = static_cast<int>((at.latitude_deg / 180.0 + 0.5) * grid.ny());
+    mean[i] =
+        values[grid.cell(std::clamp(column, 0, grid.nx() - 1), std::clamp(row, 0, grid.ny() - 1))];
+  }
+  return mean;
+}
+
+void take_relief(const Grid& grid, const SphereMesh& mesh, const Context& context,
+                 SphereStart& start) {
+  if (!context.first_relief) {
+    throw InputError(
+        "plates: plates.first_relief = given needs fields.first_relief, a NetCDF "
+        "file of a planet's relief");
+  }
+  const GivenRelief& given = *context.first_relief;
+  start.real_floor = true;
+  start.elevation_m = means_at_samples(given, given.elevation_m, grid, mesh);
+  if (given.age_myr.empty()) return;
+  start.age_myr = means_at_samples(given, given.age_myr, grid, mesh);
+}
+
+}  // namespace
+
+Centre position_of(const Grid& grid, const Vector3& place) {
+  const Vector3 at = grid.to_axis(place);
+  return {std::asin(std::clamp(at[2], -1.0, 1.0)) * kDegrees, std::atan2(at[1], at[0]) * kDegrees};
+}
+
+Vector3 place_on(const Grid& grid, const Centre& place) {
+  const Vector3 on_axis = unit_vector_of(place);
+  Vector3 out{};
+  for (int c = 0; c < 3; ++c) {
+    Vector3 axis{};
+    axis[c] = 1.0;
+    out[c] = dot(grid.to_axis(axis), on_axis);
+  }
+  return out;
+}
+
+std::vector<SpherePlume> first_plumes(const PlatesParameters& parameters, std::uint64_t seed) {
+  const RandomStream random(seed, "plates.plumes");
+  std::vector<SpherePlume> plumes(static_cast<std::size_t>(std::lround(parameters.plumes)));
+  for (std::size_t k = 0; k < plumes.size(); ++k) {
+    plumes[k] = {random.direction(k), parameters.sphere.plume_mm_yr};
+  }
+  return plumes;
+}
+
+std::int64_t first_plates(const PlatesParameters& parameters, const Context& context) {
+  return context.plates.empty() ? parameters.growth.count : std::ssize(context.plates);
+}
+
+SphereStart sphere_start(const PlatesParameters& parameters, const SphereMesh& mesh,
+                         const StageIo& io, Context& context) {
+  SphereStart start = parameters.start;
+  start.plates = parameters.growth.count;
+  start.continental_share = parameters.cratons.share;
+  start.whole_plates = parameters.continents == "plates";
+  start.oldest_floor_myr = parameters.oldest_floor_myr;
+  if (!context.plates.empty()) take_plates(io.grid(), mesh, context, start);
+  if (parameters.first_relief == "hypsography") {
+    start.elevation_m = hypsographic_heights_m(parameters, io, context, mesh.samples().positions());
+  } else if (parameters.first_relief == "given") {
+    take_relief(io.grid(), mesh, context, start);
+  }
+  if (parameters.first_relief != "given" && context.first_relief) {
+    context.warnings.push_back("fields.first_relief is for plates.first_relief = given: not used");
+  }
+  return start;
+}
+
+}  // namespace geo
