@@ -175,6 +175,13 @@ Colouring colouring_of(const Raster& raster, bool whole_numbers) {
               std::numeric_limits<float>::min()};
     }
   }
+  // Where much of the map has nothing (no lake, no slope of the sea), nothing has no colour.
+  constexpr double kMuch = 0.2;
+  if (low == 0.0 && positive != sorted.end() && sorted.front() == 0.0F &&
+      quantile(sorted, kMuch) == 0.0F) {
+    const double top = quantile({positive, sorted.end()}, 0.995);
+    return {sequential.spread_over(linear_stops(0.0, top, 9)), std::numeric_limits<float>::min()};
+  }
   return {sequential.spread_over(linear_stops(low, high, 9)), lowest};
 }
 

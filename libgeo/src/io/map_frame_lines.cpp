@@ -216,8 +216,12 @@ void MapCanvas::label_curved_graticule(double step) {
       if (std::abs(lat) > 89.9 || std::abs(lat - level) < 1e-6) continue;
       on_map(projector.point_east_of_centre(middle_east, lat), latitude_label(lat), Align::centre);
     }
+    const bool whole = region.east_deg - region.west_deg > 359.9;
     for (const double lon : labelled_east) {
-      on_map(projector.point_east_of_centre(std::remainder(lon - lon_0, 360.0), level),
+      const double east = lon - lon_0,
+                   from_side = std::min(east - region.west_deg, region.east_deg - east);
+      if (!whole && from_side < 0.2 * step) continue;  // it would stand across the edge
+      on_map(projector.point_east_of_centre(std::remainder(east, 360.0), level),
              longitude_label(lon), Align::centre);
     }
     return;
@@ -227,7 +231,9 @@ void MapCanvas::label_curved_graticule(double step) {
   for (const double lat : labelled_lat) {
     const auto at = projector.point_east_of_centre(region.west_deg, lat);
     if (!at || std::abs(lat) > 89.9) continue;
-    const double lean = 10 * unit_ * lat / 90.0;
+    // Clear of the longitudes below the corner.
+    const bool at_corner = lat - region.south_deg < 1e-6;
+    const double lean = at_corner ? 6 * unit_ : 10 * unit_ * lat / 90.0;
     text(left + at->x - 10 * unit_, top + at->y + 6 * unit_ - lean, latitude_label(lat),
          Align::right);
   }
