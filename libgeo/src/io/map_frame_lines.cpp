@@ -197,8 +197,12 @@ void MapCanvas::label_curved_graticule(double step) {
   font(14 * unit_);
   const auto on_map = [&](std::optional<PagePoint> at, const std::string& label, Align align) {
     const double room = 12 * unit_, width = layout_.map_width, height = layout_.map_height;
-    if (!at || at->x < room || at->y < room || at->x > width - room || at->y > height - room) {
-      return;
+    if (!at || at->y < room || at->y > height - room) return;
+    // None stands across the edge of the map.
+    const double half = 0.5 * text_width(label);
+    for (const double end : {at->x - half, at->x + half}) {
+      if (end < 0.0 || end >= width) return;
+      if (!frame_->shows(static_cast<int>(end), static_cast<int>(at->y))) return;
     }
     text_on_map(left + at->x, top + at->y + 5 * unit_, label, align, kInk);
   };
@@ -216,12 +220,8 @@ void MapCanvas::label_curved_graticule(double step) {
       if (std::abs(lat) > 89.9 || std::abs(lat - level) < 1e-6) continue;
       on_map(projector.point_east_of_centre(middle_east, lat), latitude_label(lat), Align::centre);
     }
-    const bool whole = region.east_deg - region.west_deg > 359.9;
     for (const double lon : labelled_east) {
-      const double east = lon - lon_0,
-                   from_side = std::min(east - region.west_deg, region.east_deg - east);
-      if (!whole && from_side < 0.2 * step) continue;  // it would stand across the edge
-      on_map(projector.point_east_of_centre(std::remainder(east, 360.0), level),
+      on_map(projector.point_east_of_centre(std::remainder(lon - lon_0, 360.0), level),
              longitude_label(lon), Align::centre);
     }
     return;
