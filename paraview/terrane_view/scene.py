@@ -23,6 +23,8 @@ def clear(view):
 
 def prepare(view):
     """White paper and light from the upper left, as on maps."""
+    # The window would move the camera again with its first picture.
+    simple._DisableFirstRenderCameraReset()
     view.UseColorPaletteForBackground = 0
     view.BackgroundColorMode = "Single Color"
     view.Background = PAPER

@@ -352,6 +352,25 @@ TEST(FieldMaps, LargerNumbersAreBrighterOverOrdersOfMagnitude) {
   }
 }
 
+TEST(FieldMaps, NothingHasNoColourWhereMuchOfTheMapHasNothing) {
+  const TemporaryFolder folder;
+  State state = planet_of([](const auto&) { return 10.0; });
+  const Grid& grid = state.grid();
+  const auto paper_with = [&](double zeros) {
+    std::vector<float> depth(grid.size());
+    for (Index i = 0; i < grid.size(); ++i) {
+      const double share = grid.column(i) / 360.0;
+      depth[i] = share < zeros ? 0.0F : static_cast<float>(1.0 + 20.0 * share);
+    }
+    state.set(field::lake_depth, depth);
+    draw_field_file(state, field::lake_depth, folder / "field.png", {kWidth});
+    const Picture picture(folder / "field.png", map_layout(grid, {kWidth}));
+    return difference(picture.map(kWidth / 36, kWidth / 4 + 12), {241, 238, 231}) < 12;
+  };
+  EXPECT_TRUE(paper_with(0.5));
+  EXPECT_FALSE(paper_with(0.05));
+}
+
 TEST(IslandMaps, ContoursFollowTheirHeights) {
   const TemporaryFolder folder;
   State state(std::make_shared<Grid>(Grid::equal_area(120, 120, 500.0, Centre{45, 10})));

@@ -26,6 +26,19 @@ Canvas::Canvas(int width_px, int height_px)
                     sizeof(std::uint32_t);
 }
 
+void Canvas::set_pixels(int x, int y, const ColourRow& row) {
+  const auto byte = [](float part) {
+    const float within = part < 0.0F ? 0.0F : part > 1.0F ? 1.0F : part;
+    return static_cast<std::int32_t>(within * 255.0F + 0.5F);
+  };
+  std::uint32_t* const to = pixels_ + static_cast<std::size_t>(y) * pixels_per_row_ + x;
+  const float *const r = row.r.data(), *const g = row.g.data(), *const b = row.b.data();
+#pragma omp simd
+  for (std::size_t i = 0; i < row.r.size(); ++i) {
+    to[i] = static_cast<std::uint32_t>(byte(r[i]) << 16 | byte(g[i]) << 8 | byte(b[i]));
+  }
+}
+
 void Canvas::pixels_done() { cairo_surface_mark_dirty(surface_.get()); }
 
 void Canvas::colour(Rgb colour, double alpha) {
@@ -114,6 +127,13 @@ MapCanvas::MapCanvas(const MapFrame& frame)
       page_(&frame.page()),
       layout_(frame.page().layout()),
       unit_(map_unit(layout_.map_width)) {}
+
+void MapCanvas::clear_beyond_edge(int y, ColourRow& row) const {
+  if (frame_->is_aligned()) return;
+  for (int x = 0; x < layout_.map_width; ++x) {
+    if (!frame_->shows(x, y)) row.set(x, {1.0F, 1.0F, 1.0F});
+  }
+}
 
 void MapCanvas::stroke(const PageLines& lines) {
   for (const auto& line : lines) {

@@ -2,7 +2,6 @@
 
 #include <cairo.h>
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -19,9 +18,6 @@
 
 namespace geo::io {
 
-inline constexpr Rgb kInk{0.13F, 0.15F, 0.18F};
-inline constexpr Rgb kFaintInk{0.40F, 0.43F, 0.47F};
-
 enum class Align { left, centre, right };
 
 /// A sheet of paper with Cairo's pen: pixels, lines and type.
@@ -30,13 +26,8 @@ class Canvas {
   Canvas(int width_px, int height_px);
 
   [[nodiscard]] cairo_t* pen() const { return pen_.get(); }
-  void set_pixel(int x, int y, Rgb colour) {
-    const auto byte = [](float part) {
-      return static_cast<std::uint32_t>(std::clamp(part, 0.0F, 1.0F) * 255.0F + 0.5F);
-    };
-    pixels_[static_cast<std::size_t>(y) * pixels_per_row_ + x] =
-        byte(colour.r) << 16U | byte(colour.g) << 8U | byte(colour.b);
-  }
+  /// Sets pixels from (x, y) on.
+  void set_pixels(int x, int y, const ColourRow& row);
   /// Pixels were set; tells Cairo before it draws on.
   void pixels_done();
   void colour(Rgb colour, double alpha = 1.0);
@@ -65,14 +56,14 @@ class MapCanvas : public Canvas {
  public:
   explicit MapCanvas(const MapFrame& frame);
 
-  /// Sets each pixel of the map that shows something to `colour_of(x, y)`.
-  template <class ColourOf>
-  void paint(const ColourOf& colour_of) {
+  /// Sets the pixels of the map: `fill(y, row)` gives the colours of a row.
+  template <class Fill>
+  void paint_rows(const Fill& fill) {
+    ColourRow row(layout_.map_width);
     for (int y = 0; y < layout_.map_height; ++y) {
-      for (int x = 0; x < layout_.map_width; ++x) {
-        if (!frame_->shows(x, y)) continue;
-        set_pixel(layout_.map_left + x, layout_.map_top + y, colour_of(x, y));
-      }
+      fill(y, row);
+      clear_beyond_edge(y, row);
+      set_pixels(layout_.map_left, layout_.map_top + y, row);
     }
     pixels_done();
   }
@@ -110,6 +101,8 @@ class MapCanvas : public Canvas {
   [[nodiscard]] const MapLayout& layout() const { return layout_; }
 
  private:
+  /// Leaves the paper white where the map shows nothing.
+  void clear_beyond_edge(int y, ColourRow& row) const;
   void straight_graticule();
   void curved_graticule();
   void label_curved_graticule(double step_deg);

@@ -1,12 +1,23 @@
 #include "map_colours.hpp"
 
 #include <charconv>
-#include <cmath>
+#include <utility>
 
 #include "geo/core/error.hpp"
 #include "geo/io/embedded_data.hpp"
 
 namespace geo::io {
+
+void mix_in(ColourRow& row, Rgb colour, const float* share, float scale) {
+  float *const r = row.r.data(), *const g = row.g.data(), *const b = row.b.data();
+#pragma omp simd
+  for (std::size_t x = 0; x < row.r.size(); ++x) {
+    const float t = scale * share[x];
+    r[x] += t * (colour.r - r[x]);
+    g[x] += t * (colour.g - g[x]);
+    b[x] += t * (colour.b - b[x]);
+  }
+}
 
 Rgb parse_colour(std::string_view hex) {
   unsigned value = 0;
@@ -20,50 +31,52 @@ Rgb parse_colour(std::string_view hex) {
   return {part(16), part(8), part(0)};
 }
 
-ColourMap::ColourMap(std::string_view name) {
+namespace {
+
+std::vector<ColourMap::Stop> stops_named(std::string_view name) {
+  std::vector<ColourMap::Stop> stops;
   for (const auto& row : table_rows(embedded_file("colour_maps/" + std::string(name) + ".csv"))) {
-    stops_.push_back(
+    stops.push_back(
         {static_cast<float>(number(row.at(0))), parse_colour(row.at(1)), std::string(row.at(2))});
   }
-  const auto descends = [](const Stop& a, const Stop& b) { return a.value >= b.value; };
-  if (stops_.size() < 2 ||
-      std::adjacent_find(stops_.begin(), stops_.end(), descends) != stops_.end()) {
+  const auto descends = [](const auto& a, const auto& b) { return a.value >= b.value; };
+  if (stops.size() < 2 || std::adjacent_find(stops.begin(), stops.end(), descends) != stops.end()) {
     throw Bug("colour map " + std::string(name) + ": values must ascend");
+  }
+  return stops;
+}
+
+}  // namespace
+
+ColourMap::ColourMap(std::string_view name) : ColourMap(stops_named(name)) {}
+
+ColourMap::ColourMap(std::vector<Stop> stops) : stops_(std::move(stops)) {
+  for (const Stop& stop : stops_) {
+    values_.push_back(stop.value);
+    colours_.push_back(stop.colour);
+  }
+  for (std::size_t i = 0; i + 1 < colours_.size(); ++i) {
+    classes_.push_back(mix(colours_[i], colours_[i + 1], 0.5F));
+  }
+  const float range = values_.back() - values_.front();
+  bins_per_unit_ = kBins / range;
+  // A part begins one part early, for its edges are rounded.
+  std::size_t i = 1;
+  for (int bin = 0; bin <= kBins; ++bin) {
+    const float low = values_.front() + range * static_cast<float>(bin - 1) / kBins;
+    while (i + 1 < values_.size() && values_[i] < low) ++i;
+    first_[bin] = static_cast<std::uint32_t>(i);
   }
 }
 
 ColourMap ColourMap::spread_over(const std::vector<float>& values) const {
-  ColourMap out;
+  std::vector<Stop> stops;
   const auto last = static_cast<float>(stops_.size() - 1);
   for (std::size_t i = 0; i < values.size(); ++i) {
     const float share = static_cast<float>(i) / static_cast<float>(values.size() - 1);
-    out.stops_.push_back({values[i], at_position(share * last), ""});
+    stops.push_back({values[i], at_position(share * last), ""});
   }
-  return out;
-}
-
-float ColourMap::position(float value) const {
-  if (!(value > stops_.front().value)) return 0.0F;
-  const auto last = static_cast<float>(stops_.size() - 1);
-  if (value >= stops_.back().value) return last;
-  std::size_t i = 1;
-  while (stops_[i].value < value) ++i;
-  const float below = stops_[i - 1].value;
-  return static_cast<float>(i - 1) + (value - below) / (stops_[i].value - below);
-}
-
-Rgb ColourMap::at_position(float position) const {
-  const auto i = std::min(static_cast<std::size_t>(position), stops_.size() - 2);
-  return mix(stops_[i].colour, stops_[i + 1].colour, position - static_cast<float>(i));
-}
-
-Rgb ColourMap::classed(float position, float blur) const {
-  const int classes = static_cast<int>(stops_.size()) - 1;
-  const int border = std::clamp(static_cast<int>(std::lround(position)), 1, classes - 1);
-  const float across = (position - static_cast<float>(border)) / std::max(blur, 1e-3F) + 0.5F;
-  const int i = std::clamp(static_cast<int>(position), 0, classes - 1);
-  if (across <= 0.0F || across >= 1.0F) return class_colour(i);
-  return mix(class_colour(border - 1), class_colour(border), across);
+  return ColourMap(std::move(stops));
 }
 
 const ColourMap::Stop* ColourMap::category(int value) const {

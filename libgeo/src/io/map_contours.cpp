@@ -19,6 +19,9 @@ constexpr Rgb kContour{0.40F, 0.27F, 0.15F};
 constexpr double kLines = 14.0;  // about so many between sea level and the highest ground
 constexpr int kIndexLine = 5;    // every fifth is heavier
 
+// Points of a line that lie nearer to the one before are left out: no eye sees them.
+constexpr double kStepPx = 1.2;
+
 /// The lines of one height on a raster, pixels from its upper left corner.
 PageLines contour(const Raster& height_m, double level_m) {
   vtkNew<vtkImageData> image;
@@ -45,7 +48,9 @@ PageLines contour(const Raster& height_m, double level_m) {
     auto& line = out.emplace_back();
     for (vtkIdType i = 0; i < count; ++i) {
       const double* const point = lines->GetPoint(ids[i]);
-      line.push_back({point[0], point[1]});
+      const bool near = i > 0 && i + 1 < count &&
+                        std::hypot(point[0] - line.back().x, point[1] - line.back().y) < kStepPx;
+      if (!near) line.push_back({point[0], point[1]});
     }
   }
   return out;
@@ -118,7 +123,7 @@ class ContourLabels {
 }  // namespace
 
 void draw_contours(MapCanvas& canvas, const MapFrame& frame, std::span<const float> elevation_m) {
-  const Raster height = sample(frame, Filter::smooth, [&](Index i) { return elevation_m[i]; }).mean;
+  const Raster height = sample_mean(frame, Filter::smooth, [&](Index i) { return elevation_m[i]; });
   float highest = 0.0F;
   for (const float value : height.values) highest = std::max(highest, value);
   if (highest < 1.0F) return;

@@ -175,11 +175,30 @@ Colouring colouring_of(const Raster& raster, bool whole_numbers) {
               std::numeric_limits<float>::min()};
     }
   }
+  // Where much of the map has nothing (no lake, no slope of the sea), nothing has no colour.
+  constexpr double kMuch = 0.2;
+  if (low == 0.0 && positive != sorted.end() && sorted.front() == 0.0F &&
+      quantile(sorted, kMuch) == 0.0F) {
+    const double top = quantile({positive, sorted.end()}, 0.995);
+    return {sequential.spread_over(linear_stops(0.0, top, 9)), std::numeric_limits<float>::min()};
+  }
   return {sequential.spread_over(linear_stops(low, high, 9)), lowest};
 }
 
 Rgb paper(const MapBase& base, int x, int y) {
   return mix(kPaleSea, kPaleLand, base.land_cover.at(x, y));
+}
+
+/// Colours `tint(x, y)` under the light, which shows on land, and the coast over them.
+template <class Tint>
+void paint_shaded(const MapBase& base, MapCanvas& canvas, float light, const Tint& tint) {
+  canvas.paint_rows([&](int y, ColourRow& row) {
+    for (int x = 0; x < base.shade.width; ++x) {
+      row.set(x, tint(x, y), light * base.land_cover.at(x, y));
+    }
+    shade(row, base, y);
+    draw_coast(row, base, y, 0.6F);
+  });
 }
 
 void draw_continuous(const FieldSpec& spec, const Scene& scene, MapCanvas& canvas) {
@@ -188,17 +207,15 @@ void draw_continuous(const FieldSpec& spec, const Scene& scene, MapCanvas& canva
     raster = nearest(scene.frame, scene.state, spec);
   } else {
     with_values(scene.state, spec, [&](const auto& value) {
-      raster = sample(scene.frame, Filter::linear, value).mean;
+      raster = sample_mean(scene.frame, Filter::linear, value);
     });
   }
   const Colouring colouring = colouring_of(raster, kind_of(spec) == FieldKind::steps);
   const MapBase& base = scene.base;
-  canvas.paint([&](int x, int y) {
+  paint_shaded(base, canvas, 0.22F, [&](int x, int y) {
     const float value = raster.at(x, y);
     const bool there = value == value && value >= colouring.none_below;
-    const Rgb colour = there ? colouring.colours.smooth(value) : paper(base, x, y);
-    return with_coast(base, x, y,
-                      lit(colour, base.shade.at(x, y), 0.22F * base.land_cover.at(x, y)));
+    return there ? colouring.colours.smooth(value) : paper(base, x, y);
   });
   canvas.frame();
   const std::array<const ColourMap*, 1> maps{&colouring.colours};
@@ -232,13 +249,11 @@ void draw_flags(const FieldSpec& spec, const Scene& scene, MapCanvas& canvas) {
   const Raster category = bytes != nullptr ? sample_majority(scene.frame, *bytes)
                                            : nearest(scene.frame, scene.state, spec);
   const MapBase& base = scene.base;
-  canvas.paint([&](int x, int y) {
+  paint_shaded(base, canvas, 0.3F, [&](int x, int y) {
     const auto at = std::find_if(items.begin(), items.end(), [&](const auto& item) {
       return static_cast<float>(item.second->value) == category.at(x, y);
     });
-    const Rgb colour = at != items.end() ? at->first : paper(base, x, y);
-    return with_coast(base, x, y,
-                      lit(colour, base.shade.at(x, y), 0.3F * base.land_cover.at(x, y)));
+    return at != items.end() ? at->first : paper(base, x, y);
   });
   canvas.frame();
   std::vector<std::pair<Rgb, std::string>> legend;
@@ -268,7 +283,7 @@ void draw_areas(const FieldSpec& spec, const Scene& scene, MapCanvas& canvas) {
   std::set<int> seen;
   int last = std::numeric_limits<int>::min();
   Rgb colour{};
-  canvas.paint([&](int x, int y) {
+  paint_shaded(base, canvas, 0.3F, [&](int x, int y) {
     const float value = number.at(x, y);
     Rgb here = paper(base, x, y);
     if (value >= static_cast<float>(first)) {
@@ -277,7 +292,7 @@ void draw_areas(const FieldSpec& spec, const Scene& scene, MapCanvas& canvas) {
       seen.insert(last);
       here = colour;
     }
-    return with_coast(base, x, y, lit(here, base.shade.at(x, y), 0.3F * base.land_cover.at(x, y)));
+    return here;
   });
   canvas.frame();
   canvas.remark(seen.empty() ? "none on this map"

@@ -197,8 +197,12 @@ void MapCanvas::label_curved_graticule(double step) {
   font(14 * unit_);
   const auto on_map = [&](std::optional<PagePoint> at, const std::string& label, Align align) {
     const double room = 12 * unit_, width = layout_.map_width, height = layout_.map_height;
-    if (!at || at->x < room || at->y < room || at->x > width - room || at->y > height - room) {
-      return;
+    if (!at || at->y < room || at->y > height - room) return;
+    // None stands across the edge of the map.
+    const double half = 0.5 * text_width(label);
+    for (const double end : {at->x - half, at->x + half}) {
+      if (end < 0.0 || end >= width) return;
+      if (!frame_->shows(static_cast<int>(end), static_cast<int>(at->y))) return;
     }
     text_on_map(left + at->x, top + at->y + 5 * unit_, label, align, kInk);
   };
@@ -227,7 +231,9 @@ void MapCanvas::label_curved_graticule(double step) {
   for (const double lat : labelled_lat) {
     const auto at = projector.point_east_of_centre(region.west_deg, lat);
     if (!at || std::abs(lat) > 89.9) continue;
-    const double lean = 10 * unit_ * lat / 90.0;
+    // Clear of the longitudes below the corner.
+    const bool at_corner = lat - region.south_deg < 1e-6;
+    const double lean = at_corner ? 6 * unit_ : 10 * unit_ * lat / 90.0;
     text(left + at->x - 10 * unit_, top + at->y + 6 * unit_ - lean, latitude_label(lat),
          Align::right);
   }

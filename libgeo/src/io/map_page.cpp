@@ -333,7 +333,8 @@ void MapPage::set_layout(int width_px, double height_over_width) {
   const auto scaled = [&](double pixels) { return static_cast<int>(std::lround(pixels * unit)); };
   layout.map_left = scaled(84);
   layout.map_top = scaled(84);
-  layout.width_px = layout.map_left + layout.map_width + scaled(50);
+  // Round polar maps longitudes stand on both sides.
+  layout.width_px = layout.map_left + layout.map_width + scaled(is_polar() ? 84 : 50);
   layout.height_px = layout.map_top + layout.map_height + scaled(126);
 }
 

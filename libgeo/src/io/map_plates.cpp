@@ -32,16 +32,23 @@ Raster sample_plates(const MapFrame& frame, std::span<const std::int16_t> plate_
 std::map<int, int> colour_numbers(const Raster& plates, int colours) {
   std::map<int, int> pixels;
   std::map<int, std::set<int>> neighbours;
+  const auto meet = [&](int a, int b) {
+    neighbours[a].insert(b);
+    neighbours[b].insert(a);
+  };
   for (int y = 0; y < plates.height; ++y) {
+    const int below = std::min(y + 1, plates.height - 1);
+    int run = 0;
     for (int x = 0; x < plates.width; ++x) {
-      if (plates.at(x, y) != plates.at(x, y)) continue;  // beyond the edge of the map
-      const int own = static_cast<int>(plates.at(x, y));
-      ++pixels[own];
-      for (const float other :
-           {plates.at(plates.east_of(x), y), plates.at(x, std::min(y + 1, plates.height - 1))}) {
-        if (other != other || static_cast<int>(other) == own) continue;
-        neighbours[own].insert(static_cast<int>(other));
-        neighbours[static_cast<int>(other)].insert(own);
+      const float own = plates.at(x, y);
+      if (own != own) continue;  // beyond the edge of the map
+      const float east = plates.at(plates.east_of(x), y), south = plates.at(x, below);
+      if (east == east && east != own) meet(static_cast<int>(own), static_cast<int>(east));
+      if (south == south && south != own) meet(static_cast<int>(own), static_cast<int>(south));
+      ++run;
+      if (x + 1 == plates.width || plates.at(x + 1, y) != own) {
+        pixels[static_cast<int>(own)] += run;
+        run = 0;
       }
     }
   }
@@ -240,19 +247,24 @@ void draw_plates(MapCanvas& canvas, const MapFrame& frame, const State& state,
   std::map<int, Rgb> colour_of;
   for (const auto& [plate, number] : numbers) colour_of[plate] = colours.stops()[number].colour;
   const bool has_relief = state.has(field::elevation);
-  int seen = -1;
-  Rgb own{};
-  canvas.paint([&](int x, int y) {
-    const int plate = static_cast<int>(plates.at(x, y));
-    if (plate != seen) {  // plates come in long runs
-      own = colour_of[plate];
-      seen = plate;
+  canvas.paint_rows([&](int y, ColourRow& row) {
+    int seen = -1;
+    Rgb own{}, at_sea{}, on_land{};
+    for (int x = 0; x < plates.width; ++x) {
+      if (plates.at(x, y) != plates.at(x, y)) continue;  // beyond the edge of the map
+      const int plate = static_cast<int>(plates.at(x, y));
+      if (plate != seen) {  // plates come in long runs
+        own = colour_of[plate];
+        at_sea = mix(own, kWhite, 0.45F);
+        on_land = mix(own, kInk, 0.08F);
+        seen = plate;
+      }
+      const float land = base.land_cover.at(x, y);
+      row.set(x, has_relief ? mix(at_sea, on_land, land) : own, 0.26F + 0.3F * land);
     }
-    if (!has_relief) return own;
-    const float land = base.land_cover.at(x, y);
-    const Rgb tint = mix(mix(own, kWhite, 0.45F), mix(own, kInk, 0.08F), land);
-    return mix(lit(tint, base.shade.at(x, y), 0.26F + 0.3F * land), kInk,
-               0.35F * base.coast.at(x, y));
+    if (!has_relief) return;
+    shade(row, base, y);
+    draw_coast(row, base, y, 0.35F);
   });
   const bool typed = state.has(field::boundary_type);
   draw_boundaries(canvas, frame, plates,

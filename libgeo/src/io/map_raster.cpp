@@ -48,17 +48,27 @@ Taps axis_taps(int cells, int pixels, bool wraps, bool reversed, Filter filter) 
   return taps;
 }
 
-// Running mean of half-width `radius` along a line of `n` values `stride` apart.
-void box_line(float* line, int n, std::size_t stride, int radius, bool wraps,
-              std::vector<double>& sums) {
-  sums.assign(n + 2 * radius + 1, 0.0);
+// Running means of half-width `radius` along lines of `n` values `stride` apart, of as many lines
+// side by side.
+template <int lines>
+void box_lines(float* first, int n, std::size_t stride, int radius, bool wraps,
+               std::vector<double>& sums) {
+  sums.resize(static_cast<std::size_t>(n + 2 * radius + 1) * lines);
+  std::fill_n(sums.begin(), lines, 0.0);
   for (int i = 0; i < n + 2 * radius; ++i) {
     const int at = i - radius;
     const int from = wraps ? (at % n + n) % n : std::clamp(at, 0, n - 1);
-    sums[i + 1] = sums[i] + line[from * stride];
+    const float* const value = first + from * stride;
+    const double* const before = &sums[static_cast<std::size_t>(i) * lines];
+    double* const after = &sums[static_cast<std::size_t>(i + 1) * lines];
+    for (int k = 0; k < lines; ++k) after[k] = before[k] + value[k];
   }
+  const double share = 1.0 / (2 * radius + 1);
   for (int i = 0; i < n; ++i) {
-    line[i * stride] = static_cast<float>((sums[i + 2 * radius + 1] - sums[i]) / (2 * radius + 1));
+    const double* const low = &sums[static_cast<std::size_t>(i) * lines];
+    const double* const high = &sums[static_cast<std::size_t>(i + 2 * radius + 1) * lines];
+    float* const mean = first + i * stride;
+    for (int k = 0; k < lines; ++k) mean[k] = static_cast<float>((high[k] - low[k]) * share);
   }
 }
 
@@ -357,15 +367,23 @@ Raster sample_majority(const MapFrame& frame, std::span<const std::int8_t> categ
     std::array<float, 256> share{};
     for (int x = 0; x < frame.width(); ++x) {
       int low = 255, high = 0;
-      for (int j = rows.begin[y]; j < rows.begin[y + 1]; ++j) {
-        const Index base = rows.index[j] * frame.grid().nx();
-        for (int i = columns.begin[x]; i < columns.begin[x + 1]; ++i) {
-          const int category = categories[base + columns.index[i]] + 128;
-          share[category] += rows.weight[j] * columns.weight[i];
-          low = std::min(low, category);
-          high = std::max(high, category);
+      const auto for_cells = [&](const auto& visit) {
+        for (int j = rows.begin[y]; j < rows.begin[y + 1]; ++j) {
+          const Index base = rows.index[j] * frame.grid().nx();
+          for (int i = columns.begin[x]; i < columns.begin[x + 1]; ++i) {
+            visit(categories[base + columns.index[i]] + 128, rows.weight[j] * columns.weight[i]);
+          }
         }
+      };
+      for_cells([&](int category, float) {
+        low = std::min(low, category);
+        high = std::max(high, category);
+      });
+      if (low == high) {
+        out.at(x, y) = static_cast<float>(low - 128);
+        continue;
       }
+      for_cells([&](int category, float weight) { share[category] += weight; });
       const auto first = share.begin() + low, last = share.begin() + high + 1;
       out.at(x, y) = static_cast<float>(std::max_element(first, last) - share.begin() - 128);
       std::fill(first, last, 0.0F);
@@ -383,18 +401,26 @@ struct BlurReach {
 };
 
 void blur_thrice(const MapFrame& frame, Raster& raster, const BlurReach& reach) {
+  const bool wraps_north = frame.is_aligned() && frame.grid().topology() == Topology::torus;
   for (int pass = 0; pass < 3; ++pass) {
 #pragma omp parallel
     {
       std::vector<double> sums;
 #pragma omp for schedule(static)
       for (int y = 0; y < raster.height; ++y) {
-        box_line(&raster.at(0, y), raster.width, 1, reach.rows[y], frame.wraps_east(), sums);
+        box_lines<1>(&raster.at(0, y), raster.width, 1, reach.rows[y], frame.wraps_east(), sums);
+      }
+      constexpr int kBundle = 16;
+      const int bundles = raster.width / kBundle;
+#pragma omp for schedule(static)
+      for (int i = 0; i < bundles; ++i) {
+        box_lines<kBundle>(&raster.at(kBundle * i, 0), raster.height, raster.width, reach.columns,
+                           wraps_north, sums);
       }
 #pragma omp for schedule(static)
-      for (int x = 0; x < raster.width; ++x) {
-        box_line(&raster.at(x, 0), raster.height, raster.width, reach.columns,
-                 frame.is_aligned() && frame.grid().topology() == Topology::torus, sums);
+      for (int x = kBundle * bundles; x < raster.width; ++x) {
+        box_lines<1>(&raster.at(x, 0), raster.height, raster.width, reach.columns, wraps_north,
+                     sums);
       }
     }
   }
@@ -430,15 +456,27 @@ Raster blur(const MapFrame& frame, const Raster& raster, double radius_px) {
   return out;
 }
 
-float change_per_pixel(const Raster& raster, int x, int y) {
-  const int west = raster.west_of(x), east = raster.east_of(x);
-  const int above = std::max(y - 1, 0), below = std::min(y + 1, raster.height - 1);
-  const float columns = west == x || east == x ? 1.0F : 2.0F;
-  const float across = std::abs(raster.at(east, y) - raster.at(west, y)) / columns;
-  const float down = std::abs(raster.at(x, below) - raster.at(x, above)) /
-                     static_cast<float>(std::max(below - above, 1));
-  const float change = std::max(across, down);
-  return change == change ? change : 0.0F;
+void change_per_pixel(const Raster& raster, int y, std::vector<float>& change) {
+  const int width = raster.width, above = std::max(y - 1, 0),
+            below = std::min(y + 1, raster.height - 1);
+  const float* const here = &raster.values[static_cast<std::size_t>(y) * width];
+  const float* const up = &raster.values[static_cast<std::size_t>(above) * width];
+  const float* const down = &raster.values[static_cast<std::size_t>(below) * width];
+  const float per_row = below - above == 2 ? 0.5F : 1.0F;
+  change.resize(width);
+  float* const out = change.data();
+  const auto larger = [&](int x, int west, int east, float per_column) {
+    const float across = std::abs(here[east] - here[west]) * per_column;
+    const float along = std::abs(down[x] - up[x]) * per_row;
+    const float most = across < along ? along : across;
+    out[x] = most == most ? most : 0.0F;
+  };
+#pragma omp simd
+  for (int x = 1; x < width - 1; ++x) larger(x, x - 1, x + 1, 0.5F);
+  for (const int x : {0, width - 1}) {
+    const int west = raster.west_of(x), east = raster.east_of(x);
+    larger(x, west, east, west == x || east == x ? 1.0F : 0.5F);
+  }
 }
 
 }  // namespace geo::io

@@ -15,50 +15,54 @@ double vertical_exaggeration(double pixel_m) {
   return std::max(1.0, std::pow(pixel_m / 30.0, 0.45));
 }
 
+// Shade of ground by how it rises away from the light, which is 45 degrees high, and by the square
+// of its slope, both exaggerated: from -1 to 1, 0 where flat.
+float facing_light(float from_light, float squared) {
+  constexpr float kMost = 0.41421356F;  // sqrt(2) - 1
+  const float relative = (1.0F + from_light) / std::sqrt(1.0F + squared) - 1.0F;
+  return std::clamp(relative > 0.0F ? relative / kMost : relative, -1.0F, 1.0F);
+}
+
+// On aligned pages slopes are measured on the ground: towards the poles, where pixels narrow, over
+// as many pixels as one is high.
+void shade_aligned_row(const MapFrame& frame, const Raster& height_m, double exaggeration, int y,
+                       float* shade) {
+  const int width = height_m.width, above = std::max(y - 1, 0),
+            below = std::min(y + 1, height_m.height - 1);
+  const double east_m = std::max(frame.pixel_east_m(y), 1e-3), north_m = frame.pixel_north_m(y);
+  const int reach =
+      std::clamp(static_cast<int>(std::lround(north_m / east_m)), 1, std::max(1, width / 8));
+  const float *const here = height_m.row(y), *const up = height_m.row(above),
+                     *const down = height_m.row(below);
+  const auto per_row = static_cast<float>(exaggeration / (north_m * std::max(below - above, 1)));
+  const auto lit = [&](int x, int west, int east, float per_column) {
+    const float rise_east = (here[east] - here[west]) * per_column;
+    const float rise_north = (up[x] - down[x]) * per_row;
+    shade[x] = facing_light((rise_east - rise_north) * 0.70710678F,
+                            rise_east * rise_east + rise_north * rise_north);
+  };
+  const auto over = [&](int columns) {
+    return static_cast<float>(exaggeration / (east_m * std::max(columns, 1)));
+  };
+  const float inside = over(2 * reach);
+#pragma omp simd
+  for (int x = reach; x < width - reach; ++x) lit(x, x - reach, x + reach, inside);
+  const auto at_edge = [&](int x) {
+    if (frame.wraps_east()) {
+      lit(x, (x - reach + width) % width, (x + reach) % width, inside);
+    } else {
+      const int west = std::max(x - reach, 0), east = std::min(x + reach, width - 1);
+      lit(x, west, east, over(east - west));
+    }
+  };
+  for (int x = 0; x < reach; ++x) at_edge(x);
+  for (int x = std::max(reach, width - reach); x < width; ++x) at_edge(x);
+}
+
 // How steeply the ground rises away from the light, which falls from the upper left of the page,
 // and the square of its slope.
 struct Slope {
   double from_light, squared;
-};
-
-// Slopes are measured on the ground: towards the poles of an aligned page, where pixels narrow,
-// over as many pixels as one is high.
-class AlignedSlopes {
- public:
-  AlignedSlopes(const MapFrame& frame, const Raster& height_m) : frame_(frame), height_(height_m) {}
-
-  void start_row(int y) {
-    y_ = y;
-    east_m_ = std::max(frame_.pixel_east_m(y), 1e-3);
-    const double north_m = frame_.pixel_north_m(y);
-    reach_ = std::clamp(static_cast<int>(std::lround(north_m / east_m_)), 1,
-                        std::max(1, height_.width / 8));
-    above_ = std::max(y - 1, 0);
-    below_ = std::min(y + 1, height_.height - 1);
-    per_north_ = 1.0 / (north_m * std::max(below_ - above_, 1));
-  }
-  [[nodiscard]] Slope at(int x) const {
-    int west = x - reach_, east = x + reach_;
-    if (frame_.wraps_east()) {
-      west = (west + height_.width) % height_.width;
-      east %= height_.width;
-    } else {
-      west = std::max(west, 0);
-      east = std::min(east, height_.width - 1);
-    }
-    const int columns = frame_.wraps_east() ? 2 * reach_ : east - west;
-    const double rise_east =
-        (height_.at(east, y_) - height_.at(west, y_)) / (east_m_ * std::max(columns, 1));
-    const double rise_north = (height_.at(x, above_) - height_.at(x, below_)) * per_north_;
-    return {(rise_east - rise_north) * std::sqrt(0.5),
-            rise_east * rise_east + rise_north * rise_north};
-  }
-
- private:
-  const MapFrame& frame_;
-  const Raster& height_;
-  int y_ = 0, reach_ = 1, above_ = 0, below_ = 0;
-  double east_m_ = 1.0, per_north_ = 1.0;
 };
 
 // On projected pages: the slope on the ground from the rise along the page's two axes and the
@@ -105,22 +109,23 @@ class ProjectedSlopes {
 };
 
 // Lambert shading under a light from the upper left of the page, 45 degrees high.
-template <class Slopes>
 Raster lambert(const MapFrame& frame, const Raster& height_m, double exaggeration) {
   Raster out(frame);
 #pragma omp parallel
   {
-    Slopes slopes(frame, height_m);
+    ProjectedSlopes slopes(frame, height_m);
 #pragma omp for schedule(static)
     for (int y = 0; y < out.height; ++y) {
+      if (frame.is_aligned()) {
+        shade_aligned_row(frame, height_m, exaggeration, y, &out.at(0, y));
+        continue;
+      }
       slopes.start_row(y);
       for (int x = 0; x < out.width; ++x) {
         const Slope slope = slopes.at(x);
-        const double facing = (1.0 + exaggeration * slope.from_light) /
-                              std::sqrt(1.0 + exaggeration * exaggeration * slope.squared);
-        const double relative = facing - 1.0;  // -1 (and less, away from the light) to sqrt(2) - 1
-        out.at(x, y) = static_cast<float>(
-            std::clamp(relative > 0.0 ? relative / (std::sqrt(2.0) - 1.0) : relative, -1.0, 1.0));
+        out.at(x, y) =
+            facing_light(static_cast<float>(exaggeration * slope.from_light),
+                         static_cast<float>(exaggeration * exaggeration * slope.squared));
       }
     }
   }
@@ -138,8 +143,7 @@ Raster shade_of(const MapFrame& frame, const Raster& height_m) {
   for (std::size_t i = 0; i < both.values.size(); ++i) both.values[i] += 0.7F * broad.values[i];
   const double pixel_m = frame.pixel_m();
   const double exaggeration = vertical_exaggeration(pixel_m);
-  Raster shade = frame.is_aligned() ? lambert<AlignedSlopes>(frame, both, exaggeration)
-                                    : lambert<ProjectedSlopes>(frame, both, exaggeration);
+  Raster shade = lambert(frame, both, exaggeration);
   const auto scale = static_cast<float>(exaggeration / (kBroadPx * pixel_m));
 #pragma omp parallel for schedule(static)
   for (std::size_t i = 0; i < shade.values.size(); ++i) {
@@ -156,20 +160,33 @@ float lowest_around(const Raster& raster, int x, int y) {
                    raster.at(x, std::min(y + 1, raster.height - 1))});
 }
 
+/// Calls `visit(y, change per pixel along that row)` for all rows, at the same time.
+template <class Visit>
+void for_rows_with_change(const Raster& raster, const Visit& visit) {
+#pragma omp parallel
+  {
+    std::vector<float> change;
+#pragma omp for schedule(static)
+    for (int y = 0; y < raster.height; ++y) {
+      change_per_pixel(raster, y, change);
+      visit(y, change);
+    }
+  }
+}
+
 // Where pixels are finer than cells, the coast is the zero line of the interpolated relief, drawn
 // half a pixel to either side. Land that is level with the sea has a coast only where it meets it.
 void split_fine(const Raster& relief, MapBase& base) {
-#pragma omp parallel for schedule(static)
-  for (int y = 0; y < relief.height; ++y) {
+  for_rows_with_change(relief, [&](int y, const std::vector<float>& change) {
     for (int x = 0; x < relief.width; ++x) {
       const float elevation = relief.at(x, y);
-      const float width = std::max(change_per_pixel(relief, x, y), 1e-3F);
+      const float width = std::max(change[x], 1e-3F);
       const bool all_land = lowest_around(relief, x, y) >= 0.0F;
       base.land_cover.at(x, y) = all_land ? 1.0F : std::clamp(0.5F + elevation / width, 0.0F, 1.0F);
       base.land_m.at(x, y) = std::max(elevation, 0.0F);
       base.sea_m.at(x, y) = std::min(elevation, 0.0F);
     }
-  }
+  });
 }
 
 void split_coarse(const MapFrame& frame, std::span<const float> elevation, MapBase& base) {
@@ -202,50 +219,64 @@ void shade_land_and_sea(const MapFrame& frame, const Raster& relief, MapBase& ba
 
 Raster lakes(const MapFrame& frame, std::span<const float> depth_m) {
   const auto filter = frame.is_coarser() ? Filter::linear : Filter::smooth;
-  auto wet = sample(frame, filter, [&](Index i) { return depth_m[i] > 0.0F ? 1.0F : 0.0F; }).mean;
+  auto wet = sample_mean(frame, filter, [&](Index i) { return depth_m[i] > 0.0F ? 1.0F : 0.0F; });
   if (frame.is_coarser()) return wet;
   Raster cover = wet;
-#pragma omp parallel for schedule(static)
-  for (int y = 0; y < wet.height; ++y) {
+  for_rows_with_change(wet, [&](int y, const std::vector<float>& change) {
     for (int x = 0; x < wet.width; ++x) {
-      const float width = std::max(change_per_pixel(wet, x, y), 1e-3F);
+      const float width = std::max(change[x], 1e-3F);
       cover.at(x, y) = std::clamp(0.5F + (wet.at(x, y) - 0.5F) / width, 0.0F, 1.0F);
     }
-  }
+  });
   return cover;
 }
 
 }  // namespace
 
 MapBase make_base(const MapFrame& frame, const State& state) {
-  const int width = frame.width(), height = frame.height();
   MapBase base{Raster(frame, 1.0F), Raster(frame), Raster(frame),
                Raster(frame),       Raster(frame), Raster()};
   if (state.has(field::lake_depth)) base.lake_cover = lakes(frame, state.read(field::lake_depth));
   if (!state.has(field::elevation)) return base;
 
   const auto elevation = state.read(field::elevation);
-  const Raster relief = sample(frame, Filter::smooth, [&](Index i) { return elevation[i]; }).mean;
+  const Raster relief = sample_mean(frame, Filter::smooth, [&](Index i) { return elevation[i]; });
   if (frame.is_coarser()) {
     split_coarse(frame, elevation, base);
   } else {
     split_fine(relief, base);
   }
   shade_land_and_sea(frame, relief, base);
-#pragma omp parallel for schedule(static)
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      base.coast.at(x, y) = std::min(1.0F, 1.6F * change_per_pixel(base.land_cover, x, y));
+  for_rows_with_change(base.land_cover, [&](int y, const std::vector<float>& change) {
+    for (int x = 0; x < base.coast.width; ++x) {
+      base.coast.at(x, y) = std::min(1.0F, 1.6F * change[x]);
     }
-  }
+  });
   return base;
 }
 
-Rgb lit(Rgb colour, float shade, float strength) {
+void shade(ColourRow& row, const MapBase& base, int y) {
   constexpr Rgb kDark{0.09F, 0.11F, 0.20F};
   constexpr Rgb kLight{1.0F, 0.99F, 0.95F};
-  return shade < 0.0F ? mix(colour, kDark, -0.85F * shade * strength)
-                      : mix(colour, kLight, 0.75F * shade * strength);
+  const float* const shade = base.shade.row(y);
+  const float* const strength = row.light.data();
+  float *const r = row.r.data(), *const g = row.g.data(), *const b = row.b.data();
+#pragma omp simd
+  for (std::size_t x = 0; x < row.r.size(); ++x) {
+    const bool dark = shade[x] < 0.0F;
+    const float t = (dark ? -0.85F : 0.75F) * shade[x] * strength[x];
+    r[x] += t * ((dark ? kDark.r : kLight.r) - r[x]);
+    g[x] += t * ((dark ? kDark.g : kLight.g) - g[x]);
+    b[x] += t * ((dark ? kDark.b : kLight.b) - b[x]);
+  }
+}
+
+void draw_coast(ColourRow& row, const MapBase& base, int y, float strength) {
+  mix_in(row, kInk, base.coast.row(y), strength);
+}
+
+void fill_lakes(ColourRow& row, const MapBase& base, int y) {
+  if (!base.lake_cover.values.empty()) mix_in(row, kLake, base.lake_cover.row(y), 1.0F);
 }
 
 }  // namespace geo::io

@@ -21,8 +21,13 @@ struct MapBase {
 /// Base of a state; flat land throughout when it has no elevation.
 MapBase make_base(const MapFrame& frame, const State& state);
 
-/// A colour under the light: white is mixed in where shade > 0, a bluish dark where it is < 0.
-/// Flat ground keeps its colour.
-Rgb lit(Rgb colour, float shade, float strength);
+/// The colours of a row under the light, each as strongly as it says: white is mixed in where shade
+/// > 0, a bluish dark where it is < 0. Flat ground keeps its colour.
+void shade(ColourRow& row, const MapBase& base, int y);
+/// A row with the coastline over it, and with lakes.
+void draw_coast(ColourRow& row, const MapBase& base, int y, float strength);
+void fill_lakes(ColourRow& row, const MapBase& base, int y);
+
+inline constexpr Rgb kLake{0.49F, 0.68F, 0.82F};
 
 }  // namespace geo::io

@@ -30,27 +30,6 @@ std::vector<float> flow_of(const State& state) {
   return {area.begin(), area.end()};
 }
 
-// What decides which rivers are drawn: (Q^2 A)^(1/3). By discharge alone wet lands would have all
-// the lines, by area alone deserts as many.
-std::vector<float> rank_of(const State& state, const std::vector<float>& flow) {
-  std::vector<float> rank = flow;
-  if (state.has(field::discharge) && state.has(field::drainage_area)) {
-    const auto area = state.read(field::drainage_area);
-    for (std::size_t i = 0; i < rank.size(); ++i) {
-      rank[i] = std::cbrt(flow[i] * flow[i] * static_cast<float>(area[i]));
-    }
-  }
-  if (state.has(field::temperature)) {
-    // What ice sheets lose flows as ice: no rivers there.
-    constexpr float kIce_c = -15.0F;
-    const auto temperature = state.read(field::temperature);
-    for (std::size_t i = 0; i < rank.size(); ++i) {
-      if (temperature[i] < kIce_c) rank[i] = 0.0F;
-    }
-  }
-  return rank;
-}
-
 struct Step {
   int columns, rows;
 };
@@ -69,7 +48,6 @@ class Tracer {
         grid_(frame.grid()),
         receiver_(state.read(field::flow_receiver)),
         flow_(flow_of(state)),
-        rank_(rank_of(state, flow_)),
         // Lines of small maps are relatively wider and need more room.
         pixel_m_(frame.pixel_m() * map_unit(frame.width())) {
     if (state.has(field::drainage_area)) area_m2_ = state.read(field::drainage_area);
@@ -77,6 +55,7 @@ class Tracer {
     source_m2_ = std::pow(std::max(kSourcePx * pixel_m_, kSourceCells * cell_m), 2);
     if (state.has(field::elevation)) elevation_ = state.read(field::elevation);
     if (state.has(field::lake_depth)) lake_depth_ = state.read(field::lake_depth);
+    set_rank(state);
     if (!frame.is_aligned()) projector_.emplace(frame.page());
   }
 
@@ -103,15 +82,29 @@ class Tracer {
   }
 
  private:
+  // What decides which rivers are drawn: (Q^2 A)^(1/3). By discharge alone wet lands would have all
+  // the lines, by area alone deserts as many. 0 where none can be.
+  void set_rank(const State& state) {
+    constexpr float kIce_c = -15.0F;  // what ice sheets lose flows as ice
+    const bool both = state.has(field::discharge) && state.has(field::drainage_area);
+    const auto temperature =
+        state.has(field::temperature) ? state.read(field::temperature) : std::span<const float>{};
+    rank_.assign(flow_.size(), 0.0F);
+    for (Index i = 0; i < grid_.size(); ++i) {
+      const Index to = receiver_[i];
+      if (to < 0 || to == i || !is_land(i) || (!area_m2_.empty() && area_m2_[i] < source_m2_) ||
+          (!temperature.empty() && temperature[i] < kIce_c)) {
+        continue;
+      }
+      rank_[i] = both ? std::cbrt(flow_[i] * flow_[i] * static_cast<float>(area_m2_[i])) : flow_[i];
+    }
+  }
+
   [[nodiscard]] bool is_land(Index i) const { return elevation_.empty() || elevation_[i] >= 0.0F; }
   [[nodiscard]] bool is_lake(Index i) const {
     return !lake_depth_.empty() && lake_depth_[i] > 0.0F;
   }
-  [[nodiscard]] bool is_river(Index i) const {
-    const Index to = receiver_[i];
-    return to >= 0 && to != i && rank_[i] > 0.0F && is_land(i) &&
-           (area_m2_.empty() || area_m2_[i] >= source_m2_);
-  }
+  [[nodiscard]] bool is_river(Index i) const { return rank_[i] > 0.0F; }
   [[nodiscard]] bool is_drawn(Index i) const {
     return is_river(i) && rank_[i] >= least_rank_ && !(is_lake(i) && is_lake(receiver_[i]));
   }

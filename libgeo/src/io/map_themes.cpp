@@ -13,7 +13,6 @@ namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr Rgb kRiver{0.16F, 0.39F, 0.62F};
-constexpr Rgb kLake{0.49F, 0.68F, 0.82F};
 
 constexpr std::array<FieldMap, 6> kFieldMaps{{
     {&field::temperature, "temperature", "Temperature", "annual mean near the surface, °C",
@@ -49,35 +48,49 @@ constexpr std::array<CategoryMap, 3> kCategoryMaps{{
 std::span<const FieldMap> field_maps() { return kFieldMaps; }
 std::span<const CategoryMap> category_maps() { return kCategoryMaps; }
 
-Rgb with_coast(const MapBase& base, int x, int y, Rgb colour) {
-  return mix(colour, kInk, 0.6F * base.coast.at(x, y));
-}
-
 namespace {
 
-Rgb with_lakes(const MapBase& base, int x, int y, Rgb colour) {
-  return base.lake_cover.values.empty() ? colour : mix(colour, kLake, base.lake_cover.at(x, y));
+/// Between sea and land by the share of the pixel that is land.
+template <class Sea, class Land>
+Rgb by_cover(float cover, const Sea& sea, const Land& land) {
+  if (cover == 0.0F) return sea();
+  return cover == 1.0F ? land() : mix(sea(), land(), cover);
 }
 
 // Hypsometric colours that break at the shore, under the light.
 void paint_relief(const Scene& scene, MapCanvas& canvas, const ColourMap& sea,
                   const ColourMap& land) {
   const MapBase& base = scene.base;
-  canvas.paint([&](int x, int y) {
-    const float cover = base.land_cover.at(x, y);
-    const Rgb tint = mix(sea.smooth(base.sea_m.at(x, y)), land.smooth(base.land_m.at(x, y)), cover);
-    const Rgb shaded = lit(tint, base.shade.at(x, y), 0.42F + 0.36F * cover);
-    return with_lakes(base, x, y, mix(shaded, kInk, 0.25F * base.coast.at(x, y)));
+  canvas.paint_rows([&](int y, ColourRow& row) {
+    for (int x = 0; x < base.shade.width; ++x) {
+      const float cover = base.land_cover.at(x, y);
+      const Rgb tint = by_cover(
+          cover, [&] { return sea.smooth(base.sea_m.at(x, y)); },
+          [&] { return land.smooth(base.land_m.at(x, y)); });
+      row.set(x, tint, 0.42F + 0.36F * cover);
+    }
+    shade(row, base, y);
+    draw_coast(row, base, y, 0.25F);
+    fill_lakes(row, base, y);
   });
+}
+
+/// The paper of the sea over what is no land.
+void fade_sea(ColourRow& row, const MapBase& base, int y) {
+  const float* const cover = base.land_cover.row(y);
+  for (std::size_t x = 0; x < row.r.size(); ++x) {
+    row.r[x] = kPaleSea.r + cover[x] * (row.r[x] - kPaleSea.r);
+    row.g[x] = kPaleSea.g + cover[x] * (row.g[x] - kPaleSea.g);
+    row.b[x] = kPaleSea.b + cover[x] * (row.b[x] - kPaleSea.b);
+  }
 }
 
 /// Values of a field where its map shows it, NaN elsewhere.
 Raster sample_extent(const FieldMap& map, const Scene& scene) {
   const auto values = scene.state.read(*map.field);
   const auto where = [&](const auto& shown) {
-    return sample(scene.frame, Filter::linear,
-                  [&](Index i) { return shown(i) ? map.scale * values[i] : kNaN; })
-        .mean;
+    return sample_mean(scene.frame, Filter::linear,
+                       [&](Index i) { return shown(i) ? map.scale * values[i] : kNaN; });
   };
   if (map.extent == Extent::ocean_floor && scene.state.has(field::continental_fraction)) {
     const auto continent = scene.state.read(field::continental_fraction);
@@ -111,17 +124,22 @@ void draw_field(const FieldMap& map, const Scene& scene, MapCanvas& canvas) {
   for (float& value : position.values) {
     if (value == value) value = colours.position(value);
   }
-  canvas.paint([&](int x, int y) {
-    const float at = position.at(x, y), cover = base.land_cover.at(x, y);
-    const float shade = base.shade.at(x, y);
-    Rgb colour =
-        map.extent == Extent::ocean_floor ? lit(kPaleLand, shade, 0.12F + 0.4F * cover) : kPaleSea;
-    if (at == at) {
-      colour = colours.classed(at, change_per_pixel(position, x, y));
-      colour = lit(colour, shade, 0.06F + 0.36F * cover);
-      if (map.extent == Extent::land) colour = mix(kPaleSea, colour, cover);
+  std::vector<float> change;
+  canvas.paint_rows([&](int y, ColourRow& row) {
+    change_per_pixel(position, y, change);
+    for (int x = 0; x < position.width; ++x) {
+      const float at = position.at(x, y), cover = base.land_cover.at(x, y);
+      if (at == at) {
+        row.set(x, colours.classed(at, change[x]), 0.06F + 0.36F * cover);
+      } else if (map.extent == Extent::ocean_floor) {
+        row.set(x, kPaleLand, 0.12F + 0.4F * cover);
+      } else {
+        row.set(x, kPaleSea);
+      }
     }
-    return with_coast(base, x, y, colour);
+    shade(row, base, y);
+    if (map.extent == Extent::land) fade_sea(row, base, y);
+    draw_coast(row, base, y, 0.6F);
   });
   canvas.frame();
   const std::array<const ColourMap*, 1> maps{&colours};
@@ -130,17 +148,23 @@ void draw_field(const FieldMap& map, const Scene& scene, MapCanvas& canvas) {
 
 void draw_categories(const CategoryMap& map, const Scene& scene, MapCanvas& canvas) {
   const ColourMap colours(map.field->name);
-  const auto colour_of = [&](int value) {
-    const auto* stop = colours.category(value);
-    return stop != nullptr ? stop->colour : kFaintInk;
-  };
+  std::array<Rgb, 256> of_bytes{};
+  for (int byte = 0; byte < 256; ++byte) {
+    const auto* stop = colours.category(byte - 128);
+    of_bytes[byte] = stop != nullptr ? stop->colour : kFaintInk;
+  }
+  const auto colour_of = [&](int value) { return of_bytes[value + 128]; };
   const Raster category = sample_majority(scene.frame, scene.state.read(*map.field));
   const MapBase& base = scene.base;
-  canvas.paint([&](int x, int y) {
-    const float faded = map.pale_sea * (1.0F - base.land_cover.at(x, y));
-    const Rgb colour = mix(colour_of(static_cast<int>(category.at(x, y))), kPaleSea, faded);
-    const Rgb shaded = lit(colour, base.shade.at(x, y), 0.34F * base.land_cover.at(x, y));
-    return mix(shaded, kInk, 0.4F * base.coast.at(x, y));
+  canvas.paint_rows([&](int y, ColourRow& row) {
+    for (int x = 0; x < category.width; ++x) {
+      if (!scene.frame.shows(x, y)) continue;
+      const float cover = base.land_cover.at(x, y);
+      const Rgb colour = colour_of(static_cast<int>(category.at(x, y)));
+      row.set(x, mix(colour, kPaleSea, map.pale_sea * (1.0F - cover)), 0.34F * cover);
+    }
+    shade(row, base, y);
+    draw_coast(row, base, y, 0.4F);
   });
   canvas.frame();
   std::vector<std::pair<Rgb, std::string>> items;
@@ -155,12 +179,20 @@ void draw_categories(const CategoryMap& map, const Scene& scene, MapCanvas& canv
 void draw_river_map(const Scene& scene, MapCanvas& canvas) {
   const ColourMap sea("sea_depth"), heights("land_elevation");
   const MapBase& base = scene.base;
-  canvas.paint([&](int x, int y) {
-    const float cover = base.land_cover.at(x, y), shade = base.shade.at(x, y);
-    const Rgb water = lit(mix(sea.smooth(base.sea_m.at(x, y)), {1, 1, 1}, 0.6F), shade, 0.12F);
-    const Rgb tint = mix(kPaleLand, heights.smooth(base.land_m.at(x, y)), 0.28F);
-    const Rgb land = lit(tint, shade, 0.62F);
-    return with_lakes(base, x, y, with_coast(base, x, y, mix(water, land, cover)));
+  canvas.paint_rows([&](int y, ColourRow& row) {
+    for (int x = 0; x < base.shade.width; ++x) {
+      const float cover = base.land_cover.at(x, y);
+      const Rgb tint = by_cover(
+          cover,
+          [&] {
+            return mix(sea.smooth(base.sea_m.at(x, y)), {1, 1, 1}, 0.6F);
+          },
+          [&] { return mix(kPaleLand, heights.smooth(base.land_m.at(x, y)), 0.28F); });
+      row.set(x, tint, 0.12F + 0.5F * cover);
+    }
+    shade(row, base, y);
+    draw_coast(row, base, y, 0.6F);
+    fill_lakes(row, base, y);
   });
   const RiverNetwork rivers = trace_rivers(scene.frame, scene.state);
   draw_rivers(canvas, rivers, kRiver);
@@ -172,10 +204,12 @@ void draw_wind(const Scene& scene, MapCanvas& canvas) {
   const ColourMap colours("wind_speed");
   const WindRasters wind = sample_wind(scene.frame, scene.state);
   const MapBase& base = scene.base;
-  canvas.paint([&](int x, int y) {
-    const Rgb colour = colours.smooth(wind.speed.at(x, y));
-    return with_coast(base, x, y,
-                      lit(colour, base.shade.at(x, y), 0.25F * base.land_cover.at(x, y)));
+  canvas.paint_rows([&](int y, ColourRow& row) {
+    for (int x = 0; x < base.shade.width; ++x) {
+      row.set(x, colours.smooth(wind.speed.at(x, y)), 0.25F * base.land_cover.at(x, y));
+    }
+    shade(row, base, y);
+    draw_coast(row, base, y, 0.6F);
   });
   draw_wind_arrows(canvas, wind, scene.frame.wraps_east());
   canvas.frame();

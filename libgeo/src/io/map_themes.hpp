@@ -50,8 +50,6 @@ void draw_wind(const Scene& scene, MapCanvas& canvas);
 /// Relief with contours, rivers and lakes over it.
 void draw_island(const Scene& scene, MapCanvas& canvas);
 
-/// The coastline over a colour.
-Rgb with_coast(const MapBase& base, int x, int y, Rgb colour);
 /// Paper where a field says nothing: the sea, and land.
 inline constexpr Rgb kPaleSea{0.85F, 0.90F, 0.925F};
 inline constexpr Rgb kPaleLand{0.945F, 0.935F, 0.905F};

@@ -88,15 +88,14 @@ WindRasters sample_wind(const MapFrame& frame, const State& state) {
   const auto sampled = [&](const Field<float>& component) {
     const auto values = state.read(component);
     // Air that is not there moves nothing.
-    return sample(frame, Filter::linear,
-                  [&](Index i) { return values[i] == values[i] ? values[i] : 0.0F; })
-        .mean;
+    return sample_mean(frame, Filter::linear,
+                       [&](Index i) { return values[i] == values[i] ? values[i] : 0.0F; });
   };
   WindRasters wind{sampled(field::wind_east), sampled(field::wind_north), Raster(frame)};
   for (int y = 0; y < frame.height(); ++y) {
     for (int x = 0; x < frame.width(); ++x) {
       const float east = wind.right.at(x, y), north = wind.down.at(x, y);
-      wind.speed.at(x, y) = std::hypot(east, north);
+      wind.speed.at(x, y) = std::sqrt(east * east + north * north);
       if (!frame.shows(x, y)) continue;
       const PagePoint way = frame.on_page(x, y, east, north);
       wind.right.at(x, y) = static_cast<float>(way.x);

@@ -113,6 +113,14 @@ std::vector<const FieldSpec*> map_fields() {
   return fields;
 }
 
+std::vector<const FieldSpec*> island_map_fields() {
+  std::vector<const FieldSpec*> fields{&field::elevation,     &field::lake_depth,
+                                       &field::flow_receiver, &field::drainage_area,
+                                       &field::discharge,     &field::temperature};
+  for (const auto& map : category_maps()) fields.push_back(map.field);
+  return fields;
+}
+
 namespace {
 
 /// The pictures that would be drawn.

@@ -10,7 +10,6 @@
 #include <memory>
 #include <new>
 #include <span>
-#include <vector>
 
 #include "geo/io/atomic_file.hpp"
 
@@ -23,33 +22,43 @@ static_assert(std::endian::native == std::endian::little, "Cairo's pixels are re
 constexpr int kCompression = 1;
 constexpr int kComponents = 3;
 
+/// Bytes that nothing sets before they are written.
+struct Bytes {
+  explicit Bytes(std::size_t most)
+      : data(std::make_unique_for_overwrite<std::uint8_t[]>(most)), size(most) {}
+  std::unique_ptr<std::uint8_t[]> data;
+  std::size_t size;
+};
+
 /// Rows of R G B behind their filter type: 1, each byte less that of the pixel to the west.
-std::vector<std::uint8_t> filtered(const PixelView& pixels) {
+Bytes filtered(const PixelView& pixels) {
   const std::size_t row_bytes = 1 + static_cast<std::size_t>(pixels.width) * kComponents;
-  std::vector<std::uint8_t> rows(row_bytes * pixels.height);
+  Bytes rows(row_bytes * pixels.height);
   for (int y = 0; y < pixels.height; ++y) {
     const std::uint8_t* from = pixels.data + static_cast<std::ptrdiff_t>(y) * pixels.stride_bytes;
-    std::uint8_t* to = rows.data() + row_bytes * y;
+    std::uint8_t* to = rows.data.get() + row_bytes * y;
     *to++ = PNG_FILTER_VALUE_SUB;
-    std::array<std::uint8_t, kComponents> west{};
-    for (int x = 0; x < pixels.width; ++x, from += 4) {
-      for (int c = 0; c < kComponents; ++c) {
-        const std::uint8_t here = from[kComponents - 1 - c];
-        *to++ = static_cast<std::uint8_t>(here - west[c]);
-        west[c] = here;
-      }
+    std::uint8_t west[kComponents] = {0, 0, 0};
+    for (int x = 0; x < pixels.width; ++x, from += 4, to += kComponents) {
+      const std::uint8_t red = from[2], green = from[1], blue = from[0];
+      to[0] = static_cast<std::uint8_t>(red - west[0]);
+      to[1] = static_cast<std::uint8_t>(green - west[1]);
+      to[2] = static_cast<std::uint8_t>(blue - west[2]);
+      west[0] = red;
+      west[1] = green;
+      west[2] = blue;
     }
   }
   return rows;
 }
 
-std::vector<std::uint8_t> compressed(const std::vector<std::uint8_t>& rows) {
+Bytes compressed(const Bytes& rows) {
   const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> compressor(
       libdeflate_alloc_compressor(kCompression), &libdeflate_free_compressor);
   if (!compressor) throw std::bad_alloc();
-  std::vector<std::uint8_t> packed(libdeflate_zlib_compress_bound(compressor.get(), rows.size()));
-  packed.resize(libdeflate_zlib_compress(compressor.get(), rows.data(), rows.size(), packed.data(),
-                                         packed.size()));
+  Bytes packed(libdeflate_zlib_compress_bound(compressor.get(), rows.size));
+  packed.size = libdeflate_zlib_compress(compressor.get(), rows.data.get(), rows.size,
+                                         packed.data.get(), packed.size);
   return packed;
 }
 
@@ -93,7 +102,7 @@ void write_png(const std::filesystem::path& path, const PixelView& pixels) {
   AtomicFile file(path);
   std::FILE* stream = std::fopen(file.temporary().c_str(), "wb");
   if (stream == nullptr) file.fail("cannot open");
-  const bool written = write_chunks(stream, header, image);
+  const bool written = write_chunks(stream, header, {image.data.get(), image.size});
   if (std::fclose(stream) != 0 || !written) file.fail("the PNG library refused");
   file.commit();
 }

@@ -42,9 +42,13 @@ std::optional<Scorecard> scorecard_of(const State& state) {
 }
 
 State island_state(const RunFolder& folder, const StageRecord& record) {
-  const Snapshot snapshot = read_netcdf(folder.path() / netcdf_of(record));
+  const auto wanted = island_map_fields();
+  const Snapshot snapshot =
+      read_netcdf(folder.path() / netcdf_of(record), [&](const FieldSpec& spec) {
+        return std::find(wanted.begin(), wanted.end(), &spec) != wanted.end();
+      });
   State state(snapshot.grid);
-  for (const auto& [spec, values] : snapshot.fields) state.set(*spec, *values);
+  for (const auto& [spec, values] : snapshot.fields) state.share(*spec, values);
   return state;
 }
 

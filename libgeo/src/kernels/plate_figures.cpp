@@ -41,10 +41,12 @@ class Patches {
         patches_(grid_.size()) {
     const int nx = grid.nx(), ny = grid.ny();
     std::vector<std::int32_t> cells(patches_.size(), 0);
+    std::vector<int> columns(nx);
+    for (int i = 0; i < nx; ++i) columns[i] = scaled(i, grid_.nx(), nx);
     for (int j = 0; j < ny; ++j) {
       const int row = scaled(j, grid_.ny(), ny);
       for (int i = 0; i < nx; ++i) {
-        const Index from = grid.cell(i, j), to = grid_.cell(scaled(i, grid_.nx(), nx), row);
+        const Index from = grid.cell(i, j), to = grid_.cell(columns[i], row);
         Patch& patch = patches_[to];
         patch.continent += fields.continental_fraction[from];
         ++cells[to];
@@ -93,13 +95,25 @@ struct Side {
   double east = 0.0, north = 0.0, continent = 0.0;   // sums over its cells
   int cells = 0;
 
-  [[nodiscard]] double steepness() const { return std::hypot(gradient_east, gradient_north); }
+  [[nodiscard]] double steepness() const {
+    return std::sqrt(gradient_east * gradient_east + gradient_north * gradient_north);
+  }
   [[nodiscard]] bool is_continent() const { return continent >= 0.5 * cells; }
 };
 
 /// The plates around the corner above and to the right of a cell, and what joins them.
 class Corner {
  public:
+  static bool lies_within_a_plate(const Patches& patches, int column, int row) {
+    const std::int16_t plate = patches.at(column, row).plate;
+    for (int j = 0; j < kReach; ++j) {
+      for (int i = 0; i < kReach; ++i) {
+        if (patches.at(column - 1 + i, row - 1 + j).plate != plate) return false;
+      }
+    }
+    return true;
+  }
+
   Corner(const Patches& patches, int column, int row) {
     constexpr std::array kAcross{0.125, 0.375, 0.375, 0.125};  // 1:2:1 smoothing, halved cells
     constexpr std::array kAlong{-0.25, -0.25, 0.25, 0.25};     // its difference
@@ -124,7 +138,6 @@ class Corner {
                       [](const Side& a, const Side& b) { return a.steepness() > b.steepness(); });
   }
 
-  [[nodiscard]] bool has_boundary() const { return count_ > 1; }
   [[nodiscard]] double length_m() const {
     double sum = 0.0;
     for (int s = 0; s < count_; ++s) sum += sides_[s].steepness();
@@ -182,8 +195,8 @@ BoundaryFigures measure_boundaries(const Grid& grid, const PlateFields& plates) 
   BoundaryFigures figures;
   for (int row = 0; row + 1 < patches.grid().ny(); ++row) {
     for (int column = 0; column < patches.grid().nx(); ++column) {
+      if (Corner::lies_within_a_plate(patches, column, row)) continue;
       const Corner corner(patches, column, row);
-      if (!corner.has_boundary()) continue;
       const double length = corner.length_m();
       if (!corner.has_type()) {
         figures.untyped_m += length;
@@ -223,47 +236,54 @@ double speed_without_net_rotation(const Grid& grid, std::span<const float> veloc
   check_shape(grid, velocity_east.size(), "plate_velocity_east");
   check_shape(grid, velocity_north.size(), "plate_velocity_north");
   const int nx = grid.nx(), ny = grid.ny();
-  // Local east and north at a cell.
-  const auto axes = [&](int i, int j) {
-    const auto r = grid.to_axis(grid.unit_vector(i, j));
-    const double across = std::max(std::hypot(r[0], r[1]), 1e-300);
-    const std::array east{-r[1] / across, r[0] / across, 0.0};
-    const std::array north{-r[2] * east[1], r[2] * east[0], across};
-    return std::pair{east, north};
-  };
+  // Cosine and sine of the longitudes of the grid's own axis, distance from that axis and along it.
+  std::vector<std::array<double, 2>> circle(nx), meridian(ny);
+  for (int i = 0; i < nx; ++i) {
+    const auto r = grid.to_axis(grid.unit_vector(i, ny / 2));
+    const double across = std::sqrt(r[0] * r[0] + r[1] * r[1]);
+    circle[i] = {r[0] / across, r[1] / across};
+  }
+  for (int j = 0; j < ny; ++j) {
+    const auto r = grid.to_axis(grid.unit_vector(0, j));
+    meridian[j] = {std::sqrt(r[0] * r[0] + r[1] * r[1]), r[2]};
+  }
+  // Of each row: the sums of place x velocity, and of the squares of the speeds.
   std::vector<std::array<double, 3>> turn(ny);
+  std::vector<double> squares(ny);
 #pragma omp parallel for schedule(static)
   for (int j = 0; j < ny; ++j) {
-    std::array<double, 3> sum{};
+    double east_cosine = 0.0, east_sine = 0.0, east = 0.0, north_cosine = 0.0, north_sine = 0.0;
+    double square = 0.0;
     for (int i = 0; i < nx; ++i) {
-      const auto [east, north] = axes(i, j);
       const Index c = grid.cell(i, j);
-      for (int k = 0; k < 3; ++k)
-        sum[k] += velocity_east[c] * north[k] - velocity_north[c] * east[k];
+      const double u = velocity_east[c], v = velocity_north[c];
+      east += u;
+      east_cosine += u * circle[i][0];
+      east_sine += u * circle[i][1];
+      north_cosine += v * circle[i][0];
+      north_sine += v * circle[i][1];
+      square += u * u + v * v;
     }
-    turn[j] = sum;
+    const auto [across, along] = meridian[j];
+    turn[j] = {north_sine - along * east_cosine, -north_cosine - along * east_sine, across * east};
+    squares[j] = square;
   }
-  std::array<double, 3> net{};
-  for (int j = 0; j < ny; ++j) {
-    for (int k = 0; k < 3; ++k) net[k] += 1.5 * turn[j][k] * grid.area_m2(j) / grid.total_area_m2();
-  }
-  std::vector<double> squares(ny, 0.0);
-#pragma omp parallel for schedule(static)
-  for (int j = 0; j < ny; ++j) {
-    for (int i = 0; i < nx; ++i) {
-      const auto [east, north] = axes(i, j);
-      const Index c = grid.cell(i, j);
-      double u = velocity_east[c], v = velocity_north[c];
-      for (int k = 0; k < 3; ++k) {
-        u -= net[k] * north[k];
-        v += net[k] * east[k];
-      }
-      squares[j] += u * u + v * v;
-    }
-  }
+  std::array<double, 3> mean{};
   double sum = 0.0;
-  for (int j = 0; j < ny; ++j) sum += squares[j] * grid.area_m2(j);
-  return std::sqrt(sum / grid.total_area_m2());
+  for (int j = 0; j < ny; ++j) {
+    for (int k = 0; k < 3; ++k) mean[k] += turn[j][k] * grid.area_m2(j) / grid.total_area_m2();
+    sum += squares[j] * grid.area_m2(j);
+  }
+  // |v - w x r|^2 = |v|^2 - 2 w . (r x v) + |w|^2 - (w . r)^2, with w = 3/2 of the mean of r x v.
+  const std::array net{1.5 * mean[0], 1.5 * mean[1], 1.5 * mean[2]};
+  const double equatorial = net[0] * net[0] + net[1] * net[1], polar = net[2] * net[2];
+  for (int j = 0; j < ny; ++j) {
+    const auto [across, along] = meridian[j];
+    sum += nx * grid.area_m2(j) *
+           (equatorial * (1.0 - 0.5 * across * across) + polar * (1.0 - along * along));
+  }
+  for (int k = 0; k < 3; ++k) sum -= 2.0 * net[k] * mean[k] * grid.total_area_m2();
+  return std::sqrt(std::max(sum, 0.0) / grid.total_area_m2());
 }
 
 }  // namespace geo

@@ -185,6 +185,13 @@ class Blocks:
 
     def reduce(self, function, values):
         """A ufunc over the cells of each block."""
+        if self.is_even():  # cell by cell of all blocks, many times as fast
+            shifts = range(self.factor)
+            cells = [values[j :: self.factor, i :: self.factor] for j in shifts for i in shifts]
+            total = cells[0].copy()
+            for cell in cells[1:]:
+                function(total, cell, out=total)
+            return total
         return function.reduceat(
             function.reduceat(values, self.row_starts, axis=0), self.column_starts, axis=1
         )

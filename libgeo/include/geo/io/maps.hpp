@@ -46,8 +46,9 @@ MapLayout map_layout(const Grid& grid, const MapView& view = {});
 std::optional<std::array<double, 2>> position_on_map(const Grid& grid, const MapView& view,
                                                      Centre place);
 
-/// The fields that maps are drawn from.
+/// The fields that maps are drawn from, and those of islands.
 std::vector<const FieldSpec*> map_fields();
+std::vector<const FieldSpec*> island_map_fields();
 
 /// Draws the PNG maps that the fields of a state allow into a folder (created when absent), with
 /// title, units, legend and graticule: elevation, plates, crust_age, crust_thickness, rock_type,
