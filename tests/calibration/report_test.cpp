@@ -51,7 +51,7 @@ TEST_F(CalibrationReport, LeavesItsFilesAndNothingElse) {
 
 TEST_F(CalibrationReport, GoesWithTheStateOfItsFitAndNothingElse) {
   write(result_);
-  for (const std::string name : {std::string(kStateFile), std::string("notes.txt")}) {
+  for (const std::string& name : {std::string(kStateFile), std::string("notes.txt")}) {
     std::ofstream(folder_ / name) << "{}";
   }
   remove_results(folder_.path());

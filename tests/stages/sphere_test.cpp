@@ -314,7 +314,9 @@ TEST(DriftedPlates, TellWhatEachStepDid) {
     // What collisions have swallowed since the last resampling is no one's.
     EXPECT_LE(area, (1.0 + 1e-9) * sphere_km2);
     EXPECT_GT(area, 0.9 * sphere_km2);
-    if (row[column("resampled")] == 1.0) EXPECT_NEAR(area, sphere_km2, 1e-9 * sphere_km2);
+    if (row[column("resampled")] == 1.0) {
+      EXPECT_NEAR(area, sphere_km2, 1e-9 * sphere_km2);
+    }
     if (k > 0) {
       EXPECT_NEAR(row[volume] - before,
                   row[column("raised_km3")] - row[column("eroded_km3")] +

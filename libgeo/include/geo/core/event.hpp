@@ -76,7 +76,7 @@ struct PlateRift {
   double latitude_deg = 0.0;
   double longitude_deg = 0.0;
   double bearing_deg = 0.0;
-  std::vector<Centre> path;  ///< where not empty: the line, in place of place and bearing
+  std::vector<Centre> path{};  ///< where not empty: the line, in place of place and bearing
   std::int64_t fragments = 2;
   double speed_mm_yr = 30.0;
 
@@ -90,7 +90,7 @@ struct CrustChange {
   double latitude_deg = 0.0;
   double longitude_deg = 0.0;
   double radius_km = 500.0;
-  std::vector<Centre> path;  ///< where not empty: the region's outline, in place of the circle
+  std::vector<Centre> path{};  ///< where not empty: the region's outline, in place of the circle
   bool continental = true;
 
   [[nodiscard]] std::vector<Parameter> declarations();

@@ -7,7 +7,7 @@
 
 namespace geo::io {
 
-/// Plates of a GeoJSON file (RFC 7946): "earth", the fourteen largest of today's, or a path.
+/// Plates of a GeoJSON file (RFC 7946): "earth", sixteen of today's, or a path.
 ///
 /// Each feature is a Polygon or a MultiPolygon of one plate; features of the same name are one.
 /// Names are the property `name`, `Name`, `PlateName`, or `Code`; the Euler pole is
