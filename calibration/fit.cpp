@@ -31,10 +31,8 @@ class HeldFastCost final : public ceres::CostFunction {
     const auto count = parameter_block_sizes().front();
     const Eigen::VectorXd x = Eigen::Map<const Eigen::VectorXd>(parameters[0], count);
     const bool wants_rates = jacobians != nullptr && jacobians[0] != nullptr;
-    // Those after the last step serve Ceres's test of convergence alone, which routing anew makes
-    // idle: the last ones stand for them.
-    const bool renews = wants_rates && renewals_ == 0;
-    if (renews) ++renewals_;
+    // Those of the first place serve the later steps too: routing anew changes more than they do.
+    const bool renews = wants_rates && rates_.size() == 0;
     const Eigen::VectorXd residual = objective_.follow(x, renews ? &rates_ : nullptr);
     Eigen::Map<Eigen::VectorXd>(residuals, residual.size()) = residual;
     if (wants_rates) {
@@ -48,7 +46,6 @@ class HeldFastCost final : public ceres::CostFunction {
  private:
   Objective& objective_;
   mutable Eigen::MatrixXd rates_;
-  mutable int renewals_ = 0;
 };
 
 double cost_of(const Eigen::VectorXd& residual) {
@@ -77,6 +74,7 @@ Eigen::VectorXd solve_held_fast(Objective& objective, const Problem& problem,
   options.initial_trust_region_radius = state.radius;
   options.num_threads = 1;
   options.logging_type = ceres::SILENT;
+  // With bounds Ceres searches along each step, which takes two more Jacobians.
   options.max_num_line_search_step_size_iterations = 0;
   options.jacobi_scaling = false;  // the scales are set already
   ceres::Solver::Summary summary;
