@@ -321,9 +321,11 @@ TEST(Continents, PlatesThatWereConsumedCarryNoCratons) {
   Cratons model;
   model.plate_share = 1.0;
   std::vector<Plate> plates(2);
-  const auto expected = craton_potential(model, two.mesh, two.plate, plates, points, 4);
+  const auto ridges = nearest_ridges(model, two.mesh, points);
+  const auto noise = craton_noise(two.mesh, 4);
+  const auto expected = craton_potential(model, two.mesh, two.plate, plates, ridges, noise, 4);
   plates.emplace_back();  // of no cell
-  EXPECT_EQ(craton_potential(model, two.mesh, two.plate, plates, points, 4), expected);
+  EXPECT_EQ(craton_potential(model, two.mesh, two.plate, plates, ridges, noise, 4), expected);
 }
 
 TEST(Continents, WholePlatesComeAsNearToTheShareAsTheyCan) {

@@ -87,6 +87,32 @@ TEST(Biomes, AlpineStandsOnMountainsAndTundraNearThePoles) {
   EXPECT_NEAR(lowest_at_45, 2600, 300);  // between the Alps and the Rocky Mountains
 }
 
+TEST(Biomes, BorderOfAlpineLandAndTundraFollowsTheRelief) {
+  State state = make_planet(720, 360);
+  BiomesParameters parameters;
+  parameters.treeline_noise_m = 0;
+  parameters.smoothing_km = 0;
+  run(state, parameters);
+  const Grid& grid = state.grid();
+  const auto z = state.read(field::elevation);
+  const auto biome = state.read(field::biome);
+  double poleward_most_alpine = 0, equatorward_most_tundra = 90;
+  for (int j = 0; j < grid.ny(); ++j) {
+    for (int i = 0; i < grid.nx(); ++i) {
+      const Index c = grid.cell(i, j);
+      const double latitude = std::abs(grid.latitude_deg(j));
+      if (biome[c] == static_cast<int>(Biome::alpine)) {
+        ASSERT_GE(z[c], parameters.mountain_m);
+        poleward_most_alpine = std::max(poleward_most_alpine, latitude);
+      } else if (biome[c] == static_cast<int>(Biome::tundra)) {
+        equatorward_most_tundra = std::min(equatorward_most_tundra, latitude);
+      }
+    }
+  }
+  // Low treeless land is tundra, high land alpine, over a belt that no parallel cuts.
+  EXPECT_GT(poleward_most_alpine, equatorward_most_tundra + 5);
+}
+
 TEST(Biomes, FixedTreelineIsTwoThousandMetresAndSoftFromSeventeenHundred) {
   State state = make_planet(1440, 720);
   BiomesParameters parameters;

@@ -87,10 +87,32 @@ std::vector<std::uint8_t> continental_plates(const CubedSphere& mesh,
   return continental;
 }
 
+CratonNoise craton_noise(const CubedSphere& mesh, std::uint64_t seed) {
+  constexpr double kFrequency = 1.6;
+  const std::array<Noise, 3> bend{Noise(seed, "plates.craton_bend_x"),
+                                  Noise(seed, "plates.craton_bend_y"),
+                                  Noise(seed, "plates.craton_bend_z")};
+  CratonNoise noise;
+  for (int c = 0; c < 3; ++c) {
+    noise.bend[c] = fbm_at(bend[c], mesh.positions(), kFrequency, 6, 0.55);
+  }
+  noise.rifting = fbm_at(Noise(seed, "plates.rifting"), mesh.positions(), 1.2, 3);
+  return noise;
+}
+
+NearestCells nearest_ridges(const Cratons& model, const CubedSphere& mesh,
+                            std::span<const BoundaryPoint> boundaries) {
+  std::vector<std::int32_t> ridge;
+  for (const BoundaryPoint& point : boundaries) {
+    if (point.type == BoundaryType::divergent) ridge.push_back(point.cell);
+  }
+  return nearest_cells(mesh, ridge, 4.0 * model.ridge_clearance_km / model.radius_km);
+}
+
 std::vector<float> craton_potential(const Cratons& model, const CubedSphere& mesh,
                                     std::span<const std::int16_t> plate,
-                                    const std::vector<Plate>& plates,
-                                    std::span<const BoundaryPoint> boundaries, std::uint64_t seed) {
+                                    const std::vector<Plate>& plates, const NearestCells& to_ridge,
+                                    const CratonNoise& noise, std::uint64_t seed) {
   const auto area_sr = plate_areas_sr(mesh, plate, plates.size());
   const auto carries = continental_plates(mesh, plate, plates, model.plate_share);
   const RandomStream random(seed, "plates.cratons");
@@ -101,25 +123,12 @@ std::vector<float> craton_potential(const Cratons& model, const CubedSphere& mes
     place_cratons(model, mesh, plate, static_cast<int>(k),
                   std::max(1, static_cast<int>(std::lround(count))), random, cratons);
   }
-  std::vector<std::int32_t> ridge;
-  for (const BoundaryPoint& point : boundaries) {
-    if (point.type == BoundaryType::divergent) ridge.push_back(point.cell);
-  }
-  const NearestCells to_ridge =
-      nearest_cells(mesh, ridge, 4.0 * model.ridge_clearance_km / model.radius_km);
-  const std::array<Noise, 3> bend{Noise(seed, "plates.craton_bend_x"),
-                                  Noise(seed, "plates.craton_bend_y"),
-                                  Noise(seed, "plates.craton_bend_z")};
-  const Noise history(seed, "plates.rifting");
-  constexpr double kFrequency = 1.6, kNormal = 3.2;  // fbm to a deviation of one half
-  std::array<std::vector<float>, 3> bends;
-  for (int c = 0; c < 3; ++c) bends[c] = fbm_at(bend[c], mesh.positions(), kFrequency, 6, 0.55);
-  const auto rifting = fbm_at(history, mesh.positions(), 1.2, 3);
+  constexpr double kNormal = 3.2;  // fbm to a deviation of one half
   std::vector<float> potential(mesh.size());
 #pragma omp parallel for schedule(static)
   for (std::int32_t cell = 0; cell < mesh.size(); ++cell) {
     Vector3 bent = mesh.position(cell);
-    for (int c = 0; c < 3; ++c) bent[c] += model.warp * kNormal * bends[c][cell];
+    for (int c = 0; c < 3; ++c) bent[c] += model.warp * kNormal * noise.bend[c][cell];
     bent = normalised(bent);
     double sum = 0.0;
     for (const Craton& craton : cratons) {
@@ -128,7 +137,7 @@ std::vector<float> craton_potential(const Cratons& model, const CubedSphere& mes
     }
     const double ridge_km = to_ridge.angle[cell] * model.radius_km;
     // Some ridges have made oceans, others only begin to tear a continent.
-    const double begun = std::clamp(0.65 + 3.0 * rifting[cell], 0.0, 1.0);
+    const double begun = std::clamp(0.65 + 3.0 * noise.rifting[cell], 0.0, 1.0);
     const double opened = 6.0 * begun * std::exp(-ridge_km / model.ridge_clearance_km);
     potential[cell] = static_cast<float>(std::log(sum + 1e-26) - opened);
   }

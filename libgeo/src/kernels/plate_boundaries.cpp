@@ -12,29 +12,39 @@
 namespace geo {
 namespace {
 
-/// Cells within `rings` steps, the cell itself first.
-std::vector<std::int32_t> surroundings(const CubedSphere& mesh, std::int32_t cell, int rings) {
-  std::vector<std::int32_t> cells{cell};
-  std::size_t begin = 0;
-  for (int ring = 0; ring < rings; ++ring) {
-    const std::size_t end = cells.size();
-    for (std::size_t at = begin; at < end; ++at) {
-      for (const std::int32_t next : mesh.neighbours(cells[at])) cells.push_back(next);
+/// Cells within some steps of a cell, for one thread.
+class Surroundings {
+ public:
+  Surroundings(const CubedSphere& mesh, int rings)
+      : mesh_(mesh), rings_(rings), seen_(mesh.size(), 0) {}
+
+  /// The cell itself, then ring by ring, each in the order of the mesh.
+  std::span<const std::int32_t> of(std::int32_t cell) {
+    cells_.assign(1, cell);
+    seen_[cell] = ++visit_;
+    std::size_t begin = 0;
+    for (int ring = 0; ring < rings_; ++ring) {
+      const std::size_t end = cells_.size();
+      for (std::size_t at = begin; at < end; ++at) {
+        for (const std::int32_t next : mesh_.neighbours(cells_[at])) {
+          if (seen_[next] == visit_) continue;
+          seen_[next] = visit_;
+          cells_.push_back(next);
+        }
+      }
+      std::sort(cells_.begin() + static_cast<std::ptrdiff_t>(end), cells_.end());
+      begin = end;
     }
-    begin = end;
-    std::sort(cells.begin() + static_cast<std::ptrdiff_t>(end), cells.end());
-    cells.erase(std::unique(cells.begin() + static_cast<std::ptrdiff_t>(end), cells.end()),
-                cells.end());
-    const auto known = [&](std::int32_t candidate) {
-      return std::find(cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(end),
-                       candidate) != cells.begin() + static_cast<std::ptrdiff_t>(end);
-    };
-    cells.erase(
-        std::remove_if(cells.begin() + static_cast<std::ptrdiff_t>(end), cells.end(), known),
-        cells.end());
+    return cells_;
   }
-  return cells;
-}
+
+ private:
+  const CubedSphere& mesh_;
+  int rings_;
+  std::int32_t visit_ = 0;
+  std::vector<std::int32_t> seen_;  // the last visit to each cell
+  std::vector<std::int32_t> cells_;
+};
 
 /// The plate that most neighbours of a boundary cell belong to, its own aside.
 std::int16_t opposite_plate(const CubedSphere& mesh, std::span<const std::int16_t> plate,
@@ -101,42 +111,48 @@ std::vector<BoundaryPoint> find_boundaries(const CubedSphere& mesh,
   }
   const int rings =
       std::max(1, static_cast<int>(std::lround(smoothing_km / (mesh.spacing() * radius_km))));
-#pragma omp parallel for schedule(dynamic, 64)
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    BoundaryPoint& point = points[k];
-    const Vector3& here = mesh.position(point.cell);
-    Vector3 towards{};
-    for (const std::int32_t cell : surroundings(mesh, point.cell, rings)) {
-      const double side = plate[cell] == point.other   ? 1.0
-                          : plate[cell] == point.plate ? -1.0
-                                                       : 0.0;
-      towards = add(towards, add(mesh.position(cell), here, -1.0), side);
+  std::vector<BoundaryPoint> raw;
+#pragma omp parallel
+  {
+    Surroundings surroundings(mesh, rings);
+#pragma omp for schedule(dynamic, 64)
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      BoundaryPoint& point = points[k];
+      const Vector3& here = mesh.position(point.cell);
+      Vector3 towards{};
+      for (const std::int32_t cell : surroundings.of(point.cell)) {
+        const double side = plate[cell] == point.other   ? 1.0
+                            : plate[cell] == point.plate ? -1.0
+                                                         : 0.0;
+        towards = add(towards, add(mesh.position(cell), here, -1.0), side);
+      }
+      point.towards = normalised(tangent(towards, here));
+      point.motion = relative_motion(velocity_mm_yr(rotation_rad_myr[point.plate], here, radius_km),
+                                     velocity_mm_yr(rotation_rad_myr[point.other], here, radius_km),
+                                     point.towards, here);
     }
-    point.towards = normalised(tangent(towards, here));
-    point.motion = relative_motion(velocity_mm_yr(rotation_rad_myr[point.plate], here, radius_km),
-                                   velocity_mm_yr(rotation_rad_myr[point.other], here, radius_km),
-                                   point.towards, here);
-  }
-  const std::vector<BoundaryPoint> raw(points);
-#pragma omp parallel for schedule(dynamic, 64)
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    BoundaryPoint& point = points[k];
-    double away = 0.0, shear = 0.0;
-    int count = 0;
-    for (const std::int32_t cell : surroundings(mesh, point.cell, rings)) {
-      if (point_of[cell] < 0) continue;
-      const BoundaryPoint& near = raw[point_of[cell]];
-      const bool same = (near.plate == point.plate && near.other == point.other) ||
-                        (near.plate == point.other && near.other == point.plate);
-      if (!same) continue;
-      away += near.motion.opening - near.motion.closing;
-      shear += near.motion.shear;
-      ++count;
+#pragma omp single
+    raw = points;
+#pragma omp for schedule(dynamic, 64)
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      BoundaryPoint& point = points[k];
+      double away = 0.0, shear = 0.0;
+      int count = 0;
+      for (const std::int32_t cell : surroundings.of(point.cell)) {
+        if (point_of[cell] < 0) continue;
+        const BoundaryPoint& near = raw[point_of[cell]];
+        const bool same = (near.plate == point.plate && near.other == point.other) ||
+                          (near.plate == point.other && near.other == point.plate);
+        if (!same) continue;
+        away += near.motion.opening - near.motion.closing;
+        shear += near.motion.shear;
+        ++count;
+      }
+      away /= count;
+      point.motion = {std::max(0.0, -away), std::max(0.0, away), shear / count};
+      point.type = classify(point.motion, plate_speed_cm_yr);
+      point.strength = dominant(point.motion, point.type);
     }
-    away /= count;
-    point.motion = {std::max(0.0, -away), std::max(0.0, away), shear / count};
-    point.type = classify(point.motion, plate_speed_cm_yr);
-    point.strength = dominant(point.motion, point.type);
   }
   double strongest = 0.0;
   for (const BoundaryPoint& point : points) strongest = std::max(strongest, point.strength);
@@ -178,11 +194,18 @@ NearestCells nearest_cells(const CubedSphere& mesh, std::span<const std::int32_t
   nearest.angle.assign(mesh.size(), std::numeric_limits<float>::infinity());
   using Entry = std::tuple<float, std::int32_t, std::int32_t>;  // angle, source, cell
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
+  std::vector<double> chord2(mesh.size(), std::numeric_limits<double>::infinity());
   const auto offer = [&](std::int32_t source, std::int32_t cell) {
     if (nearest.source[cell] == source) return;
-    const auto angle =
-        static_cast<float>(angle_between(mesh.position(sources[source]), mesh.position(cell)));
+    const Vector3& from = mesh.position(sources[source]);
+    const Vector3& to = mesh.position(cell);
+    const Vector3 way = add(to, from, -1.0);
+    const double far2 = dot(way, way);
+    constexpr double kSafe = 1.0 + 1e-6;  // by so much more, and the angle is larger too
+    if (far2 > kSafe * chord2[cell]) return;
+    const auto angle = static_cast<float>(angle_between(from, to));
     if (angle >= nearest.angle[cell] || angle > reach_rad) return;
+    chord2[cell] = far2;
     nearest.angle[cell] = angle;
     nearest.source[cell] = source;
     front.emplace(angle, source, cell);

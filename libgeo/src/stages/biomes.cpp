@@ -39,9 +39,12 @@ class Treeline {
     const double spread_k = p_.treeline_noise_m * lapse_k_m_;
     const double shift_k = std::abs(cold_k) < spread_k ? spread_k * noise(i, j) : 0.0;
     if (cold_k + shift_k <= 0) return nearest_biome(temperature_c, precipitation_mm, false);
-    // Treeless: by height if trees would stand here at sea level, else by latitude.
+    // Treeless by height where what stands above the foothills cools by more than the sea level
+    // there lacks, else by latitude: the border of the two follows the relief, not a parallel.
     const double at_sea_level_c = temperature_c + std::max(elevation_m, 0.0) * lapse_k_m_;
-    return treeline_deficit_k(at_sea_level_c, range_k) < 0 ? Biome::alpine : Biome::tundra;
+    const double lacking_k = std::max(0.0, treeline_deficit_k(at_sea_level_c, range_k));
+    const double cooled_k = (elevation_m - p_.mountain_m) * lapse_k_m_;
+    return cooled_k > lacking_k ? Biome::alpine : Biome::tundra;
   }
 
  private:
@@ -173,6 +176,8 @@ std::vector<Parameter> BiomesParameters::declarations() {
            "wavelength of that wandering", "design"),
       real("biomes.lapse_rate_k_km", lapse_rate_k_km, "K km-1", 0.0, 20.0,
            "cooling with height, which tells alpine land from polar tundra", "holton2013"),
+      real("biomes.mountain_m", mountain_m, "m", 0.0, 1e5,
+           "height from which treeless land can be alpine; lower, it is tundra", "kapos2000"),
       real("biomes.riparian_threshold", riparian_threshold, "1", 0.0, 1.0,
            "river intensity above which trees line the river in dry land", "tectonica2026"),
       real("biomes.smoothing_km", smoothing_km, "km", 0.0, 1000.0,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -28,12 +29,24 @@ struct Cratons {
   double radius_km = 6371.0;
 };
 
+/// What a seed decides about continents before there are plates: noise, one value per cell of the
+/// mesh. Whoever has a thread to spare makes it while plates grow.
+struct CratonNoise {
+  std::array<std::vector<float>, 3> bend;  ///< of outlines
+  std::vector<float> rifting;              ///< how far ridges have torn what was there
+};
+CratonNoise craton_noise(const CubedSphere& mesh, std::uint64_t seed);
+
+/// Angle from every cell to the nearest ridge, as far as ridges matter to cratons.
+NearestCells nearest_ridges(const Cratons& model, const CubedSphere& mesh,
+                            std::span<const BoundaryPoint> boundaries);
+
 /// A potential that is high in continents: the logarithm of a sum of bells about the cratons of
 /// each continental plate, bent by noise, lowered where a ridge has made ocean floor. Continents
 /// are where it exceeds a level; finer noise may be added first. One value per cell of the mesh.
 std::vector<float> craton_potential(const Cratons& model, const CubedSphere& mesh,
                                     std::span<const std::int16_t> plate,
-                                    const std::vector<Plate>& plates,
-                                    std::span<const BoundaryPoint> boundaries, std::uint64_t seed);
+                                    const std::vector<Plate>& plates, const NearestCells& to_ridge,
+                                    const CratonNoise& noise, std::uint64_t seed);
 
 }  // namespace geo

@@ -14,6 +14,7 @@ struct BiomesParameters {
   double treeline_onset_m = 1700.0;
   double treeline_noise_m = 300.0;
   double treeline_noise_km = 50.0;
+  double mountain_m = 1000.0;
   double lapse_rate_k_km = 6.0;
   double riparian_threshold = 0.12;
   double smoothing_km = 10.0;

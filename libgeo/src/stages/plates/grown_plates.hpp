@@ -27,7 +27,15 @@ class GrownPlates {
     PlateGrowth growth = p_.growth;
     growth.radius_km = radius_km;
     plates_ = draw_plates(growth, seed);
-    plate_ = grow_plates(growth, mesh_, plates_, seed);
+    const bool has_cratons = p_.continents == "cratons";
+    CratonNoise noise;
+#pragma omp parallel sections
+    {
+#pragma omp section
+      plate_ = grow_plates(growth, mesh_, plates_, seed);
+#pragma omp section
+      if (has_cratons) noise = craton_noise(mesh_, seed);
+    }
     evolve(growth);
     boundaries_ = find_boundaries(mesh_, plate_, rotations(), growth.speed_cm_yr,
                                   p_.boundary_smoothing_km, radius_km);
@@ -38,14 +46,20 @@ class GrownPlates {
       convergent.push_back(boundaries_[k].cell);
       convergent_.push_back(static_cast<std::int32_t>(k));
     }
+    Cratons cratons = p_.cratons;
+    cratons.radius_km = radius_km_;
+    NearestCells nearest_ridge;
 #pragma omp parallel sections
     {
 #pragma omp section
       nearest_convergent_ = nearest_cells(mesh_, convergent, 2000.0 / radius_km);
 #pragma omp section
-      nearest_ = nearest_cells(mesh_, all, 6.0 * mesh_.spacing());
+      if (has_cratons) nearest_ridge = nearest_ridges(cratons, mesh_, boundaries_);
 #pragma omp section
-      grow_continents();
+      nearest_ = nearest_cells(mesh_, all, 6.0 * mesh_.spacing());
+    }
+    if (has_cratons) {
+      potential_ = craton_potential(cratons, mesh_, plate_, plates_, nearest_ridge, noise, seed_);
     }
     for (float& angle : nearest_convergent_.angle) angle = std::min(angle, 1.0F);
     age_myr_ =
@@ -145,20 +159,10 @@ class GrownPlates {
     }
     if (p_.no_net_rotation) subtract_net_rotation();
   }
-  void grow_continents() {
-    if (p_.continents != "cratons") return;
-    Cratons cratons = p_.cratons;
-    cratons.radius_km = radius_km_;
-    potential_ = craton_potential(cratons, mesh_, plate_, plates_, boundaries_, seed_);
-  }
   void subtract_net_rotation() {
-    std::vector<Vector3> unit(mesh_.size());
     std::vector<double> area_sr(mesh_.size());
-    for (std::int32_t cell = 0; cell < mesh_.size(); ++cell) {
-      unit[cell] = mesh_.position(cell);
-      area_sr[cell] = mesh_.area_sr(cell);
-    }
-    const Vector3 net = net_rotation(plate_, unit, area_sr, rotations());
+    for (std::int32_t cell = 0; cell < mesh_.size(); ++cell) area_sr[cell] = mesh_.area_sr(cell);
+    const Vector3 net = net_rotation(plate_, mesh_.positions(), area_sr, rotations());
     for (Plate& plate : plates_) plate.rotation_rad_myr = add(plate.rotation_rad_myr, net, -1.0);
   }
   /// Heat of the plates' mantle, blended over some hundred kilometres, with plumes on top; 0 to 1.
