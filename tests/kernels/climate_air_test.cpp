@@ -79,8 +79,12 @@ struct Air {
         water(size, 0.0F),
         land_evaporation(size, 0.0F),
         column(size, 20.0) {}
-  [[nodiscard]] MoistureSeason season() const {
-    return {east, north, mixing, eddies, saturated, water, land_evaporation};
+  [[nodiscard]] MoistureSeason season() {
+    return {east, north, mixing, eddies, saturated, water, land_evaporation, column};
+  }
+  void solve(const Grid& grid, const MoistureBudget& model) {
+    const MoistureSeason one = season();
+    SteadyMoisture(grid, model, {&one, 1}).solve();
   }
   std::size_t size;
   std::vector<float> east, north, mixing, eddies, saturated, water, land_evaporation;
@@ -93,7 +97,7 @@ TEST(Moisture, WhatEvaporatesRains) {
   for (Index c = 0; c < grid.size(); ++c) air.water[c] = grid.column(c) < 40 ? 0.2F : 0.0F;
   MoistureBudget model;
   model.sweeps = 400;
-  solve_moisture(grid, model, air.season(), air.column);
+  air.solve(grid, model);
   double evaporation = 0.0, rain = 0.0;
   for (Index c = 0; c < grid.size(); ++c) {
     const double area = grid.area_m2(grid.row(c));
@@ -108,7 +112,7 @@ TEST(Moisture, RainFallsOffDownwindOfTheCoast) {
   Air air(grid);
   for (Index c = 0; c < grid.size(); ++c) air.water[c] = grid.column(c) < 36 ? 0.2F : 0.0F;
   const MoistureBudget model;
-  solve_moisture(grid, model, air.season(), air.column);
+  air.solve(grid, model);
   for (int i = 37; i < 60; ++i) {
     EXPECT_LT(air.column[grid.cell(i, 18)], air.column[grid.cell(i - 1, 18)]) << i;
   }
@@ -122,11 +126,32 @@ TEST(Moisture, LeeOfARangeIsDry) {
     if (grid.column(c) == 42) air.saturated[c] = 12.0F;  // cold air over the crest
   }
   const MoistureBudget model;
-  solve_moisture(grid, model, air.season(), air.column);
-  solve_moisture(grid, model, flat.season(), flat.column);
+  air.solve(grid, model);
+  flat.solve(grid, model);
   EXPECT_GT(rain_mm_d(model, air.column[grid.cell(42, 18)], 12.0, 1.0),
             1.5 * rain_mm_d(model, flat.column[grid.cell(42, 18)], 40.0, 1.0));
   EXPECT_LT(air.column[grid.cell(44, 18)], 0.8 * flat.column[grid.cell(44, 18)]);
+}
+
+TEST(Moisture, SeasonsSideBySideDoNotTouchEachOther) {
+  const Grid grid = Grid::sphere(36, 18);
+  std::vector<Air> together(3, Air(grid)), alone;
+  for (std::size_t k = 0; k < together.size(); ++k) {
+    for (Index c = 0; c < grid.size(); ++c) {
+      together[k].water[c] = grid.column(c) < 18 ? 0.1F * static_cast<float>(k + 1) : 0.0F;
+      together[k].north[c] = static_cast<float>(k) - 1.0F;
+    }
+  }
+  alone = together;
+  const MoistureBudget model;
+  std::vector<MoistureSeason> seasons;
+  for (Air& air : together) seasons.push_back(air.season());
+  SteadyMoisture(grid, model, seasons).solve();
+  for (std::size_t k = 0; k < alone.size(); ++k) {
+    alone[k].solve(grid, model);
+    EXPECT_EQ(together[k].column, alone[k].column) << k;
+  }
+  EXPECT_NE(together[0].column, together[1].column);
 }
 
 TEST(UpwindLift, WindwardRisesLeeSinks) {

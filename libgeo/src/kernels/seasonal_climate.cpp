@@ -4,6 +4,8 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <optional>
+#include <span>
 
 #include "geo/kernels/evaporation.hpp"
 #include "geo/kernels/insolation.hpp"
@@ -174,6 +176,20 @@ SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& m
     }
   }
 
+  std::vector<MoistureSeason> seasons;
+  for (Month& month : months) {
+    seasons.push_back({month.wind_east, month.wind_north, month.diffusivity, month.eddies,
+                       month.saturated_mm, month.open_water_1_d, month.land_evaporation_mm_d,
+                       month.column_mm});
+  }
+  constexpr int kTogether = SteadyMoisture::kSeasons;
+  static_assert(kMonths % kTogether == 0);
+  std::vector<std::optional<SteadyMoisture>> budgets(kMonths / kTogether);
+#pragma omp parallel for schedule(dynamic, 1)
+  for (std::size_t k = 0; k < budgets.size(); ++k) {
+    budgets[k].emplace(grid, model.moisture, std::span(seasons).subspan(k * kTogether, kTogether));
+  }
+
   // Land returns what Budyko's curve says of the rain that the last round gave it.
   constexpr int kRounds = 4;
   std::vector<float> evaporative_share(size, has_sea ? 0.5F : 0.0F);
@@ -186,10 +202,12 @@ SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& m
             static_cast<float>(model.land_transpiration * land_fraction[cell] *
                                evaporative_share[cell] * month.evaporation_mm_d[cell]);
       }
-      solve_moisture(grid, model.moisture,
-                     {month.wind_east, month.wind_north, month.diffusivity, month.eddies,
-                      month.saturated_mm, month.open_water_1_d, month.land_evaporation_mm_d},
-                     month.column_mm);
+    }
+#pragma omp parallel for schedule(dynamic, 1)
+    for (std::size_t k = 0; k < budgets.size(); ++k) budgets[k]->solve();
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int m = 0; m < kMonths; ++m) {
+      Month& month = months[m];
       for (std::size_t cell = 0; cell < size; ++cell) {
         month.rain_mm_d[cell] = rain_mm_d(model.moisture, month.column_mm[cell],
                                           month.saturated_mm[cell], month.eddies[cell]);

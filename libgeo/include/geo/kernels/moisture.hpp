@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "geo/core/grid.hpp"
 
@@ -16,25 +18,54 @@ struct MoistureBudget {
   int sweeps = 30;
 };
 
-/// Steady moisture budget of the air column on a sphere or torus:
-///   div(u W - K grad W) = E - P,   P = e W (W/W_s)^n / tau,   E = water v (W_s - W)+ + land part,
-/// W column water (mm), W_s what the column holds at saturation, e the activity of eddies. Finite
-/// volumes, upwind; nonlinear Gauss-Seidel in four alternating directions. Sequential: seasons
-/// are independent and run side by side.
-///
-/// @param open_water_1_d   v times the fraction of water, per cell
-/// @param land_evaporation mm d-1 per cell (averaged over the cell)
-/// @param column_mm        in: first guess; out: W
+/// One season's air; spans of one value per cell.
 struct MoistureSeason {
-  std::span<const float> wind_east, wind_north;  ///< m s-1
+  std::span<const float> wind_east, wind_north;  ///< u, m s-1
   std::span<const float> diffusivity;            ///< K, m2 s-1
   std::span<const float> eddy_activity;          ///< e
   std::span<const float> saturated_mm;           ///< W_s
-  std::span<const float> open_water_1_d;
-  std::span<const float> land_evaporation;  ///< mm d-1
+  std::span<const float> open_water_1_d;         ///< v times the fraction of water
+  std::span<const float> land_evaporation;       ///< mm d-1, averaged over the cell
+  std::span<double> column_mm;                   ///< in: first guess; out: W
 };
-void solve_moisture(const Grid& grid, const MoistureBudget& model, const MoistureSeason& season,
-                    std::span<double> column_mm);
+
+/// Steady moisture budgets of the air column on a sphere or torus:
+///   div(u W - K grad W) = E - P,   P = e W (W/W_s)^n / tau,   E = water v (W_s - W)+ + land part,
+/// W column water (mm), W_s what the column holds at saturation, e the activity of eddies. Finite
+/// volumes, upwind; nonlinear Gauss-Seidel in four alternating directions. Sequential: seasons are
+/// independent, a few are solved side by side in the lanes of vector registers, and more by
+/// threads. Bits do not depend on which seasons are solved together.
+class SteadyMoisture {
+ public:
+  static constexpr int kSeasons = 4;
+
+  /// Of one to kSeasons seasons, which stay where they are; what moves water and makes it rain is
+  /// taken over now, evaporation from land and the columns when solved.
+  SteadyMoisture(const Grid& grid, const MoistureBudget& model,
+                 std::span<const MoistureSeason> seasons);
+  void solve();
+
+ private:
+  /// A value of each season.
+  struct alignas(16) Lanes : std::array<float, kSeasons> {};
+  struct alignas(32) DoubleLanes : std::array<double, kSeasons> {};
+  /// Exchange of one cell with its neighbours, per day: out W_here - sum from_k W_k; and its air.
+  struct Air {
+    DoubleLanes rain_rate_1_d;
+    Lanes out, from_east, from_west, from_north, from_south, saturated_mm, open_water_1_d;
+  };
+  struct Field;
+
+  [[nodiscard]] const MoistureSeason& season(int lane) const;
+  void take_exchange(int lane);
+  static void sweep(const Field& field, bool northward, bool eastward);
+
+  const Grid& grid_;
+  MoistureBudget model_;
+  std::vector<MoistureSeason> seasons_;
+  std::vector<Air> air_;
+  std::vector<DoubleLanes> land_evaporation_, column_;
+};
 
 /// Rain of a column, mm d-1.
 [[nodiscard]] double rain_mm_d(const MoistureBudget& model, double column_mm, double saturated_mm,
