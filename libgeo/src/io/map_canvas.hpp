@@ -92,9 +92,9 @@ class MapCanvas : public Canvas {
   void category_legend(const std::vector<std::pair<Rgb, std::string>>& items);
   /// A line of words below the map.
   void remark(const std::string& words);
-  /// Lines of several widths (px at unit 1) with labels, and one swatch, below the map.
+  /// Lines of several widths (px at unit 1) and swatches of areas, with labels, below the map.
   void line_legend(Rgb colour, const std::vector<std::pair<double, std::string>>& lines,
-                   Rgb swatch_colour, const std::string& swatch_label);
+                   const std::vector<std::pair<Rgb, std::string>>& areas);
 
   /// Size of type and lines relative to a map 1800 px wide.
   [[nodiscard]] double unit() const { return unit_; }

@@ -100,7 +100,7 @@ void MapCanvas::remark(const std::string& words) {
 }
 
 void MapCanvas::line_legend(Rgb rgb, const std::vector<std::pair<double, std::string>>& lines,
-                            Rgb swatch_colour, const std::string& swatch_label) {
+                            const std::vector<std::pair<Rgb, std::string>>& areas) {
   const double y =
       std::floor(layout_.map_top + layout_.map_height + (kLegendTop + 14) * unit_) + 0.5;
   const double sample = 64 * unit_, gap = 12 * unit_, between = 46 * unit_;
@@ -116,11 +116,18 @@ void MapCanvas::line_legend(Rgb rgb, const std::vector<std::pair<double, std::st
     text(x + sample + gap, y + 6 * unit_, label);
     x += sample + gap + text_width(label) + between;
   }
-  colour(swatch_colour);
-  rectangle(x, y - 11 * unit_, 34 * unit_, 22 * unit_);
-  cairo_fill(pen());
-  colour(kInk);
-  text(x + 34 * unit_ + gap, y + 6 * unit_, swatch_label);
+  const double side = 34 * unit_;
+  for (const auto& [fill, label] : areas) {
+    colour(fill);
+    rectangle(x, y - 11 * unit_, side, 22 * unit_);
+    cairo_fill_preserve(pen());
+    colour(kFaintInk);
+    cairo_set_line_width(pen(), unit_);
+    cairo_stroke(pen());
+    colour(kInk);
+    text(x + side + gap, y + 6 * unit_, label);
+    x += side + gap + text_width(label) + between;
+  }
 }
 
 }  // namespace geo::io

@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <numeric>
 #include <optional>
+#include <span>
+#include <unordered_map>
 
 namespace geo::io {
 namespace {
@@ -38,8 +40,20 @@ struct Step {
 struct GridPoint {
   double column, row;
   float flow;
+  Index cell;
 };
-using GridLine = std::vector<GridPoint>;
+
+/// A river from its source until it ends in the sea or a lake, or joins another.
+struct GridLine {
+  std::vector<GridPoint> points;
+  bool joins = false;
+  bool is_smooth = false;
+};
+
+/// Where a river passes a cell in which others join it.
+struct Junction {
+  std::size_t line, point;
+};
 
 class Tracer {
  public:
@@ -60,22 +74,28 @@ class Tracer {
   }
 
   RiverNetwork trace() {
-    RiverNetwork network;
     least_rank_ = least_rank();
-    std::vector<std::uint8_t> has_donor(receiver_.size(), 0), drawn(receiver_.size(), 0);
-    std::vector<Index> cells;
+    find_main_donors();
     std::vector<GridLine> lines;
     for (Index i = 0; i < grid_.size(); ++i) {
-      if (!is_drawn(i)) continue;
-      cells.push_back(i);
-      has_donor[receiver_[i]] = 1;
+      if (is_drawn(i) && main_donor_[i] == kNoCell) follow(i, lines);
     }
-    for (const Index source : cells) {
-      if (has_donor[source] == 0) follow(source, lines, drawn);
+    std::unordered_map<Index, Junction> junctions;
+    for (const GridLine& line : lines) {
+      if (line.joins) junctions.try_emplace(line.points.back().cell);
     }
-    for (auto& line : lines) {
-      smooth(line);
-      place(line, network);
+    for (std::size_t k = 0; k < lines.size(); ++k) {
+      const auto& points = lines[k].points;
+      for (std::size_t at = 0; at + 1 < points.size(); ++at) {
+        if (const auto here = junctions.find(points[at].cell); here != junctions.end()) {
+          here->second = {k, at};
+        }
+      }
+    }
+    RiverNetwork network;
+    for (GridLine& line : lines) {
+      smooth(line, lines, junctions);
+      place(line.points, network);
     }
     measure(network);
     return network;
@@ -85,15 +105,13 @@ class Tracer {
   // What decides which rivers are drawn: (Q^2 A)^(1/3). By discharge alone wet lands would have all
   // the lines, by area alone deserts as many. 0 where none can be.
   void set_rank(const State& state) {
-    constexpr float kIce_c = -15.0F;  // what ice sheets lose flows as ice
     const bool both = state.has(field::discharge) && state.has(field::drainage_area);
-    const auto temperature =
-        state.has(field::temperature) ? state.read(field::temperature) : std::span<const float>{};
+    const FrozenGround ice(state);
     rank_.assign(flow_.size(), 0.0F);
     for (Index i = 0; i < grid_.size(); ++i) {
       const Index to = receiver_[i];
       if (to < 0 || to == i || !is_land(i) || (!area_m2_.empty() && area_m2_[i] < source_m2_) ||
-          (!temperature.empty() && temperature[i] < kIce_c)) {
+          ice.at(i)) {
         continue;
       }
       rank_[i] = both ? std::cbrt(flow_[i] * flow_[i] * static_cast<float>(area_m2_[i])) : flow_[i];
@@ -139,33 +157,49 @@ class Tracer {
     return value_of(1);
   }
 
-  void follow(Index cell, std::vector<GridLine>& lines, std::vector<std::uint8_t>& drawn) {
+  // Of the drawn rivers that meet in a cell, the largest goes on; of equal ones the first.
+  void find_main_donors() {
+    main_donor_.assign(receiver_.size(), kNoCell);
+    for (Index i = 0; i < grid_.size(); ++i) {
+      if (!is_drawn(i)) continue;
+      Index& main = main_donor_[receiver_[i]];
+      if (main == kNoCell || flow_[i] > flow_[main]) main = i;
+    }
+  }
+
+  void follow(Index cell, std::vector<GridLine>& lines) const {
     double column = grid_.column(cell), row = grid_.row(cell);
     auto* line = &lines.emplace_back();
-    const auto add = [&](Index i) { line->push_back({column, row, flow_[i]}); };
+    const auto add = [&](Index i) { line->points.push_back({column, row, flow_[i], i}); };
     add(cell);
-    while (is_drawn(cell) && drawn[cell] == 0) {
-      drawn[cell] = 1;
+    while (is_drawn(cell)) {
       const Index to = receiver_[cell];
       const Step by = step(cell, to);
-      if (std::abs(by.columns) > 1 || std::abs(by.rows) > 1) {  // over a pole: a new line beyond it
+      const bool over_pole = std::abs(by.columns) > 1 || std::abs(by.rows) > 1;
+      if (over_pole) {  // a new line beyond it
         row = grid_.row(to) < grid_.ny() / 2 ? -1.0 - grid_.row(to)
                                              : 2.0 * grid_.ny() - 1.0 - grid_.row(to);
-        add(to);
-        line = &lines.emplace_back();
-        column = grid_.column(to);
-        row = grid_.row(to);
       } else {
         column += by.columns;
         row += by.rows;
       }
       add(to);
+      if (main_donor_[to] != cell) {
+        line->joins = !over_pole && is_drawn(to);
+        return;
+      }
+      if (over_pole) {
+        line = &lines.emplace_back();
+        column = grid_.column(to);
+        row = grid_.row(to);
+        add(to);
+      }
       cell = to;
     }
   }
 
   // A line on the pixels of the map, cut where the map does not show it.
-  void place(const GridLine& line, RiverNetwork& network) const {
+  void place(std::span<const GridPoint> line, RiverNetwork& network) const {
     if (frame_.is_aligned()) {
       auto& drawn = network.lines.emplace_back();
       for (const GridPoint& point : line) {
@@ -209,17 +243,36 @@ class Tracer {
     }
   }
 
-  // Binomial smoothing with fixed ends takes away the steps of the eight directions.
-  void smooth(GridLine& line) const {
+  // Binomial smoothing with fixed ends takes away the steps of the eight directions. A river that
+  // joins another then ends where smoothing has put that one.
+  void smooth(GridLine& line, std::vector<GridLine>& lines,
+              const std::unordered_map<Index, Junction>& junctions) const {
+    if (line.is_smooth) return;
+    line.is_smooth = true;
+    auto& points = line.points;
     const int passes = frame_.pixels_per_row() < 0.75 ? 3 : 5;
-    for (int pass = 0; pass < passes && line.size() > 2; ++pass) {
-      GridPoint before = line.front();
-      for (std::size_t i = 1; i + 1 < line.size(); ++i) {
-        const GridPoint here = line[i];
-        line[i].column = 0.25 * before.column + 0.5 * here.column + 0.25 * line[i + 1].column;
-        line[i].row = 0.25 * before.row + 0.5 * here.row + 0.25 * line[i + 1].row;
+    for (int pass = 0; pass < passes && points.size() > 2; ++pass) {
+      GridPoint before = points.front();
+      for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+        const GridPoint here = points[i];
+        points[i].column = 0.25 * before.column + 0.5 * here.column + 0.25 * points[i + 1].column;
+        points[i].row = 0.25 * before.row + 0.5 * here.row + 0.25 * points[i + 1].row;
         before = here;
       }
+    }
+    if (!line.joins) return;
+    const Index cell = points.back().cell;
+    const Junction& junction = junctions.at(cell);
+    smooth(lines[junction.line], lines, junctions);
+    const GridPoint& host = lines[junction.line].points[junction.point];
+    double columns = host.column - grid_.column(cell);
+    if (grid_.topology() != Topology::plane) columns = std::remainder(columns, grid_.nx());
+    const double rows = host.row - grid_.row(cell);
+    double share = 1.0;
+    for (auto point = points.rbegin(); point != points.rend() && share > 0.05; ++point) {
+      point->column += share * columns;
+      point->row += share * rows;
+      share *= 0.6;
     }
   }
 
@@ -227,6 +280,7 @@ class Tracer {
   const Grid& grid_;
   std::span<const std::int32_t> receiver_;
   std::vector<float> flow_, rank_;
+  std::vector<Index> main_donor_;
   double pixel_m_, source_m2_ = 0.0;
   std::optional<MapPage::Projector> projector_;
   float least_rank_ = 0.0F;
@@ -262,6 +316,12 @@ void draw_line(MapCanvas& canvas, const std::vector<RiverPoint>& line, double sh
 }
 
 }  // namespace
+
+FrozenGround::FrozenGround(const State& state) {
+  if (!state.has(field::temperature) || !state.has(field::temperature_range)) return;
+  mean_c_ = state.read(field::temperature);
+  range_k_ = state.read(field::temperature_range);
+}
 
 bool has_rivers(const State& state) {
   return state.has(field::flow_receiver) &&

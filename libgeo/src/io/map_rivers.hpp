@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,10 +16,23 @@ struct RiverPoint {
   float flow;   ///< discharge, or drainage area where that is not known
 };
 
-/// The larger rivers of a map, from source to mouth or to the junction with one drawn before.
+/// The larger rivers of a map, from source to mouth or to the junction with a larger one.
 struct RiverNetwork {
   std::vector<std::vector<RiverPoint>> lines;
   float least_flow = 0.0F, most_flow = 0.0F;
+};
+
+/// Land where no month thaws, as far as a state knows: what falls there leaves as ice.
+class FrozenGround {
+ public:
+  explicit FrozenGround(const State& state);
+  [[nodiscard]] bool is_known() const { return !mean_c_.empty(); }
+  [[nodiscard]] bool at(Index i) const {
+    return is_known() && mean_c_[i] + 0.5F * range_k_[i] < 0.0F;
+  }
+
+ private:
+  std::span<const float> mean_c_, range_k_;
 };
 
 /// True where the state has what rivers are drawn from.

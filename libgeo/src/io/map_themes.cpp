@@ -12,7 +12,7 @@ namespace geo::io {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-constexpr Rgb kRiver{0.16F, 0.39F, 0.62F};
+constexpr Rgb kRiver{0.16F, 0.39F, 0.62F}, kIce{0.955F, 0.97F, 0.985F};
 
 constexpr std::array<FieldMap, 6> kFieldMaps{{
     {&field::temperature, "temperature", "Temperature", "annual mean near the surface, °C",
@@ -176,9 +176,23 @@ void draw_categories(const CategoryMap& map, const Scene& scene, MapCanvas& canv
   canvas.category_legend(items);
 }
 
+/// Whether any land on a map is mostly ice.
+bool shows_ice(const MapBase& base, const Raster& ice) {
+  for (std::size_t k = 0; k < ice.values.size(); ++k) {
+    if (base.land_cover.values[k] > 0.5F && ice.values[k] > 0.5F) return true;
+  }
+  return false;
+}
+
 void draw_river_map(const Scene& scene, MapCanvas& canvas) {
   const ColourMap sea("sea_depth"), heights("land_elevation");
   const MapBase& base = scene.base;
+  const FrozenGround frozen(scene.state);
+  Raster ice;
+  if (frozen.is_known()) {
+    ice = sample_mean(scene.frame, Filter::linear,
+                      [&](Index c) { return frozen.at(c) ? 1.0F : 0.0F; });
+  }
   canvas.paint_rows([&](int y, ColourRow& row) {
     for (int x = 0; x < base.shade.width; ++x) {
       const float cover = base.land_cover.at(x, y);
@@ -187,7 +201,10 @@ void draw_river_map(const Scene& scene, MapCanvas& canvas) {
           [&] {
             return mix(sea.smooth(base.sea_m.at(x, y)), {1, 1, 1}, 0.6F);
           },
-          [&] { return mix(kPaleLand, heights.smooth(base.land_m.at(x, y)), 0.28F); });
+          [&] {
+            const Rgb ground = mix(kPaleLand, heights.smooth(base.land_m.at(x, y)), 0.28F);
+            return ice.values.empty() ? ground : mix(ground, kIce, 0.85F * ice.at(x, y));
+          });
       row.set(x, tint, 0.12F + 0.5F * cover);
     }
     shade(row, base, y);
@@ -197,7 +214,9 @@ void draw_river_map(const Scene& scene, MapCanvas& canvas) {
   const RiverNetwork rivers = trace_rivers(scene.frame, scene.state);
   draw_rivers(canvas, rivers, kRiver);
   canvas.frame();
-  canvas.line_legend(kRiver, river_key(rivers, scene.state), kLake, "lakes");
+  std::vector<std::pair<Rgb, std::string>> areas{{kLake, "lakes"}};
+  if (shows_ice(base, ice)) areas.emplace_back(kIce, "no month thaws");
+  canvas.line_legend(kRiver, river_key(rivers, scene.state), areas);
 }
 
 void draw_wind(const Scene& scene, MapCanvas& canvas) {
