@@ -36,7 +36,25 @@ TEST(Whittaker, CentroidsAreTheirOwnBiomes) {
   EXPECT_EQ(nearest_biome(25, 150), Biome::hot_desert);
   EXPECT_EQ(nearest_biome(20, 1400), Biome::subtropical_forest);
   EXPECT_EQ(nearest_biome(8, 350), Biome::steppe);
-  EXPECT_EQ(nearest_biome(-9, 240, false), Biome::boreal_forest) << "Yakutsk: taiga";
+  EXPECT_EQ(nearest_biome(-9, 240, kClimaticBiomes.without(Biome::tundra)), Biome::boreal_forest)
+      << "Yakutsk: taiga";
+  EXPECT_EQ(nearest_biome(25, 2500, {}), Biome::tundra);
+}
+
+// Annual means, ranges and sums from climate tables; rain in summer positive.
+TEST(Whittaker, SeasonsTellClimatesOfLikeMeansApart) {
+  const auto biome = [](double mean_c, double range_k, double annual_mm, double seasonality) {
+    const KoppenIndices climate = harmonic_indices(mean_c, range_k, annual_mm, seasonality);
+    return nearest_biome(mean_c, annual_mm, biomes_in_season(climate));
+  };
+  EXPECT_EQ(nearest_biome(28, 560), Biome::mediterranean_scrub) << "by means alone";
+  EXPECT_EQ(biome(28, 9, 620, 0.9), Biome::tropical_savanna) << "the Sahel";
+  EXPECT_EQ(biome(28, 9, 180, 0.9), Biome::hot_desert) << "north of it";
+  EXPECT_EQ(biome(27, 3, 1450, 0.6), Biome::tropical_savanna) << "Darwin";
+  EXPECT_EQ(biome(26.5, 1.5, 2300, 0.2), Biome::tropical_rainforest) << "Manaus";
+  EXPECT_EQ(biome(17.5, 14, 460, -0.9), Biome::mediterranean_scrub) << "Athens, Los Angeles";
+  EXPECT_NE(biome(15.5, 22, 560, 0.7), Biome::mediterranean_scrub) << "rain in summer";
+  EXPECT_NE(biome(12, 8, 2600, 0.0), Biome::tropical_rainforest) << "wet west coasts";
 }
 
 TEST(Whittaker, GrowingSeasonMatchesDailySums) {

@@ -81,6 +81,10 @@ KoppenIndices harmonic_indices(double mean_c, double range_k, double annual_mm,
   return c;
 }
 
+bool has_dry_summers(const KoppenIndices& c) {
+  return c.summer_driest_mm < 40 && c.summer_driest_mm < c.winter_wettest_mm / 3;
+}
+
 std::int8_t koppen_class(const KoppenIndices& c) {
   const double threshold_mm = dryness_threshold_mm(c);
   if (c.annual_mm < threshold_mm) {
@@ -94,7 +98,7 @@ std::int8_t koppen_class(const KoppenIndices& c) {
   }
   if (c.warmest_c <= 10) return c.warmest_c > 0 ? kET : kEF;
 
-  bool dry_summer = c.summer_driest_mm < 40 && c.summer_driest_mm < c.winter_wettest_mm / 3;
+  bool dry_summer = has_dry_summers(c);
   bool dry_winter = c.winter_driest_mm < c.summer_wettest_mm / 10;
   if (dry_summer && dry_winter) {  // Beck: the drier half-year decides
     dry_summer = c.summer_mm < 0.5 * c.annual_mm;

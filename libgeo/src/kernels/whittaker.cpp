@@ -12,7 +12,6 @@ struct Centroid {
   Biome biome;
   double temperature_c, precipitation_mm;
 };
-// Tundra stands first, so that it can be left out.
 constexpr std::array kCentroids{
     Centroid{Biome::tundra, -8, 250},
     Centroid{Biome::boreal_forest, 2, 600},
@@ -56,11 +55,11 @@ std::int8_t majority(const std::array<std::int8_t, 4>& around, std::int8_t own) 
 
 }  // namespace
 
-Biome nearest_biome(double temperature_c, double precipitation_mm_yr, bool with_tundra) {
+Biome nearest_biome(double temperature_c, double precipitation_mm_yr, BiomeSet among) {
   double nearest = 1e300;
   Biome biome = Biome::tundra;
-  for (std::size_t k = with_tundra ? 0 : 1; k < kCentroids.size(); ++k) {
-    const Centroid& c = kCentroids[k];
+  for (const Centroid& c : kCentroids) {
+    if (!among.has(c.biome)) continue;
     const double t = (temperature_c - c.temperature_c) / 15;
     const double p = (precipitation_mm_yr - c.precipitation_mm) / 500;
     const double distance = t * t + p * p;
@@ -70,6 +69,15 @@ Biome nearest_biome(double temperature_c, double precipitation_mm_yr, bool with_
     }
   }
   return biome;
+}
+
+BiomeSet biomes_in_season(const KoppenIndices& climate) {
+  constexpr double kTropics_c = 18.0;
+  if (climate.coldest_c >= kTropics_c) {
+    return {Biome::tropical_rainforest, Biome::tropical_savanna, Biome::hot_desert};
+  }
+  const BiomeSet cooler = kClimaticBiomes.without(Biome::tropical_rainforest);
+  return has_dry_summers(climate) ? cooler : cooler.without(Biome::mediterranean_scrub);
 }
 
 GrowingSeason growing_season(double mean_c, double range_k, double threshold_c) {

@@ -29,20 +29,25 @@ class Treeline {
         lapse_k_m_(p.lapse_rate_k_km / 1000) {}
 
   /// The biome of a land cell before rivers and smoothing.
-  [[nodiscard]] Biome biome(int i, int j, double elevation_m, double temperature_c, double range_k,
-                            double precipitation_mm) const {
+  [[nodiscard]] Biome biome(int i, int j, double elevation_m, double range_k,
+                            const KoppenIndices& climate) const {
+    const double temperature_c = climate.mean_c, precipitation_mm = climate.annual_mm;
+    const BiomeSet among = p_.seasons ? biomes_in_season(climate) : kClimaticBiomes;
     if (!thermal_) {
-      const Biome open = nearest_biome(temperature_c, precipitation_mm);
+      const Biome open = nearest_biome(temperature_c, precipitation_mm, among);
       return grows_at_treeline(open) && above_fixed_line(i, j, elevation_m) ? Biome::alpine : open;
     }
     const double cold_k = treeline_deficit_k(temperature_c, range_k);
     const double spread_k = p_.treeline_noise_m * lapse_k_m_;
     const double shift_k = std::abs(cold_k) < spread_k ? spread_k * noise(i, j) : 0.0;
-    if (cold_k + shift_k <= 0) return nearest_biome(temperature_c, precipitation_mm, false);
+    if (cold_k + shift_k <= 0) {
+      return nearest_biome(temperature_c, precipitation_mm, among.without(Biome::tundra));
+    }
     // Treeless by height where what stands above the foothills cools by more than the sea level
     // there lacks, else by latitude: the border of the two follows the relief, not a parallel.
     const double at_sea_level_c = temperature_c + std::max(elevation_m, 0.0) * lapse_k_m_;
     const double lacking_k = std::max(0.0, treeline_deficit_k(at_sea_level_c, range_k));
+    if (lacking_k > 0.0 && climate.warmest_c < 0.0) return Biome::tundra;  // or the ice on it
     const double cooled_k = (elevation_m - p_.mountain_m) * lapse_k_m_;
     return cooled_k > lacking_k ? Biome::alpine : Biome::tundra;
   }
@@ -114,8 +119,9 @@ class BiomesStage final : public Stage {
         productivity[c] = settlement[c] = 0;
         if (elevation[c] < 0) continue;
         const double t = temperature[c];
-        biome[c] = id(treeline.biome(i, j, elevation[c], t, range[c], rain[c]));
-        koppen[c] = koppen_class(harmonic_indices(t, range[c], rain[c], seasonality[c]));
+        const KoppenIndices climate = harmonic_indices(t, range[c], rain[c], seasonality[c]);
+        biome[c] = id(treeline.biome(i, j, elevation[c], range[c], climate));
+        koppen[c] = koppen_class(climate);
         if (!lake.empty() && lake[c] > 0) continue;  // nobody farms or lives on the water
         const double npp = miami_productivity(t, rain[c]);
         productivity[c] = static_cast<float>(npp);
@@ -163,6 +169,10 @@ class BiomesStage final : public Stage {
 
 std::vector<Parameter> BiomesParameters::declarations() {
   return {
+      flag("biomes.seasons", seasons,
+           "only biomes whose seasons the climate has: tropical ones where no month is below 18 "
+           "degC, Mediterranean scrub where summers are dry",
+           "kottek2006"),
       choice("biomes.treeline", treeline, {"thermal", "fixed"},
              "where trees end: where the growing season is too cold or short, or at a fixed height",
              "paulsen2014"),

@@ -28,6 +28,10 @@ KoppenIndices monthly_indices(const std::array<double, 12>& temperature_c,
 /// harmonics count from its summer. `seasonality` is cut to [-1, 1], so that no month is negative.
 KoppenIndices harmonic_indices(double mean_c, double range_k, double annual_mm, double seasonality);
 
+/// Whether summers are the dry season, as in Cs and Ds: a month of the summer half-year below 40 mm
+/// and a third of the wettest one in winter.
+bool has_dry_summers(const KoppenIndices& climate);
+
 /// Köppen-Geiger class, numbered 1 (Af) to 30 (EF) as in Beck et al. (2018), whose rules these are
 /// (after Peel et al. 2007): arid B before everything, then A, C, D and polar E. Peel tests E
 /// first; the two differ for cold deserts alone.

@@ -1,17 +1,55 @@
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
 #include <span>
 
 #include "geo/core/field.hpp"
 #include "geo/core/grid.hpp"
+#include "geo/kernels/koppen.hpp"
 
 namespace geo {
 
-/// Biome whose centroid is nearest in (T / 15 °C, P / 500 mm) among the land biomes that climate
-/// alone sets (all but ocean and alpine); of equal distances the lower number. Tundra can be left
-/// out, for places known to be warm enough for trees. Method: Whittaker (1975).
-Biome nearest_biome(double temperature_c, double precipitation_mm_yr, bool with_tundra = true);
+/// Some of the biomes.
+class BiomeSet {
+ public:
+  constexpr BiomeSet() = default;
+  constexpr BiomeSet(std::initializer_list<Biome> biomes) {
+    for (const Biome b : biomes) bits_ |= bit(b);
+  }
+  [[nodiscard]] constexpr bool has(Biome b) const { return (bits_ & bit(b)) != 0; }
+  [[nodiscard]] constexpr BiomeSet without(Biome b) const {
+    BiomeSet rest;
+    rest.bits_ = bits_ & ~bit(b);
+    return rest;
+  }
+
+ private:
+  static constexpr unsigned bit(Biome b) { return 1U << static_cast<unsigned>(b); }
+  unsigned bits_ = 0;
+};
+
+/// The land biomes that climate alone sets: all but alpine.
+inline constexpr BiomeSet kClimaticBiomes{Biome::tundra,
+                                          Biome::boreal_forest,
+                                          Biome::temperate_forest,
+                                          Biome::temperate_grassland,
+                                          Biome::mediterranean_scrub,
+                                          Biome::tropical_rainforest,
+                                          Biome::tropical_savanna,
+                                          Biome::hot_desert,
+                                          Biome::subtropical_forest,
+                                          Biome::steppe};
+
+/// Biome whose centroid is nearest in (T / 15 °C, P / 500 mm) among some of the climatic ones; of
+/// equal distances the first in their list; tundra if there are none. Method: Whittaker (1975).
+Biome nearest_biome(double temperature_c, double precipitation_mm_yr,
+                    BiomeSet among = kClimaticBiomes);
+
+/// The climatic biomes whose seasons a climate has. Where no month is below 18 °C (Köppen's
+/// tropics) these are rainforest, savanna and desert; elsewhere all but the rainforest, and
+/// Mediterranean scrub only where summers are the dry season (third letter s of Köppen and Geiger).
+BiomeSet biomes_in_season(const KoppenIndices& climate);
 
 /// Part of the harmonic year T = mean + range / 2 cos(θ) that is warmer than a threshold.
 struct GrowingSeason {

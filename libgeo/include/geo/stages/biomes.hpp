@@ -9,6 +9,7 @@
 namespace geo {
 
 struct BiomesParameters {
+  bool seasons = true;
   std::string treeline = "thermal";
   double treeline_m = 2000.0;
   double treeline_onset_m = 1700.0;
