@@ -20,7 +20,7 @@ namespace terrane {
 namespace {
 
 struct IslandOptions {
-  std::string folder, center, size, cell;
+  std::string folder, center, size, cell, detail, exemplars;
   bool no_maps = false;
   bool quiet = false;
 };
@@ -56,6 +56,11 @@ void make_island(const IslandOptions& options) {
   if (!options.center.empty()) set(configuration, "island.center", options.center);
   if (!options.size.empty()) set_size(configuration, options.size);
   if (!options.cell.empty()) set(configuration, "island.cell_m", options.cell);
+  if (!options.exemplars.empty()) {
+    configuration.settings.exemplars = std::filesystem::absolute(options.exemplars).string();
+    set(configuration, "island.detail", "exemplars");
+  }
+  if (!options.detail.empty()) set(configuration, "island.detail", options.detail);
   if (options.no_maps) configuration.settings.maps = false;
 
   geo::io::IslandSession session(configuration.pipeline, configuration.stage_numbers().back(),
@@ -90,6 +95,15 @@ void add_island_command(CLI::App& program, Action& action) {
       ->type_name("NX,NY");
   command->add_option("--cell", options->cell, "Size of its cells (default: as the run)")
       ->type_name("METRES");
+  command
+      ->add_option("--detail", options->detail,
+                   "What its detail is made of: roughness, height or exemplars (default: as the "
+                   "run)")
+      ->type_name("WORD");
+  command
+      ->add_option("--exemplars", options->exemplars,
+                   "Folder of real reliefs (NetCDF, GeoTIFF, m) that its terrain is made like")
+      ->type_name("DIR");
   command->add_flag("--no-maps", options->no_maps, "Draw no maps");
   command->add_flag("--quiet", options->quiet, "Say nothing but warnings and errors");
   command->callback([&action, options] { action = [options] { make_island(*options); }; });

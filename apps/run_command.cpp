@@ -27,16 +27,17 @@ namespace fs = std::filesystem;
 
 /// The command line of `run` as it was typed.
 struct RunOptions {
-  std::string config, folder = "out", preset, seed, grid, dem, from, to, threads;
+  std::string config, folder = "out", preset, seed, grid, dem, exemplars, from, to, threads;
   std::vector<std::string> assignments;
   bool resume = false, overwrite = false, dry_run = false;
   bool quiet = false, log_json = false, no_vtk = false, no_maps = false;
 };
 
 /// A path that the configuration gives is relative to where the configuration file lies.
-void anchor_dem(geo::io::RunSettings& settings, const fs::path& folder) {
-  if (settings.dem_file.empty()) return;
-  settings.dem_file = fs::absolute(folder / settings.dem_file).lexically_normal().string();
+void anchor_paths(geo::io::RunSettings& settings, const fs::path& folder) {
+  for (std::string* path : {&settings.dem_file, &settings.exemplars}) {
+    if (!path->empty()) *path = fs::absolute(folder / *path).lexically_normal().string();
+  }
 }
 
 void set_option(const Configuration& configuration, std::string_view option, std::string_view name,
@@ -69,7 +70,7 @@ bool configure(Configuration& configuration, const RunOptions& options) {
   }
   if (!file.empty()) {
     geo::io::apply_config_file(file, parameters, &settings.events);
-    anchor_dem(settings, file.parent_path());
+    anchor_paths(settings, file.parent_path());
   }
   if (!options.dem.empty()) {
     const auto [path, variable] = geo::io::split_dem(options.dem);
@@ -79,7 +80,11 @@ bool configure(Configuration& configuration, const RunOptions& options) {
   for (const std::string& assignment : options.assignments) {
     geo::io::apply_assignment(assignment, parameters);
   }
-  anchor_dem(settings, fs::current_path());
+  if (!options.exemplars.empty()) {
+    settings.exemplars = options.exemplars;
+    set_option(configuration, "--exemplars", "island.detail", "exemplars");
+  }
+  anchor_paths(settings, fs::current_path());
   set_option(configuration, "--seed", "run.seed", options.seed);
   set_option(configuration, "--grid", "run.grid", options.grid);
   if (options.no_vtk) settings.vtk = false;
@@ -171,6 +176,11 @@ void add_run_command(CLI::App& program, Action& action) {
                    "A real relief takes the place of plates and isostasy; without --preset, preset "
                    "earth-dem")
       ->type_name("FILE[:VARIABLE]");
+  command
+      ->add_option("--exemplars", o.exemplars,
+                   "Folder of real reliefs (NetCDF, GeoTIFF, m) that the island's terrain is made "
+                   "like")
+      ->type_name("DIR");
   command
       ->add_option("--from", o.from,
                    "First stage. In a new folder it starts from the relief itself; with "

@@ -59,6 +59,45 @@ Words island_files(const fs::path& folder) {
   return names;
 }
 
+TEST_F(Island, ExemplarsAreThoseOfAFolderOrGrown) {
+  run({"--set", "output.maps=false"});
+  // An island is as good an exemplar as any.
+  fs::create_directory(folder_ / "exemplars");
+  fs::copy_file(out_ / "07-island.nc", folder_ / "exemplars/himalayan.nc");
+  const auto with_cache = [&](Words more) {
+    Words arguments{"island", out_.string(), "--cell=1000", "--size=96,64", "--no-maps"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return terrane(Call{.arguments = arguments,
+                        .environment = {{"XDG_CACHE_HOME", (folder_ / "cache").string()}},
+                        .working_folder = {}});
+  };
+  const Outcome given = with_cache({"--exemplars", (folder_ / "exemplars").string()});
+  EXPECT_EQ(given.code, 0) << given.err;
+  const Outcome grown = with_cache({"--detail", "exemplars"});
+  EXPECT_EQ(grown.code, 0) << grown.err;
+  EXPECT_FALSE(fs::is_empty(folder_ / "cache/terrane"));
+  const auto elevation = [&](const std::string& island) {
+    for (const std::string& line : digests_of(out_)) {
+      if (line.starts_with(island + "/elevation: ")) return line.substr(island.size());
+    }
+    return std::string();
+  };
+  EXPECT_NE(elevation("island-2"), "");
+  EXPECT_NE(elevation("island-2"), elevation("island-3"));
+}
+
+TEST_F(Island, AFolderOfExemplarsThatCannotBeUsedIsRefused) {
+  run({"--set", "output.maps=false"});
+  const auto folder = [&](const char* name) { return (folder_ / name).string(); };
+  expect_refusal({"--exemplars", folder("absent")}, 4, {"exemplars", "absent"});
+  fs::create_directory(folder_ / "empty");
+  expect_refusal({"--exemplars", folder("empty")}, 3, {"exemplars", "empty", "GeoTIFF"});
+  fs::create_directory(folder_ / "broken");
+  std::ofstream(folder_ / "broken/a.tif") << "no picture";
+  expect_refusal({"--exemplars", folder("broken")}, 3, {"a.tif", "TIFF"});
+  expect_refusal({"--detail", "exemplar"}, 2, {"island.detail", "exemplars"});
+}
+
 TEST_F(Island, FurtherOnesAreNumberedAndListed) {
   run();
   const auto before = contents_of(out_);

@@ -266,6 +266,10 @@ Relief read_relief(const std::string& file_and_variable, const Planet& planet) {
   return read_raster(file_and_variable, "", "m", Gaps::refused, planet);
 }
 
+Relief read_relief_with_gaps(const std::string& file_and_variable, const Planet& planet) {
+  return read_raster(file_and_variable, "", "m", Gaps::nan, planet);
+}
+
 Relief read_field(const std::string& file_and_variable, const FieldSpec& spec,
                   const Planet& planet) {
   return read_raster(file_and_variable, std::string(spec.name), std::string(spec.units),

@@ -10,6 +10,7 @@
 #include "geo/core/error.hpp"
 #include "geo/io/build_info.hpp"
 #include "geo/io/config.hpp"
+#include "geo/io/exemplar_files.hpp"
 #include "geo/io/run_pictures.hpp"
 #include "geo/io/source_date.hpp"
 #include "geo/io/stage_file.hpp"
@@ -69,6 +70,7 @@ void IslandSession::prepare() {
         folder_.path().string(), spec->name, folder_.path().string()));
   }
   folder_.check_writable(0.0);
+  if (asks_for_exemplars(parameters_)) exemplars_ = exemplars_of(settings_.exemplars, planet_);
 }
 
 State IslandSession::read_planet() const {
@@ -123,6 +125,7 @@ std::string IslandSession::execute(const RunEvents& events) {
   Context context;
   context.planet = planet_;
   context.seed = seed;
+  context.exemplars = exemplars_;
   context.on_progress = events.progress;
   context.stop = events.stop;
   StageRecord record;

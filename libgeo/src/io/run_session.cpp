@@ -14,6 +14,7 @@
 #include "geo/io/atomic_file.hpp"
 #include "geo/io/background_writer.hpp"
 #include "geo/io/build_info.hpp"
+#include "geo/io/exemplar_files.hpp"
 #include "geo/io/hypsography.hpp"
 #include "geo/io/island_session.hpp"
 #include "geo/io/run_pictures.hpp"
@@ -178,6 +179,8 @@ void RunSession::compute(const RunEvents& events) {
   context.hypsography = hypsography();
   context.plates = plates_;
   context.first_relief = first_relief_;
+  if (makes_exemplars() && !exemplars_) exemplars_ = exemplars_of({}, planet_);
+  context.exemplars = exemplars_;
   context.events = settings_.events;
   context.on_progress = events.progress;
   context.stop = events.stop;

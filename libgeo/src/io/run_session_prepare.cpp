@@ -9,6 +9,7 @@
 #include "geo/io/build_info.hpp"
 #include "geo/io/config.hpp"
 #include "geo/io/dem.hpp"
+#include "geo/io/exemplar_files.hpp"
 #include "geo/io/hypsography.hpp"
 #include "geo/io/plate_outlines.hpp"
 #include "geo/io/run_session.hpp"
@@ -157,6 +158,7 @@ void RunSession::prepare() {
   check_events(settings_.events, grid(), planet_);
   read_given_fields();
   read_beginning();
+  read_given_exemplars();
   if (!settings_.start_frame.empty()) (void)read_checkpoint(settings_.start_frame);
   (void)hypsography();  // refuses a bad one before anything is computed
   pipeline_.check(state_->present(), first_, last_);
@@ -435,6 +437,18 @@ void RunSession::read_beginning() {
     given.age_myr = resample(age, given.grid);
   }
   first_relief_ = std::make_shared<const GivenRelief>(std::move(given));
+}
+
+/// Refuses bad ones before anything is computed; those that terrane grows can wait.
+void RunSession::read_given_exemplars() {
+  if (settings_.exemplars.empty() || !makes_exemplars()) return;
+  exemplars_ = exemplars_of(settings_.exemplars, planet_);
+}
+
+/// Whether an island is still to be made, and like exemplars.
+bool RunSession::makes_exemplars() const {
+  return first_ <= last_ && pipeline_.stages()[last_]->info().own_grid &&
+         asks_for_exemplars(parameters_);
 }
 
 Prediction RunSession::prediction() const {

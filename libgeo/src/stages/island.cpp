@@ -71,10 +71,22 @@ void add_endorheic_bottoms(const PlanetCells& cells, std::span<const Index> rece
   }
 }
 
+/// What exemplars are chosen and turned by.
+StageInfo guided_by_folds(StageInfo info) {
+  for (const FieldSpec* spec : std::initializer_list<const FieldSpec*>{
+           &field::orogeny_type, &field::orogeny_age, &field::fold_direction_east,
+           &field::fold_direction_north}) {
+    info.optional.push_back(spec);
+  }
+  return info;
+}
+
 class IslandStage final : public Stage {
  public:
   explicit IslandStage(IslandParameters parameters) : p_(std::move(parameters)) {}
-  [[nodiscard]] const StageInfo& info() const override { return info_; }
+  [[nodiscard]] const StageInfo& info() const override {
+    return follows_exemplars() ? guided_ : info_;
+  }
   [[nodiscard]] std::vector<Parameter> parameters() override { return p_.declarations(); }
 
   void run(StageIo& io, Context& context) const override {
@@ -109,15 +121,36 @@ class IslandStage final : public Stage {
     return planet.position(planet.column(best), planet.row(best));
   }
 
+  [[nodiscard]] bool follows_exemplars() const { return p_.detail == "exemplars"; }
+
+  [[nodiscard]] PlanetRelief relief_of(const StageIo& io) const {
+    const auto guide = [&]<class T>(const Field<T>& spec) {
+      return follows_exemplars() ? io.read_optional(spec) : std::span<const T>{};
+    };
+    return {io.read(field::elevation),
+            io.read_optional(field::boundary_type),
+            io.read_optional(field::erodibility),
+            guide(field::orogeny_type),
+            guide(field::orogeny_age),
+            guide(field::fold_direction_east),
+            guide(field::fold_direction_north)};
+  }
+
+  [[nodiscard]] std::shared_ptr<const ExemplarLibrary> exemplars_of(const Context& context) const {
+    if (!follows_exemplars()) return {};
+    if (context.exemplars) return context.exemplars;
+    return std::make_shared<const ExemplarLibrary>(grow_exemplars());
+  }
+
   void shape_relief(const StageIo& io, Context& context, const PlanetCells& cells,
                     std::span<float> planets_m, State& state) const {
     ErosionParameters law;
     configure(law.declarations(), context.configuration);
     const Grid& fine = cells.fine();
-    const PlanetRelief planet{io.read(field::elevation), io.read_optional(field::boundary_type),
-                              io.read_optional(field::erodibility)};
+    const PlanetRelief planet = relief_of(io);
     const auto z = state.update(field::elevation);
-    raise_island(cells, planet, p_, context.seed, planets_m, z);
+    const auto exemplars = exemplars_of(context);
+    raise_island(cells, planet, p_, exemplars.get(), context.seed, planets_m, z);
 
     const auto inflow_area = state.update(field::inflow_area);
     const auto inflow = state.update(field::inflow_discharge);
@@ -246,6 +279,7 @@ class IslandStage final : public Stage {
                  &field::net_primary_productivity,
                  &field::settlement_suitability},
       .own_grid = true};
+  StageInfo guided_ = guided_by_folds(info_);
 };
 
 }  // namespace

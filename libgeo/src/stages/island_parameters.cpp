@@ -11,10 +11,12 @@ std::vector<Parameter> IslandParameters::declarations() {
       integer("island.ny", ny, "1", 32, 8192, "rows of the island's grid", "tectonica2026"),
       real("island.cell_m", cell_m, "m", 10.0, 20000.0, "size of the island's cells",
            "tectonica2026"),
-      choice("island.detail", detail, {"roughness", "height"},
-             "what the amplitude of fractal detail follows: the roughness of the planet's relief "
-             "around, whose spectrum it continues, or the height itself",
-             "huang1989"),
+      choice(
+          "island.detail", detail, {"roughness", "height", "exemplars"},
+          "fractal detail whose amplitude follows the roughness of the planet's relief around, "
+          "whose spectrum it continues, or the height itself; or relief of exemplars, by terrain "
+          "and along folds, as high as that roughness",
+          "cortial2019"),
       real("island.detail_amplitude", detail_amplitude, "1", 0.0, 10.0,
            "standard deviation of detail over the roughness of the planet's cells", "huang1989"),
       real("island.detail_hurst", detail_hurst, "1", 0.0, 1.0,
@@ -24,6 +26,12 @@ std::vector<Parameter> IslandParameters::declarations() {
       real(
           "island.coast_fray", coast_fray, "1", 0.0, 1.0,
           "standard deviation by which bays and headlands displace a coast, in cells of the planet",
+          "design"),
+      real("island.old_orogeny_myr", old_orogeny_myr, "Myr", 0.0, 5000.0,
+           "age from which mountains look like exemplars of old ones", "cortial2019"),
+      real(
+          "island.plain_slope", plain_slope, "1", 0.0, 1.0,
+          "rise over run of the planet's relief below which a place looks like exemplars of plains",
           "design"),
       real("island.height_amplitude", height_amplitude, "1", 0.0, 1.0,
            "amplitude of detail over height, where it follows height", "tectonica2026"),

@@ -7,7 +7,9 @@
 #include "geo/kernels/catmull_rom.hpp"
 #include "geo/kernels/depressions.hpp"
 #include "geo/kernels/diffusion.hpp"
+#include "geo/kernels/exemplar_detail.hpp"
 #include "geo/kernels/noise.hpp"
+#include "geo/kernels/shapes.hpp"
 #include "geo/kernels/stream_power.hpp"
 #include "geo/stages/erosion/ground.hpp"
 
@@ -101,9 +103,63 @@ double with_detail(double height_m, double detail_m, double inland) {
   return plainly + inland * (height_m * std::exp(detail_m / height_m) - plainly);
 }
 
+/// Unit detail of exemplars. Waves that they do not hold, too long for a piece of them or too short
+/// for their cells, are noise of the same law.
+std::vector<float> exemplary_detail(const PlanetCells& cells, const PlanetRelief& planet,
+                                    const IslandParameters& p, const DetailLaw& law,
+                                    const ExemplarLibrary& library, std::uint64_t seed) {
+  const Grid& fine = cells.fine();
+  const ExemplarBand band =
+      exemplar_band(library, 0.5 * law.wavelength_m, p.cell_m, p.detail_hurst);
+  const auto octave_of = [&](double wavelength_m) {
+    const double octave = std::log2(law.wavelength_m / wavelength_m);
+    return std::clamp(static_cast<int>(std::lround(octave)), 0, law.octaves);
+  };
+  const int first = octave_of(band.longest_m);
+  const int last = std::max(first, octave_of(0.5 * band.shortest_m));
+  const auto deviation = [&](int begin, int end) {
+    const auto variance = [&](int from, int to) {
+      double sum = 0.0;
+      for (int k = from; k < to; ++k) sum += std::exp2(-2.0 * p.detail_hurst * k);
+      return sum;
+    };
+    return static_cast<float>(std::sqrt(variance(begin, end) / variance(0, law.octaves)));
+  };
+  std::vector<float> detail(fine.size()), part(fine.size());
+  exemplar_detail(cells.planet(),
+                  {planet.elevation_m, planet.orogeny_type, planet.orogeny_age_myr,
+                   planet.fold_east, planet.fold_north, p.old_orogeny_myr, p.plain_slope},
+                  fine, library, band, seed, detail);
+  for (float& value : detail) value *= deviation(first, last);
+  const auto add_octaves = [&](int begin, int end) {
+    if (begin >= end) return;
+    unit_detail(fine, {law.wavelength_m * std::exp2(-begin), end - begin, law.gain}, seed,
+                "island.detail", part);
+    const float factor = deviation(begin, end);
+    for (std::size_t c = 0; c < detail.size(); ++c) detail[c] += factor * part[c];
+  };
+  add_octaves(0, first);
+  add_octaves(last, law.octaves);
+  return detail;
+}
+
+/// Makes unit detail on land that of exemplars.
+void take_exemplars(const PlanetCells& cells, const PlanetRelief& planet, const IslandParameters& p,
+                    const DetailLaw& law, const ExemplarLibrary& library, std::uint64_t seed,
+                    std::span<const float> planet_m, std::span<float> detail) {
+  constexpr double kShallow_m = -200.0;
+  const std::vector<float> exemplary = exemplary_detail(cells, planet, p, law, library, seed);
+  on_cells(cells.fine(), [&](int, int, Index c) {
+    const double land = smooth_step(kShallow_m, 0.0, static_cast<double>(planet_m[c]));
+    detail[c] =
+        static_cast<float>(std::sqrt(land) * exemplary[c] + std::sqrt(1.0 - land) * detail[c]);
+  });
+}
+
 /// Detail that continues the planet's roughness, its mean over each planet cell taken out.
-void add_rough_detail(const PlanetCells& cells, std::span<const float> planet_elevation_m,
-                      const IslandParameters& p, std::uint64_t seed, std::span<float> z) {
+void add_rough_detail(const PlanetCells& cells, const PlanetRelief& planet,
+                      const IslandParameters& p, const ExemplarLibrary* exemplars,
+                      std::uint64_t seed, std::span<const float> planet_m, std::span<float> z) {
   const Grid& fine = cells.fine();
   const double spacing_m = cells.planet().face_east_m(cells.first_row());
   DetailLaw law;
@@ -112,7 +168,10 @@ void add_rough_detail(const PlanetCells& cells, std::span<const float> planet_el
   law.gain = std::exp2(-p.detail_hurst);
   std::vector<float> detail(fine.size()), roughness(cells.size());
   unit_detail(fine, law, seed, "island.detail", detail);
-  local_roughness(cells, planet_elevation_m, roughness);
+  if (exemplars != nullptr) {
+    take_exemplars(cells, planet, p, law, *exemplars, seed, planet_m, detail);
+  }
+  local_roughness(cells, planet.elevation_m, roughness);
   for (float& rough_m : roughness) {
     rough_m = std::max(rough_m, static_cast<float>(p.least_roughness_m));
   }
@@ -121,7 +180,7 @@ void add_rough_detail(const PlanetCells& cells, std::span<const float> planet_el
     detail[c] *= static_cast<float>(p.detail_amplitude * rough_m);
   });
   const std::vector<float> mean = cells.means(detail, {}, 0.0F);
-  const std::vector<float> dry = all_round(cells, planet_elevation_m, /*land=*/true);
+  const std::vector<float> dry = all_round(cells, planet.elevation_m, /*land=*/true);
   on_cells(fine, [&](int i, int j, Index c) {
     const double centred_m = detail[c] - cells.interpolate(mean, i, j);
     z[c] = static_cast<float>(with_detail(z[c], edge_ramp(fine, i, j, seam_m(cells)) * centred_m,
@@ -209,17 +268,18 @@ void restore_means(const PlanetCells& cells, std::span<const float> target,
 }  // namespace
 
 void raise_island(const PlanetCells& cells, const PlanetRelief& planet, const IslandParameters& p,
-                  std::uint64_t seed, std::span<float> planet_m, std::span<float> elevation_m) {
+                  const ExemplarLibrary* exemplars, std::uint64_t seed, std::span<float> planet_m,
+                  std::span<float> elevation_m) {
   on_cells(cells.fine(), [&](int i, int j, Index c) {
     const CatmullRom stencil(cells.planet(), cells.fine().position(i, j));
     planet_m[c] = static_cast<float>(stencil.of(planet.elevation_m));
   });
-  if (p.detail == "roughness") {
-    read_planet(cells, planet.elevation_m, p, seed, planet_m, elevation_m);
-    add_rough_detail(cells, planet.elevation_m, p, seed, elevation_m);
-  } else {
+  if (p.detail == "height") {
     std::copy(planet_m.begin(), planet_m.end(), elevation_m.begin());
     add_height_detail(cells, p, seed, elevation_m);
+  } else {
+    read_planet(cells, planet.elevation_m, p, seed, planet_m, elevation_m);
+    add_rough_detail(cells, planet, p, exemplars, seed, planet_m, elevation_m);
   }
   dry_inland_dips(cells, planet.elevation_m, elevation_m);
   if (p.edge_fade) sink_edges(cells.fine(), p, seed, elevation_m);

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "geo/kernels/exemplar.hpp"
 #include "geo/kernels/fine_relief.hpp"
 #include "geo/stages/erosion.hpp"
 #include "geo/stages/island.hpp"
@@ -15,12 +16,16 @@ struct PlanetRelief {
   std::span<const float> elevation_m;
   std::span<const std::int8_t> boundary_type;  ///< may be empty
   std::span<const float> erodibility;          ///< may be empty
+  std::span<const std::int8_t> orogeny_type;   ///< may be empty, as all below
+  std::span<const float> orogeny_age_myr, fold_east, fold_north;
 };
 
 /// Interpolated relief with detail, before any erosion.
+/// @param exemplars what detail is made like; null unless `p.detail` asks for it
 /// @param planet_m  out: the interpolated relief alone
 void raise_island(const PlanetCells& cells, const PlanetRelief& planet, const IslandParameters& p,
-                  std::uint64_t seed, std::span<float> planet_m, std::span<float> elevation_m);
+                  const ExemplarLibrary* exemplars, std::uint64_t seed, std::span<float> planet_m,
+                  std::span<float> elevation_m);
 
 /// Erodibility of each fine cell, or one for all: by boundary as given, else the planet's resolved
 /// for the fine cells by the law of its own erosion.

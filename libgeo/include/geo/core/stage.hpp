@@ -50,6 +50,8 @@ struct Hypsography {
   std::vector<double> fraction, elevation_m;
 };
 
+struct ExemplarLibrary;  // kernels/exemplar.hpp
+
 /// What a run gives a stage besides fields: the planet, the seed, and ways to be heard.
 struct Context {
   Planet planet;
@@ -59,6 +61,8 @@ struct Context {
   /// The first plates and the first relief of a history; empty unless given.
   std::vector<PlateOutline> plates;
   std::shared_ptr<const GivenRelief> first_relief;
+  /// What terrain is made like, where exemplars are asked for; empty: stages grow their own.
+  std::shared_ptr<const ExemplarLibrary> exemplars;
   /// What befalls the planet; empty unless asked for.
   std::vector<Event> events;
   /// Called with the fraction of the stage that is done; may be empty.

@@ -29,6 +29,8 @@ struct Relief {
 /// lists the candidates. Throws InputError for unusable data (missing or NaN cells with their
 /// index, wrong units, truncated file, irregular axes), IoError when it cannot be opened.
 Relief read_relief(const std::string& file_and_variable, const Planet& planet);
+/// The same where cells may be missing: they are NaN.
+Relief read_relief_with_gaps(const std::string& file_and_variable, const Planet& planet);
 /// The same for any other field that is given as a raster (`elevation_m` then holds its values in
 /// the units of the vocabulary, or of the file where those are empty). Without VARIABLE the one
 /// named as the field, else the only raster.

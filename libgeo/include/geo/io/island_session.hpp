@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 
@@ -46,6 +47,7 @@ class IslandSession {
   RunFolder folder_;
   Manifest manifest_;
   int stage_ = -1;
+  std::shared_ptr<const ExemplarLibrary> exemplars_;
 };
 
 }  // namespace geo::io

@@ -87,6 +87,8 @@ class RunSession {
   void read_initial_relief();
   void read_given_fields();
   void read_beginning();
+  void read_given_exemplars();
+  [[nodiscard]] bool makes_exemplars() const;
   [[nodiscard]] Hypsography hypsography() const;
   [[nodiscard]] int count_complete_stages() const;
   [[nodiscard]] bool is_complete(int position) const;
@@ -122,6 +124,7 @@ class RunSession {
   std::optional<State> state_;
   std::vector<PlateOutline> plates_;
   std::shared_ptr<const GivenRelief> first_relief_;
+  std::shared_ptr<const ExemplarLibrary> exemplars_;
 };
 
 }  // namespace geo::io

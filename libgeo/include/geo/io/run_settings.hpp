@@ -37,6 +37,7 @@ struct RunSettings {
   std::string first_relief;  ///< FILE[:VARIABLE]
   std::string first_age;     ///< FILE[:VARIABLE]
   std::string start_frame;
+  std::string exemplars;  ///< folder
 
   bool vtk = true;
   bool globe = false;

@@ -21,6 +21,8 @@ struct IslandParameters {
   double detail_hurst = 0.75;
   double least_roughness_m = 2.0;
   double coast_fray = 0.5;
+  double old_orogeny_myr = 100.0;
+  double plain_slope = 0.005;
   double height_amplitude = 0.15;
   double height_frequency = 8.0;
   std::int64_t height_octaves = 6;
@@ -50,8 +52,8 @@ struct IslandParameters {
 
 /// A part of the planet seen closer, on an equal-area grid of its own (Tectonica blueprint,
 /// section 9): the most interesting window or a given place; relief by Catmull-Rom interpolation
-/// and fractal detail; some fine steps of erosion with the rivers that enter from outside; then
-/// hydrology, climate, biomes and settlement.
+/// and detail, fractal or after exemplars (Cortial et al. 2019, section 5); some fine steps of
+/// erosion with the rivers that enter from outside; then hydrology, climate, biomes and settlement.
 ///
 /// The crop inherits the planet: its edge keeps the planet's heights, rivers enter with their area
 /// and discharge, mean heights of land over each planet cell stay (the crust rises by as much as

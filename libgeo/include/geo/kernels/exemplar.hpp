@@ -1,0 +1,66 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "geo/core/grid.hpp"
+
+namespace geo {
+
+/// What kind of relief a place has (Cortial et al. 2019, section 5): mountains above subduction,
+/// of a collision, long worn down, or none.
+enum class Terrain : std::uint8_t { andean, himalayan, old_mountains, plain };
+inline constexpr int kTerrains = 4;
+/// "andean", "himalayan", "old_mountains", "plain".
+[[nodiscard]] std::string_view name_of(Terrain terrain);
+
+/// A piece of relief that terrain is made like: square cells, row 0 the southernmost.
+struct Exemplar {
+  std::string name;
+  Terrain terrain = Terrain::plain;
+  int nx = 0, ny = 0;
+  double cell_m = 0.0;
+  bool periodic = false;  ///< opposite edges meet
+  std::vector<float> elevation_m;
+  /// Measured (measure_exemplar):
+  double fold_rad = 0.0;       ///< direction of its ridges, from east, without sign
+  double fold_strength = 0.0;  ///< 0 where they run any way, 1 where all run one way
+  float lowest_m = 0.0F, highest_m = 0.0F;
+  double local_relief_m = 0.0;  ///< mean range of heights within squares of 10 km
+
+  [[nodiscard]] Grid grid() const;
+};
+
+struct ExemplarLibrary {
+  std::vector<Exemplar> exemplars;
+};
+
+/// Main direction of ridges by the structure tensor, and how strongly it is the main one:
+///   tan 2 a = 2 <g_x g_y> / (<g_x^2> - <g_y^2>),  ridges across a,
+///   strength = |(<g_x^2> - <g_y^2>, 2 <g_x g_y>)| / (<g_x^2> + <g_y^2>),
+/// g the gradient (central differences within the plane or torus). Returns {angle from east within
+/// [0, pi), strength}. Bigün & Granlund (1987).
+[[nodiscard]] std::array<double, 2> ridge_direction(const Grid& grid,
+                                                    std::span<const float> elevation_m);
+
+/// Fills what is measured: the fold direction of the relief smoothed over 3 % of its shorter side,
+/// the range of elevations and the local relief. With no `terrain` that of its local relief:
+/// himalayan from 1500 m, andean from 600 m, old mountains from 150 m. Throws InputError when it
+/// has fewer than 32 cells a side, cells of no size, more than 2000 km, heights that are no
+/// numbers, or no relief.
+void measure_exemplar(Exemplar& exemplar, std::optional<Terrain> terrain = {});
+
+/// A library grown with the kernel that wears continents down: for each terrain, stream power and
+/// creep against uplift on a torus of 77 km, over beds of hard and soft rock and folds that run
+/// east. Uplift is one-sided (andean), broad and fast (himalayan), slow over strongly banded rock
+/// with much creep (old mountains), or next to none (plain). A function of nothing: the same
+/// library always. Takes some seconds.
+[[nodiscard]] ExemplarLibrary grow_exemplars();
+[[nodiscard]] Exemplar grow_exemplar(Terrain terrain);
+
+}  // namespace geo

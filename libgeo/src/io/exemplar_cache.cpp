@@ -1,0 +1,105 @@
+#include "exemplar_cache.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdlib>
+#include <memory>
+#include <system_error>
+
+#include "geo/core/error.hpp"
+#include "geo/io/atomic_file.hpp"
+#include "geo/io/build_info.hpp"
+#include "geo/io/digest.hpp"
+#include "netcdf_file.hpp"
+
+namespace geo::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string digest_of_elevation(const std::vector<float>& elevation_m) {
+  return digest_of(Values(elevation_m));
+}
+
+}  // namespace
+
+fs::path exemplar_cache() {
+  const auto folder = [](const char* variable) {
+    const char* const value = std::getenv(variable);
+    return fs::path(value == nullptr ? "" : value);
+  };
+  fs::path cache = folder("XDG_CACHE_HOME");
+  if (!cache.is_absolute()) {
+    const fs::path home = folder("HOME");
+    if (!home.is_absolute()) return {};
+    cache = home / ".cache";
+  }
+  const BuildInfo& build = build_info();
+  const std::string key = digest_of(build.version + build.commit + build.compiler);
+  return cache / "terrane" / fmt::format("exemplars-{}.nc", key.substr(0, 16));
+}
+
+std::optional<ExemplarLibrary> read_cached(const fs::path& path) {
+  std::error_code error;
+  if (path.empty() || !fs::exists(path, error)) return {};
+  try {
+    const auto file = nc::File::open(path);
+    ExemplarLibrary library;
+    for (int t = 0; t < kTerrains; ++t) {
+      const auto terrain = static_cast<Terrain>(t);
+      const auto variable = file.find_variable(name_of(terrain));
+      if (!variable) return {};
+      const auto dimensions = file.dimensions_of(*variable);
+      const auto cell_m = file.numbers(*variable, "cell_m");
+      if (dimensions.size() != 2 || cell_m.size() != 1) return {};
+      Exemplar e{.name = std::string(name_of(terrain)),
+                 .nx = static_cast<int>(file.dimension_size(dimensions[1])),
+                 .ny = static_cast<int>(file.dimension_size(dimensions[0])),
+                 .cell_m = cell_m[0],
+                 .periodic = true,
+                 .elevation_m = {}};
+      e.elevation_m.resize(static_cast<std::size_t>(e.nx) * e.ny);
+      nc::check(nc_get_var_float(file.id(), *variable, e.elevation_m.data()));
+      if (file.text(*variable, "digest") != digest_of_elevation(e.elevation_m)) return {};
+      measure_exemplar(e, terrain);
+      library.exemplars.push_back(std::move(e));
+    }
+    return library;
+  } catch (const nc::Failure&) {
+    return {};
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+void write_cached(const fs::path& path, const ExemplarLibrary& library) {
+  if (path.empty()) return;
+  try {
+    fs::create_directories(path.parent_path());
+    AtomicFile target(path);
+    auto file = nc::File::create(target.temporary());
+    file.put(NC_GLOBAL, "title", "terrane: exemplars grown by this build; safe to delete");
+    const Exemplar& first = library.exemplars.front();
+    const std::array dimensions{file.define_dimension("y", first.ny),
+                                file.define_dimension("x", first.nx)};
+    std::vector<int> variables;
+    for (const Exemplar& e : library.exemplars) {
+      variables.push_back(file.define_variable(e.name, NC_FLOAT, dimensions));
+      file.put(variables.back(), "units", "m");
+      file.put(variables.back(), "long_name", "elevation");
+      file.put(variables.back(), "cell_m", e.cell_m);
+      file.put(variables.back(), "digest", digest_of_elevation(e.elevation_m));
+    }
+    nc::check(nc_enddef(file.id()));
+    for (std::size_t k = 0; k < variables.size(); ++k) {
+      nc::check(nc_put_var_float(file.id(), variables[k], library.exemplars[k].elevation_m.data()));
+    }
+    file.close();
+    target.commit();
+  } catch (const std::exception&) {
+    // A run does not need its cache.
+  }
+}
+
+}  // namespace geo::io
