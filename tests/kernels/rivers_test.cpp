@@ -106,6 +106,35 @@ TEST(Carving, CutsToValleyDepthAndLessInBedrock) {
   EXPECT_NEAR(z[grid.cell(3, 1)], 1700 - 0.58 * depth, 1e-3);
 }
 
+TEST(Carving, ACoarseGridLosesAsMuchRockAsAFineOne) {
+  // A ramp 320 km long with a river down the middle, on cells as wide as a valley and wider.
+  constexpr double kWidth_m = 10e3, kDischarge_m3_s = 1000.0;
+  const auto carved_m3 = [&](double cell_m) {
+    const int nx = static_cast<int>(320e3 / cell_m);
+    const Grid grid = Grid::plane(nx, 3, cell_m, cell_m, Edges::closed);
+    std::vector<float> z(grid.size(), 2000.0F);
+    std::vector<std::uint8_t> sea(grid.size(), 0);
+    std::vector<double> discharge(grid.size(), 0.0);
+    for (int i = 0; i < nx; ++i) {
+      const double x_m = (i + 0.5) * cell_m;
+      z[grid.cell(i, 1)] = static_cast<float>(i == 0 ? -10.0 : 600.0 + 2e-3 * x_m);
+      discharge[grid.cell(i, 1)] = kDischarge_m3_s;
+    }
+    sea[grid.cell(0, 1)] = 1;
+    const auto before = z;
+    const auto graph = route_water(grid, z, find_outlets(grid, z)).graph;
+    carve_valleys(grid, graph, sea, discharge, {1.0, 1.0, 10.0, 0.0, kWidth_m}, z);
+    double sum = 0.0;
+    for (Index c = 0; c < grid.size(); ++c) sum += (before[c] - z[c]) * cell_m * cell_m;
+    return sum / (320e3 - cell_m);
+  };
+  const double section_m2 = kWidth_m * std::min(valley_depth(kDischarge_m3_s), 0.23 * 600.0);
+  EXPECT_NEAR(carved_m3(10e3) / section_m2, 1.0, 0.35) << "the head of the ramp is higher";
+  for (const double cell_m : {20e3, 40e3, 80e3}) {
+    EXPECT_NEAR(carved_m3(cell_m) / carved_m3(10e3), 1.0, 0.05) << cell_m;
+  }
+}
+
 // A dam of 150 m and 30 km above a pit at 100 m.
 struct Dam {
   Grid grid = Grid::plane(8, 3, 1e4, 1e4, Edges::closed);

@@ -30,6 +30,8 @@ State make_planet(std::uint64_t seed) {
   const Pipeline pipeline = make_pipeline();
   const auto parameters = pipeline.parameters();
   find_parameter(parameters, "climate.resolution_deg")->set_text("10");  // takes a moment only
+  // Valleys as wide as its cells, as those of a planet at full size are.
+  find_parameter(parameters, "hydrology.valley_width_km")->set_text("160");
   Context context;
   context.seed = seed;
   State whole(state.shared_grid());

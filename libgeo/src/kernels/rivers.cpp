@@ -101,7 +101,9 @@ void carve_valleys(const Grid& grid, const FlowGraph& graph, std::span<const std
     return sea[cell] == 0 && discharge_m3_s[cell] > law.threshold_m3_s;
   };
   // From the mouths upwards, so that receivers are final.
-  const auto lower = [&](Index cell, double wanted_m) {
+  const auto lower = [&](Index cell, double valley_m) {
+    const double share = std::min(1.0, law.width_m / std::sqrt(grid.area_m2(grid.row(cell))));
+    const double wanted_m = elevation_m[cell] + share * (valley_m - elevation_m[cell]);
     const Index to = graph.receiver[cell];
     const float base = to == cell ? elevation_m[cell] : std::max(elevation_m[to], 0.0F);
     if (base >= elevation_m[cell]) return;

@@ -156,7 +156,7 @@ class HydrologyStage final : public Stage {
     grade_rivers(grid, graph, outlets, discharge, {p_.gorge_factor, p_.gorge_length_km * 1000}, z);
     if (p_.carving > 0) {
       const CarvingLaw law{p_.carving, static_cast<double>(p_.carving_rounds),
-                           p_.river_threshold_m3_s, p_.valley_blend};
+                           p_.river_threshold_m3_s, p_.valley_blend, 1000 * p_.valley_width_km};
       carve_valleys(grid, graph, sea, discharge, law, z);
     }
   }
@@ -240,6 +240,10 @@ std::vector<Parameter> HydrologyParameters::declarations() {
               "tectonica2026"),
       real("hydrology.valley_blend", valley_blend, "1", 0.0, 1.0,
            "by how much valley sides sink towards the mean of their neighbours", "tectonica2026"),
+      real("hydrology.valley_width_km", valley_width_km, "km", 0.01, 1e6,
+           "width of a carved valley with its sides; larger cells sink by the share it takes of "
+           "them",
+           "design"),
       real("hydrology.frozen_temperature_degc", frozen_temperature_degc, "degC", -300.0, 100.0,
            "annual mean below which depressions hold ice instead of a lake", "design"),
   };

@@ -40,11 +40,14 @@ struct CarvingLaw {
   double rounds = 1.0;          ///< the cut is made in that many parts
   double threshold_m3_s = 0.0;  ///< rivers that carve
   double side_blend = 0.2;      ///< by how much valley sides follow, share of the way to the mean
+  double width_m = 1e9;         ///< of valleys: a larger cell sinks by the share they take of it
 };
 
 /// Carves valleys: rivers cut to their `valley_depth`, in each round no more than 23 % of their
 /// height; above 1600 m, in bedrock, 42 % of the cut is held back (Whipple 2004). Then the cells
-/// beside rivers sink towards the mean of their 3 x 3 neighbourhood. No cell sinks below its
+/// beside rivers sink towards the mean of their 3 x 3 neighbourhood. A cell of area A larger than
+/// the valley sinks by width / sqrt(A) of all that, so that as much rock goes from a coarse grid as
+/// from a fine one. No cell sinks below its
 /// receiver or the sea or rises, so every way down stays one, no pit forms, and land stays land.
 /// Cost: linear.
 void carve_valleys(const Grid& grid, const FlowGraph& graph, std::span<const std::uint8_t> sea,

@@ -19,6 +19,7 @@ struct HydrologyParameters {
   double carving = 1.0;
   std::int64_t carving_rounds = 1;
   double valley_blend = 0.2;
+  double valley_width_km = 10.0;
   double frozen_temperature_degc = -15.0;
 
   [[nodiscard]] std::vector<Parameter> declarations();
