@@ -16,7 +16,6 @@
 #include "geo/io/build_info.hpp"
 #include "geo/io/hypsography.hpp"
 #include "geo/io/island_session.hpp"
-#include "geo/io/run_pictures.hpp"
 #include "geo/io/source_date.hpp"
 #include "globe_files.hpp"
 
@@ -153,6 +152,21 @@ void RunSession::write_stage(BackgroundWriter& writer, int position, const State
   });
 }
 
+/// Of the planet, fields that no later stage writes again.
+void RunSession::keep_for_pictures(int position, const State& state) {
+  const StageInfo& info = pipeline_.stages()[position]->info();
+  if (info.own_grid) return at_hand_.keep_island(std::string(info.name), state);
+  auto fields = info.writes;
+  for (int later = position + 1; later <= last_; ++later) {
+    const StageInfo& next = pipeline_.stages()[later]->info();
+    if (next.own_grid) continue;
+    std::erase_if(fields, [&](const FieldSpec* spec) {
+      return std::find(next.writes.begin(), next.writes.end(), spec) != next.writes.end();
+    });
+  }
+  at_hand_.keep_planet(state, fields);
+}
+
 void RunSession::execute(const RunEvents& events) {
   if (first_ <= last_) {
     clear_for_this_run();
@@ -204,6 +218,7 @@ void RunSession::compute(const RunEvents& events) {
     const double seconds = seconds_since(start);
     for (const std::string& warning : told.warnings) tell(events.warning, warning);
     write_stage(writer, position, state, told, seconds);
+    if (settings_.maps) keep_for_pictures(position, state);
     tell(events.stage_ends, name_of(position), seconds);
   };
   try {
@@ -244,7 +259,7 @@ void RunSession::write_summaries(const RunEvents& events) {
   if (settings_.maps) {
     tell(events.stage_begins, "maps", static_cast<double>(settings_.map_width_px));
     const auto start = Clock::now();
-    draw_run(folder_, settings_.map_view());
+    draw_run(folder_, settings_.map_view(), {}, at_hand_);
     tell(events.stage_ends, "maps", seconds_since(start));
   }
   check_stop();
