@@ -152,17 +152,25 @@ void RunSession::write_stage(BackgroundWriter& writer, int position, const State
   });
 }
 
-/// Of the planet, fields that no later stage writes again.
+/// Of the planet, fields that no later stage writes again and that cost no memory while stages
+/// still shape the relief, which is when runs are largest: later stages read them too.
 void RunSession::keep_for_pictures(int position, const State& state) {
   const StageInfo& info = pipeline_.stages()[position]->info();
   if (info.own_grid) return at_hand_.keep_island(std::string(info.name), state);
-  auto fields = info.writes;
-  for (int later = position + 1; later <= last_; ++later) {
-    const StageInfo& next = pipeline_.stages()[later]->info();
-    if (next.own_grid) continue;
-    std::erase_if(fields, [&](const FieldSpec* spec) {
-      return std::find(next.writes.begin(), next.writes.end(), spec) != next.writes.end();
-    });
+  const auto lists = [](const std::vector<const FieldSpec*>& specs, const FieldSpec* spec) {
+    return std::find(specs.begin(), specs.end(), spec) != specs.end();
+  };
+  std::vector<const FieldSpec*> fields;
+  for (const FieldSpec* spec : info.writes) {
+    bool is_last = true, relief_changes = false, stays = false;
+    for (int at = position + 1; at <= last_; ++at) {
+      const StageInfo& later = pipeline_.stages()[at]->info();
+      stays = stays || lists(later.reads, spec) || lists(later.optional, spec);
+      if (later.own_grid) continue;
+      is_last = is_last && !lists(later.writes, spec);
+      if (lists(later.writes, &field::elevation)) relief_changes = true, stays = false;
+    }
+    if (is_last && (stays || !relief_changes)) fields.push_back(spec);
   }
   at_hand_.keep_planet(state, fields);
 }
