@@ -8,7 +8,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from . import colours, pipeline, scene
 from .island import IslandView, drape, place_of
-from .pipeline import INK, LAKE, RIVER, Source
+from .pipeline import INK, LAKE, RIVER, Source, read
 from .run import Run, RunError
 
 EARTH_RADIUS_M = 6371000.0
@@ -73,11 +73,10 @@ class Globe:
 
     def choose_factor(self, reader, cells):
         """How many cells a side are shown as one; notes the size of grid and planet."""
-        reader.UpdatePipeline()
-        noted = reader.FieldData.GetArray("planet_radius_m")
-        self.radius_m = noted.GetRange()[0] if noted else EARTH_RADIUS_M
-        extent = reader.GetDataInformation().GetExtent()
-        self.columns, self.rows = extent[1] - extent[0], extent[3] - extent[2]
+        image = read(reader)
+        noted = image.GetFieldData().GetArray("planet_radius_m")
+        self.radius_m = noted.GetValue(0) if noted else EARTH_RADIUS_M
+        self.columns, self.rows = (points - 1 for points in image.GetDimensions()[:2])
         return max(1, math.ceil(math.sqrt(self.columns * self.rows / cells) - 1e-9))
 
     # Parts -------------------------------------------------------------------------------------
@@ -182,9 +181,7 @@ class Globe:
 
     def plates_of_cells(self):
         """Plate of each cell, row by row, at the present time."""
-        reader = self.source.inputs[0]
-        reader.UpdatePipeline(self.time)
-        image = reader.GetClientSideObject().GetOutput()
+        image = read(self.source.inputs[0], self.time)
         return vtk_to_numpy(image.GetCellData().GetArray("plate_id")).reshape(self.rows, -1)
 
     @staticmethod

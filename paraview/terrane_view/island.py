@@ -3,21 +3,18 @@
 from paraview import simple
 
 from . import colours, pipeline, scene
-from .pipeline import LAKE, RIVER, Source
+from .pipeline import LAKE, RIVER, Source, read
 
 
 def size_of(reader):
     """Width and height of an island's map, m."""
-    reader.UpdatePipeline()
-    bounds = reader.GetDataInformation().GetBounds()
+    bounds = read(reader).GetBounds()
     return bounds[1] - bounds[0], bounds[3] - bounds[2]
 
 
 def place_of(reader):
     """Latitude, longitude and width in m of an island, None where its file does not say."""
-    reader.UpdatePipeline()
-    notes = reader.GetClientSideObject().GetOutput().GetFieldData()
-    centre = notes.GetArray("projection_centre_deg")
+    centre = read(reader).GetFieldData().GetArray("projection_centre_deg")
     return None if centre is None else (centre.GetValue(0), centre.GetValue(1), size_of(reader)[0])
 
 

@@ -15,6 +15,12 @@ LAKE = [0.36, 0.58, 0.76]
 INK = [0.13, 0.14, 0.17]
 
 
+def read(reader, time=None):
+    """The data set that a reader has read, without a look at the ranges of all its fields."""
+    reader.UpdatePipeline(*([] if time is None else [time]))
+    return reader.GetClientSideObject().GetOutputDataObject(0)
+
+
 @dataclass
 class Part:
     """One visible thing: what is shown, what its heights are multiplied by, and how it is shown."""
@@ -67,6 +73,8 @@ def smoothly_lit(name, surface):
     normals = make(registrationName=name, Input=surface)
     normals.Splitting = 0
     normals.FeatureAngle = 180.0
+    # Faces are counter-clockwise from above as they are made: to make sure would take seconds.
+    normals.Consistency = 0
     return normals
 
 

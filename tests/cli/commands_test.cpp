@@ -268,5 +268,28 @@ TEST(MapsOfARun, HaveTheProjectionOfTheConfiguration) {
   EXPECT_FALSE(text_of(folder / "centred/elevation.png") == run);
 }
 
+TEST(MapsOfARun, AreThoseOfItsFiles) {
+  const TemporaryFolder folder;
+  const fs::path run = folder / "out";
+  const auto starts = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"run", "-o", run, "--no-vtk"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    ASSERT_EQ(terrane(arguments).code, 0);
+  };
+  const auto expect_same_from_files = [&] {
+    const auto before = contents_of(run);
+    ASSERT_TRUE(before.contains("maps/island.png"));
+    told_by({"maps", run});
+    for (const auto& [name, bytes] : contents_of(run)) {
+      EXPECT_TRUE(before.contains(name) && before.at(name) == bytes) << name;
+    }
+  };
+  starts({"--grid", "128x64", "--set", "island.nx=128", "--set", "island.ny=64", "--set",
+          "climate.resolution_deg=10", "--set", "output.map_width_px=300"});
+  expect_same_from_files();
+  starts({"--overwrite", "--from", "hydrology"});
+  expect_same_from_files();
+}
+
 }  // namespace
 }  // namespace geo

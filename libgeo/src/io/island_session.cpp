@@ -130,6 +130,7 @@ std::string IslandSession::execute(const RunEvents& events) {
   context.stop = events.stop;
   StageRecord record;
   record.name = name;
+  FieldsAtHand at_hand;
   Pipeline::Observer observer;
   observer.before = [&](int) {
     if (events.stage_begins) events.stage_begins(name, static_cast<double>(state.grid().size()));
@@ -152,6 +153,8 @@ std::string IslandSession::execute(const RunEvents& events) {
     }
     record.budget = told.budget;
     record.warnings = told.warnings;
+    at_hand.keep_planet(state, state.present());
+    at_hand.keep_island(name, island);
   };
   pipeline_.run(state, context, stage_, stage_, observer);
   const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
@@ -160,7 +163,7 @@ std::string IslandSession::execute(const RunEvents& events) {
   write_manifest(folder_.manifest(), manifest_);
   if (settings_.vtk) write_collection_files(folder_, manifest_);
   if (events.stage_ends) events.stage_ends(name, seconds);
-  if (settings_.maps) draw_run(folder_, settings_.map_view(), name);
+  if (settings_.maps) draw_run(folder_, settings_.map_view(), name, at_hand);
   return name;
 }
 

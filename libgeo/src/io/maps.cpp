@@ -1,31 +1,34 @@
 #include "geo/io/maps.hpp"
 
 #include <algorithm>
-#include <exception>
-#include <functional>
+#include <optional>
 
 #include "map_canvas.hpp"
 #include "map_field.hpp"
 #include "map_page.hpp"
 #include "map_plates.hpp"
 #include "map_rivers.hpp"
+#include "map_set.hpp"
 #include "map_themes.hpp"
+#include "side_by_side.hpp"
 
 namespace geo::io {
-namespace {
 
 /// A map that can be drawn: its words and how.
-struct Plan {
+struct MapPlan {
   std::string file, title, units, caption;
   std::function<void(const Scene&, MapCanvas&)> draw;
+  bool is_long = false;  ///< takes longer than others
 };
 
-std::vector<Plan> plan_island(const State& state, const std::string& name) {
-  std::vector<Plan> plans;
+namespace {
+
+std::vector<MapPlan> plan_island(const State& state, const std::string& name) {
+  std::vector<MapPlan> plans;
   if (state.has(field::elevation)) {
     plans.push_back({name, "Island", "metres above and below sea level",
                      "A part of the planet in detail: shaded relief, contours, rivers and lakes.",
-                     draw_island});
+                     draw_island, /*is_long=*/true});
   }
   for (const auto& map : category_maps()) {
     if (!state.has(*map.field)) continue;
@@ -36,8 +39,8 @@ std::vector<Plan> plan_island(const State& state, const std::string& name) {
   return plans;
 }
 
-std::vector<Plan> plan_maps(const State& state) {
-  std::vector<Plan> plans;
+std::vector<MapPlan> plan_maps(const State& state) {
+  std::vector<MapPlan> plans;
   if (state.has(field::elevation)) {
     plans.push_back({"elevation", "Elevation", "metres above and below sea level",
                      "Elevation in colours over relief shaded from the north-west.",
@@ -48,7 +51,8 @@ std::vector<Plan> plan_maps(const State& state) {
                      "Plates in colours, their boundaries by what happens there, and velocities.",
                      [](const Scene& scene, MapCanvas& canvas) {
                        draw_plates(canvas, scene.frame, scene.state, scene.base);
-                     }});
+                     },
+                     /*is_long=*/true});
   }
   const auto add_field = [&](const FieldMap& map) {
     if (!state.has(*map.field)) return;
@@ -69,12 +73,13 @@ std::vector<Plan> plan_maps(const State& state) {
   add_field(field_maps()[1]);
   if (state.has(field::wind_east) && state.has(field::wind_north)) {
     plans.push_back({"wind", "Wind", "annual mean near the surface, m per s",
-                     "Speed in colours; arrows show where the air goes.", draw_wind});
+                     "Speed in colours; arrows show where the air goes.", draw_wind,
+                     /*is_long=*/true});
   }
   if (has_rivers(state)) {
     plans.push_back({"rivers", "Rivers and lakes", "line width grows with discharge",
                      "The larger rivers and lakes; lines widen with the square root of the flow.",
-                     draw_river_map});
+                     draw_river_map, /*is_long=*/true});
   }
   add_categories(category_maps()[0]);
   add_categories(category_maps()[1]);
@@ -121,44 +126,80 @@ std::vector<const FieldSpec*> island_map_fields() {
   return fields;
 }
 
-namespace {
+struct MapSet::Base {
+  Base(const State& state, const MapView& view) : page(state.grid(), view) {}
 
-/// The pictures that would be drawn.
-std::vector<MapFile> files_of(const std::vector<Plan>& plans, const MapLayout& layout,
-                              const std::filesystem::path& folder) {
+  MapPage page;
+  std::optional<MapFrame> frame;
+  MapBase ground;
+};
+
+MapSet::MapSet(const State& state, std::vector<MapPlan> plans, const std::filesystem::path& folder,
+               const MapView& view, std::string_view note, std::span<const EventMark> marks)
+    : state_(&state),
+      plans_(std::move(plans)),
+      folder_(folder),
+      note_(note),
+      marks_(marks.begin(), marks.end()),
+      base_(std::make_unique<Base>(state, view)) {}
+
+MapSet::MapSet(MapSet&&) noexcept = default;
+MapSet::~MapSet() = default;
+
+MapSet MapSet::of_planet(const State& state, const std::filesystem::path& folder,
+                         const MapView& view, std::string_view note,
+                         std::span<const EventMark> marks) {
+  return {state, plan_maps(state), folder, view, note, marks};
+}
+
+MapSet MapSet::of_island(const State& state, const std::filesystem::path& folder,
+                         const std::string& name, const MapView& view, std::string_view note) {
+  return {state, plan_island(state, name), folder, view, note, {}};
+}
+
+std::vector<MapFile> MapSet::files() const {
+  const MapLayout layout = base_->page.layout();
   std::vector<MapFile> files;
-  for (const Plan& plan : plans) {
-    files.push_back({folder / (plan.file + ".png"), plan.title, plan.caption, layout.width_px,
+  for (const MapPlan& plan : plans_) {
+    files.push_back({folder_ / (plan.file + ".png"), plan.title, plan.caption, layout.width_px,
                      layout.height_px});
   }
   return files;
 }
 
-std::vector<MapFile> draw_plans(const std::vector<Plan>& plans, const State& state,
-                                const std::filesystem::path& folder, const MapView& view,
-                                std::string_view note, std::span<const EventMark> marks = {}) {
-  const MapPage page(state.grid(), view);
-  make_folder(folder);
-  const MapFrame frame(page);
-  const MapBase base = make_base(frame, state);
-  const Scene scene{state, frame, base, marks};
-  auto files = files_of(plans, page.layout(), folder);
-  std::vector<std::exception_ptr> failures(plans.size());
-#pragma omp parallel for schedule(dynamic, 1)
-  for (std::size_t i = 0; i < plans.size(); ++i) {
-    try {
-      MapCanvas canvas(frame);
-      canvas.title(plans[i].title, plans[i].units, note);
-      plans[i].draw(scene, canvas);
-      canvas.save(files[i].path);
-    } catch (...) {
-      failures[i] = std::current_exception();
+void MapSet::draw_all() {
+  prepare();
+  do_side_by_side(pieces());
+}
+
+void MapSet::prepare() {
+  make_folder(folder_);
+  base_->frame.emplace(base_->page);
+  base_->ground = make_base(*base_->frame, *state_);
+}
+
+void MapSet::draw(const MapPlan& plan) const {
+  MapCanvas canvas(*base_->frame);
+  canvas.title(plan.title, plan.units, note_);
+  plan.draw({*state_, *base_->frame, base_->ground, marks_}, canvas);
+  canvas.save(folder_ / (plan.file + ".png"));
+}
+
+std::vector<std::function<void()>> MapSet::pieces() const {
+  std::vector<std::function<void()>> pieces;
+  for (const bool is_long : {true, false}) {
+    for (const MapPlan& plan : plans_) {
+      if (plan.is_long == is_long) pieces.emplace_back([this, &plan] { draw(plan); });
     }
   }
-  for (const auto& failure : failures) {
-    if (failure) std::rethrow_exception(failure);
-  }
-  return files;
+  return pieces;
+}
+
+namespace {
+
+std::vector<MapFile> drawn(MapSet maps) {
+  maps.draw_all();
+  return maps.files();
 }
 
 }  // namespace
@@ -166,23 +207,13 @@ std::vector<MapFile> draw_plans(const std::vector<Plan>& plans, const State& sta
 std::vector<MapFile> draw_map_files(const State& state, const std::filesystem::path& folder,
                                     const MapView& view, std::string_view note,
                                     std::span<const EventMark> marks) {
-  return draw_plans(plan_maps(state), state, folder, view, note, marks);
-}
-
-std::vector<MapFile> list_map_files(const State& state, const std::filesystem::path& folder,
-                                    const MapView& view) {
-  return files_of(plan_maps(state), map_layout(state.grid(), view), folder);
+  return drawn(MapSet::of_planet(state, folder, view, note, marks));
 }
 
 std::vector<MapFile> draw_island_files(const State& state, const std::filesystem::path& folder,
                                        const std::string& name, const MapView& view,
                                        std::string_view note) {
-  return draw_plans(plan_island(state, name), state, folder, view, note);
-}
-
-std::vector<MapFile> list_island_files(const State& state, const std::filesystem::path& folder,
-                                       const std::string& name, const MapView& view) {
-  return files_of(plan_island(state, name), map_layout(state.grid(), view), folder);
+  return drawn(MapSet::of_island(state, folder, name, view, note));
 }
 
 MapFile draw_field_file(const State& state, const FieldSpec& spec,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -17,23 +18,49 @@
 #include "geo/io/report.hpp"
 #include "geo/io/scorecard.hpp"
 #include "map_canvas.hpp"
+#include "map_set.hpp"
+#include "side_by_side.hpp"
 
 namespace geo::io {
 namespace {
 
-/// The fields of all complete stages of the planet that pictures and scorecard are made from: where
-/// two stages wrote the same, the later one's.
-State final_state(const RunFolder& folder, const Manifest& manifest) {
-  std::vector<std::filesystem::path> files;
-  for (const StageRecord& record : manifest.stages) {
-    if (!is_island(record)) files.push_back(folder.path() / netcdf_of(record));
-  }
-  if (files.empty()) {
-    throw InputError(fmt::format("{}: holds no complete stage to draw", folder.path().string()));
-  }
+bool lists(std::span<const FieldSpec* const> specs, const FieldSpec& spec) {
+  return std::find(specs.begin(), specs.end(), &spec) != specs.end();
+}
+
+std::vector<const FieldSpec*> picture_fields() {
   auto wanted = map_fields();
   for (const FieldSpec* spec : scorecard_fields()) wanted.push_back(spec);
-  return read_planet(files, wanted);
+  return wanted;
+}
+
+bool holds(const StageRecord& record, std::string_view field) {
+  return std::any_of(record.fields.begin(), record.fields.end(),
+                     [&](const FieldRecord& held) { return held.name == field; });
+}
+
+/// The fields of all complete stages of the planet that pictures and scorecard are made from: where
+/// two stages wrote the same, the later one's.
+State final_state(const RunFolder& folder, const Manifest& manifest, const FieldsAtHand& at_hand) {
+  const auto wanted = picture_fields();
+  std::optional<State> state = at_hand.planet();
+  const auto is_missing = [&](const FieldSpec& spec) {
+    return lists(wanted, spec) && !(state && state->has(spec));
+  };
+  for (auto record = manifest.stages.rbegin(); record != manifest.stages.rend(); ++record) {
+    if (is_island(*record)) continue;
+    const bool has_missing = std::any_of(wanted.begin(), wanted.end(), [&](const FieldSpec* spec) {
+      return is_missing(*spec) && holds(*record, spec->name);
+    });
+    if (state && !has_missing) continue;
+    const Snapshot snapshot = read_netcdf(folder.path() / netcdf_of(*record), is_missing);
+    if (!state) state.emplace(snapshot.grid);
+    for (const auto& [spec, values] : snapshot.fields) state->share(*spec, values);
+  }
+  if (!state) {
+    throw InputError(fmt::format("{}: holds no complete stage to draw", folder.path().string()));
+  }
+  return std::move(*state);
 }
 
 std::optional<Scorecard> scorecard_of(const State& state) {
@@ -41,12 +68,12 @@ std::optional<Scorecard> scorecard_of(const State& state) {
   return score_planet(state);
 }
 
-State island_state(const RunFolder& folder, const StageRecord& record) {
+State island_state(const RunFolder& folder, const StageRecord& record,
+                   const FieldsAtHand& at_hand) {
+  if (const State* const held = at_hand.island(record.name)) return *held;
   const auto wanted = island_map_fields();
-  const Snapshot snapshot =
-      read_netcdf(folder.path() / netcdf_of(record), [&](const FieldSpec& spec) {
-        return std::find(wanted.begin(), wanted.end(), &spec) != wanted.end();
-      });
+  const Snapshot snapshot = read_netcdf(folder.path() / netcdf_of(record),
+                                        [&](const FieldSpec& spec) { return lists(wanted, spec); });
   State state(snapshot.grid);
   for (const auto& [spec, values] : snapshot.fields) state.share(*spec, values);
   return state;
@@ -60,11 +87,6 @@ const StageRecord* stage_named(const Manifest& manifest, std::string_view name) 
   const auto at = std::find_if(manifest.stages.begin(), manifest.stages.end(),
                                [&](const StageRecord& record) { return record.name == name; });
   return at == manifest.stages.end() ? nullptr : &*at;
-}
-
-bool holds(const StageRecord& record, std::string_view field) {
-  return std::any_of(record.fields.begin(), record.fields.end(),
-                     [&](const FieldRecord& held) { return held.name == field; });
 }
 
 /// ", perhaps slope, elevation": the nearest of some words first, three at most.
@@ -140,49 +162,91 @@ State state_for(const RunFolder& folder, const Manifest& manifest, const StageRe
   return state;
 }
 
-void append(std::vector<MapFile>& maps, std::vector<MapFile> more) {
-  maps.insert(maps.end(), more.begin(), more.end());
+/// What a report says besides what is measured and drawn.
+Report report_of(const RunFolder& folder, const Manifest& manifest, const Grid& grid) {
+  Report report;
+  report.title = fmt::format("terrane: planet of seed {}", manifest.seed);
+  report.introduction = fmt::format("{} x {} cells.", grid.nx(), grid.ny());
+  report.events = event_lines(manifest);
+  report.fields = field_figures(manifest);
+  report.parameters = read_text(folder.config());
+  report.provenance = {{"version", manifest.version},
+                       {"commit", manifest.commit},
+                       {"compiler", manifest.compiler},
+                       {"seed", fmt::format("{}", manifest.seed)}};
+  return report;
 }
 
 }  // namespace
 
+void FieldsAtHand::keep_planet(const State& state, std::span<const FieldSpec* const> fields) {
+  const auto wanted = picture_fields();
+  if (!planet_) planet_.emplace(state.shared_grid());
+  for (const FieldSpec* spec : fields) {
+    if (lists(wanted, *spec)) planet_->share(*spec, state.values(*spec));
+  }
+}
+
+void FieldsAtHand::keep_island(const std::string& name, const State& state) {
+  State kept(state.shared_grid());
+  for (const FieldSpec* spec : island_map_fields()) {
+    if (state.has(*spec)) kept.share(*spec, state.values(*spec));
+  }
+  islands_.insert_or_assign(name, std::move(kept));
+}
+
+const State* FieldsAtHand::island(const std::string& name) const {
+  const auto at = islands_.find(name);
+  return at == islands_.end() ? nullptr : &at->second;
+}
+
 std::vector<std::filesystem::path> draw_run(const RunFolder& folder, const MapView& asked,
-                                            std::string_view only_island) {
+                                            std::string_view only_island,
+                                            const FieldsAtHand& at_hand) {
   const Manifest manifest = read_manifest(folder.manifest());
-  const State state = final_state(folder, manifest);
+  const State state = final_state(folder, manifest, at_hand);
   const bool all = only_island.empty();
   const MapView as_it_lies(asked.width_px);
   const MapView& view = state.grid().is_latitude_longitude() ? asked : as_it_lies;
   const std::string note = note_of(manifest);
-  Report report{
-      .title = fmt::format("terrane: planet of seed {}", manifest.seed),
-      .introduction = fmt::format("{} x {} cells.", state.grid().nx(), state.grid().ny()),
-      .maps = all ? draw_map_files(state, folder.maps(), view, note, event_marks(manifest))
-                  : list_map_files(state, folder.maps(), view),
-      .scorecard = scorecard_of(state),
-      .events = event_lines(manifest),
-      .fields = field_figures(manifest),
-      .parameters = read_text(folder.config()),
-      .provenance = {{"version", manifest.version},
-                     {"commit", manifest.commit},
-                     {"compiler", manifest.compiler},
-                     {"seed", fmt::format("{}", manifest.seed)}}};
+  Report report = report_of(folder, manifest, state.grid());
+
+  // Scorecard and islands take longest, each on one thread, and are begun first.
+  std::vector<std::function<void()>> pieces;
+  pieces.emplace_back([&] { report.scorecard = scorecard_of(state); });
+  std::vector<const StageRecord*> islands;
   for (const StageRecord& record : manifest.stages) {
-    if (!is_island(record)) continue;
-    const State island = island_state(folder, record);
-    append(report.maps,
-           all || record.name == only_island
-               ? draw_island_files(island, folder.maps(), record.name, as_it_lies, note)
-               : list_island_files(island, folder.maps(), record.name, as_it_lies));
+    if (is_island(record)) islands.push_back(&record);
   }
+  std::vector<std::vector<MapFile>> island_maps(islands.size());
+  for (std::size_t k = 0; k < islands.size(); ++k) {
+    pieces.emplace_back([&, k] {
+      const StageRecord& record = *islands[k];
+      const State island = island_state(folder, record, at_hand);
+      MapSet maps = MapSet::of_island(island, folder.maps(), record.name, as_it_lies, note);
+      if (all || record.name == only_island) maps.draw_all();
+      island_maps[k] = maps.files();
+    });
+  }
+  MapSet planet = MapSet::of_planet(state, folder.maps(), view, note, event_marks(manifest));
+  if (all) {
+    planet.prepare();
+    for (auto& piece : planet.pieces()) pieces.push_back(std::move(piece));
+  }
+  std::optional<MapFile> hypsometry;
   if (state.has(field::elevation)) {
-    report.maps.push_back(draw_hypsometry_file(state, folder.maps(), note));
+    pieces.emplace_back([&] { hypsometry = draw_hypsometry_file(state, folder.maps(), note); });
   }
-  std::vector<std::filesystem::path> written;
-  for (const MapFile& map : report.maps) {
-    if (std::filesystem::exists(map.path)) written.push_back(map.path);
+  do_side_by_side(pieces);
+
+  report.maps = planet.files();
+  for (const auto& maps : island_maps) {
+    report.maps.insert(report.maps.end(), maps.begin(), maps.end());
   }
+  if (hypsometry) report.maps.push_back(*hypsometry);
   std::erase_if(report.maps, [](const MapFile& map) { return !std::filesystem::exists(map.path); });
+  std::vector<std::filesystem::path> written;
+  for (const MapFile& map : report.maps) written.push_back(map.path);
   written.push_back(write_report(folder.path(), report));
   return written;
 }
@@ -190,7 +254,7 @@ std::vector<std::filesystem::path> draw_run(const RunFolder& folder, const MapVi
 std::vector<std::filesystem::path> draw_view(const RunFolder& folder, const MapView& view,
                                              const std::filesystem::path& pictures) {
   const Manifest manifest = read_manifest(folder.manifest());
-  const State state = final_state(folder, manifest);
+  const State state = final_state(folder, manifest, {});
   std::vector<std::filesystem::path> written;
   for (const MapFile& map :
        draw_map_files(state, pictures, view, note_of(manifest), event_marks(manifest))) {

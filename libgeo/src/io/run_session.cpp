@@ -17,7 +17,6 @@
 #include "geo/io/exemplar_files.hpp"
 #include "geo/io/hypsography.hpp"
 #include "geo/io/island_session.hpp"
-#include "geo/io/run_pictures.hpp"
 #include "geo/io/source_date.hpp"
 #include "globe_files.hpp"
 
@@ -154,6 +153,29 @@ void RunSession::write_stage(BackgroundWriter& writer, int position, const State
   });
 }
 
+/// Of the planet, fields that no later stage writes again and that cost no memory while stages
+/// still shape the relief, which is when runs are largest: later stages read them too.
+void RunSession::keep_for_pictures(int position, const State& state) {
+  const StageInfo& info = pipeline_.stages()[position]->info();
+  if (info.own_grid) return at_hand_.keep_island(std::string(info.name), state);
+  const auto lists = [](const std::vector<const FieldSpec*>& specs, const FieldSpec* spec) {
+    return std::find(specs.begin(), specs.end(), spec) != specs.end();
+  };
+  std::vector<const FieldSpec*> fields;
+  for (const FieldSpec* spec : info.writes) {
+    bool is_last = true, relief_changes = false, stays = false;
+    for (int at = position + 1; at <= last_; ++at) {
+      const StageInfo& later = pipeline_.stages()[at]->info();
+      stays = stays || lists(later.reads, spec) || lists(later.optional, spec);
+      if (later.own_grid) continue;
+      is_last = is_last && !lists(later.writes, spec);
+      if (lists(later.writes, &field::elevation)) relief_changes = true, stays = false;
+    }
+    if (is_last && (stays || !relief_changes)) fields.push_back(spec);
+  }
+  at_hand_.keep_planet(state, fields);
+}
+
 void RunSession::execute(const RunEvents& events) {
   if (first_ <= last_) {
     clear_for_this_run();
@@ -207,6 +229,7 @@ void RunSession::compute(const RunEvents& events) {
     const double seconds = seconds_since(start);
     for (const std::string& warning : told.warnings) tell(events.warning, warning);
     write_stage(writer, position, state, told, seconds);
+    if (settings_.maps) keep_for_pictures(position, state);
     tell(events.stage_ends, name_of(position), seconds);
   };
   try {
@@ -247,7 +270,7 @@ void RunSession::write_summaries(const RunEvents& events) {
   if (settings_.maps) {
     tell(events.stage_begins, "maps", static_cast<double>(settings_.map_width_px));
     const auto start = Clock::now();
-    draw_run(folder_, settings_.map_view());
+    draw_run(folder_, settings_.map_view(), {}, at_hand_);
     tell(events.stage_ends, "maps", seconds_since(start));
   }
   check_stop();

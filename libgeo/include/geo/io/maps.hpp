@@ -60,17 +60,11 @@ std::vector<MapFile> draw_map_files(const State& state, const std::filesystem::p
                                     const MapView& view = {}, std::string_view note = {},
                                     std::span<const EventMark> marks = {});
 
-/// What `draw_map_files` would draw, without drawing it.
-std::vector<MapFile> list_map_files(const State& state, const std::filesystem::path& folder,
-                                    const MapView& view = {});
 /// Draws an island: `name`.png (shaded relief with contours and rivers), `name`-biomes.png,
 /// `name`-koppen.png.
 std::vector<MapFile> draw_island_files(const State& state, const std::filesystem::path& folder,
                                        const std::string& name, const MapView& view = {},
                                        std::string_view note = {});
-/// What `draw_island_files` would draw, without drawing it.
-std::vector<MapFile> list_island_files(const State& state, const std::filesystem::path& folder,
-                                       const std::string& name, const MapView& view = {});
 
 /// The same as `draw_map_files`; returns the paths alone.
 std::vector<std::filesystem::path> draw_maps(const State& state,

@@ -14,6 +14,7 @@
 #include "geo/io/background_writer.hpp"
 #include "geo/io/manifest.hpp"
 #include "geo/io/run_folder.hpp"
+#include "geo/io/run_pictures.hpp"
 #include "geo/io/run_prediction.hpp"
 #include "geo/io/run_settings.hpp"
 #include "geo/io/stage_file.hpp"
@@ -102,6 +103,7 @@ class RunSession {
   void compute(const RunEvents& events);
   void write_stage(BackgroundWriter& writer, int position, const State& state,
                    const Context& context, double seconds);
+  void keep_for_pictures(int position, const State& state);
   void write_summaries(const RunEvents& events);
   void write_collections();
   [[nodiscard]] Provenance provenance_of(int position) const;
@@ -122,6 +124,7 @@ class RunSession {
   std::string config_;
   std::string note_;  // why a stage of the pipeline is left out
   std::optional<State> state_;
+  FieldsAtHand at_hand_;
   std::vector<PlateOutline> plates_;
   std::shared_ptr<const GivenRelief> first_relief_;
   std::shared_ptr<const ExemplarLibrary> exemplars_;
