@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "geo/kernels/noise.hpp"
+#include "geo/kernels/plate_forces.hpp"
 #include "geo/kernels/sphere_mesh.hpp"
 #include "geo/kernels/sphere_partition.hpp"
 #include "geo/kernels/sphere_state.hpp"
@@ -20,12 +21,14 @@ class GreatCircleLine;
 struct SphereSettings {
   TectonicConstants law;
   double radius_km = 6370.0;
-  bool driftworld_uplift = false;     ///< Driftworld's f instead of the piecewise one
-  double uplift_control_km = 200.0;   ///< where subduction raises most
-  double arc_reach_km = 1800.0;       ///< of the uplift where the overriding crust is oceanic
-  double elevation_weight = 1.0;      ///< power of the factor h in the uplift
-  double fold_per_km = 0.002;         ///< beta of the fold direction, per km of relative motion
-  double slab_pull = 1e-3;            ///< epsilon, per Myr and 1000 km of front
+  bool driftworld_uplift = false;    ///< Driftworld's f instead of the piecewise one
+  double uplift_control_km = 200.0;  ///< where subduction raises most
+  double arc_reach_km = 1800.0;      ///< of the uplift where the overriding crust is oceanic
+  double elevation_weight = 1.0;     ///< power of the factor h in the uplift
+  double fold_per_km = 0.002;        ///< beta of the fold direction, per km of relative motion
+  double slab_pull = 1e-3;           ///< epsilon, per Myr and 1000 km of front
+  bool by_forces = false;            ///< motion balances forces, in place of that
+  PlateForces force;
   double penetration_km = 300.0;      ///< of continents, before they collide
   double surge_km = 4.5;              ///< most that one collision lifts
   double oceanic_km = 7.0;            ///< thickness of new crust
@@ -133,6 +136,14 @@ class SphereTectonics {
   double change_crust(const Vector3& place, double radius_km, bool continental);
   /// The same of all places (unit vectors) of which something holds.
   double change_crust(const std::function<bool(const Vector3&)>& holds, bool continental);
+  /// Torques on a plate about the planet's centre, in the frame of the planet.
+  struct Torques {
+    Matrix3 drag_n_m_s{};   ///< (eta / h) R^4 int f (1 - r r^T) dA, times rotation in rad/s
+    Vector3 driving_n_m{};  ///< R^2 closed int F dl of slabs, ridges and sutures
+  };
+  /// Those of settings.force on each plate with all that it carries, as of the last step. Floor
+  /// that opens between resamplings counts as there: it pushes up to where it has its age.
+  [[nodiscard]] std::vector<Torques> torques() const;
   /// Area of each plate with all that it carries, km2; 0 of those that are no more.
   [[nodiscard]] std::vector<double> plate_areas_km2() const;
 
@@ -164,6 +175,7 @@ class SphereTectonics {
   [[nodiscard]] std::span<const std::int32_t> nearest_front() const noexcept { return front_of_; }
 
  private:
+  class EdgeForces;
   void move();
   void set_frames();
   void find_contacts();
@@ -173,6 +185,7 @@ class SphereTectonics {
   void raise();
   void erupt();
   void pull_slabs();
+  void balance_forces();
   void collide();
   void collide(std::int32_t sample);
   void surge(int upper, std::span<const std::int32_t> terrane, const Vector3& centroid,

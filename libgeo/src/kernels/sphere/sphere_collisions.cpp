@@ -75,8 +75,12 @@ void SphereTectonics::collide(std::int32_t sample) {
   SpherePlate body = state_.plates[lower];
   body.carrier = static_cast<std::int16_t>(upper);
   body.born_myr = state_.time_myr;
+  // What has come off a plate in this step is a terrane as a whole.
+  const bool is_whole = lower >= partition_.plates();
   const double rest_km2 =
-      sample_km2() * (partition_.cap(lower).samples - static_cast<double>(terrane.size()));
+      is_whole
+          ? 0.0
+          : sample_km2() * (partition_.cap(lower).samples - static_cast<double>(terrane.size()));
   if (rest_km2 < kRemnant * settings_.mean_area_km2) {
     state_.plates[lower].carrier = static_cast<std::int16_t>(state_.root(upper));
   } else {

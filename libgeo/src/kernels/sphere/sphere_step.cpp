@@ -214,7 +214,11 @@ void SphereTectonics::advance() {
   spread_fronts();
   raise();
   erupt();
-  pull_slabs();
+  if (settings_.by_forces) {
+    balance_forces();
+  } else {
+    pull_slabs();
+  }
   state_.time_myr += settings_.law.step_myr;
   ++state_.steps;
   budget_.time_myr = state_.time_myr;

@@ -19,6 +19,7 @@ SphereSettings settings_of(const PlatesParameters& p, double radius_km, const Co
   SphereSettings settings = p.sphere;
   settings.radius_km = radius_km;
   settings.driftworld_uplift = p.uplift_profile == "driftworld";
+  settings.force.gravity_m_s2 = context.planet.gravity_m_s2;
   settings.floor_by_age = p.ocean_floor == "age";
   settings.no_net_rotation = p.no_net_rotation;
   settings.hold_motions = p.given_motions == "held";
