@@ -49,6 +49,12 @@ struct SphereSettings {
   double plume_mm_yr = 0.0;           ///< growth of volcanoes above the first plumes
   double plume_km = 60.0;             ///< over which it falls to a half
   double plume_top_km = 2.0;          ///< height that volcanoes of the sea floor reach
+  // Rules of Driftworld in place of the paper's.
+  bool rank_by_score = false;  ///< whole plates stay up by score(), not continents and young floor
+  bool merge_plates = false;   ///< plates whose continents touch become one
+  bool add_uplifts = false;    ///< of all plates that go below one, not of the nearest alone
+  bool fill_abyss = false;     ///< sediment piles on all floor below accretion_top_km
+  bool rift_largest = false;   ///< only the largest plate rifts, into two, however much is land
   bool no_net_rotation = true;
   bool hold_motions = true;  ///< whether a plate goes on turning as it is told to
   std::int64_t least_steps = 10, most_steps = 60;  ///< between resamplings
@@ -144,6 +150,9 @@ class SphereTectonics {
   /// Those of settings.force on each plate with all that it carries, as of the last step. Floor
   /// that opens between resamplings counts as there: it pushes up to where it has its age.
   [[nodiscard]] std::vector<Torques> torques() const;
+  /// Driftworld's rank of a plate with all that it carries: a hundred for each sample of continent
+  /// less one for each of floor.
+  [[nodiscard]] double score(int plate) const { return score_[plate]; }
   /// Area of each plate with all that it carries, km2; 0 of those that are no more.
   [[nodiscard]] std::vector<double> plate_areas_km2() const;
 
@@ -176,12 +185,17 @@ class SphereTectonics {
 
  private:
   class EdgeForces;
+  class FrontUplift;
   void move();
   void set_frames();
+  void rank_plates();
   void find_contacts();
   void decide_pairs();
   void find_fronts();
   void spread_fronts();
+  void spread(int plate, std::span<const std::int32_t> fronts, std::vector<std::int32_t>* reached);
+  [[nodiscard]] float farthest_chord2() const;
+  void add_uplifts(const FrontUplift& uplift);
   void raise();
   void erupt();
   void pull_slabs();
@@ -191,6 +205,7 @@ class SphereTectonics {
   void surge(int upper, std::span<const std::int32_t> terrane, const Vector3& centroid,
              double area_km2, double speed_mm_yr);
   void rift_by_chance();
+  [[nodiscard]] int largest_plate() const;
   void part(int plate, std::span<const std::int8_t> fragment, std::span<const Vector3> away,
             double speed_mm_yr);
   template <class Within>
@@ -221,6 +236,8 @@ class SphereTectonics {
   std::vector<std::int32_t> partner_, contacts_, front_of_;
   std::vector<std::uint8_t> hidden_;
   std::vector<Front> fronts_;
+  std::vector<double> score_;     // of each plate
+  std::vector<float> uplift_km_;  // of each sample in a step, where uplifts add up
   std::vector<float> chord2_;
   /// What spreading fronts asks of a sample, in one place of memory.
   struct Spot {

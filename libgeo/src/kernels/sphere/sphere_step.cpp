@@ -68,6 +68,7 @@ void SphereTectonics::repartition() {
     if (plate.carrier >= 0 && !state_.plates[plate.carrier].alive) plate.carrier = -1;
   }
   set_frames();
+  rank_plates();
 }
 
 void SphereTectonics::set_frames() {
@@ -207,6 +208,7 @@ void SphereTectonics::advance() {
   begin_step();
   has_begun_ = false;
   partition_.count_continents(state_);
+  rank_plates();
   move();
   find_contacts();
   decide_pairs();

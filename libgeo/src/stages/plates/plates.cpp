@@ -106,6 +106,27 @@ std::vector<Parameter> PlatesParameters::declarations() {
           "plates.uplift_profile", uplift_profile, {"piecewise", "driftworld"},
           "sphere: uplift over the distance from the front, by two cubics or by Driftworld's one",
           "cortial2019"),
+      choice("plates.overlap", overlap, {"crust", "score"},
+             "sphere: what stays up where plates overlap: continents and the younger floor, or, as "
+             "in Driftworld, the whole plate that has more continent",
+             "cortial2019"),
+      choice(
+          "plates.collisions", collisions, {"terranes", "plates"},
+          "sphere: continents that collide leave their plate behind, or, as in Driftworld, their "
+          "plates become one as soon as they touch",
+          "cortial2019"),
+      choice("plates.uplift_sources", uplift_sources, {"nearest", "all"},
+             "sphere: uplift is that of the nearest front, or, as in Driftworld, the sum over all "
+             "plates that go below",
+             "cortial2019"),
+      choice(
+          "plates.accretion", accretion, {"wedge", "abyss"},
+          "sphere: sediment piles in the wedge behind trenches, or, as in Driftworld, on all floor "
+          "below plates.accretion_top_km",
+          "cortial2019"),
+      choice("plates.rifting", rifting, {"any", "largest"},
+             "sphere: any plate may rift, or, as in Driftworld, the largest alone, into two",
+             "cortial2019"),
       real("plates.uplift_control_km", sphere.uplift_control_km, "km", 1.0, 5000.0,
            "sphere: distance from the front where subduction raises most", "cortial2019"),
       real("plates.arc_reach_km", sphere.arc_reach_km, "km", 10.0, 10000.0,

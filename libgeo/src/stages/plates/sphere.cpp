@@ -19,6 +19,11 @@ SphereSettings settings_of(const PlatesParameters& p, double radius_km, const Co
   SphereSettings settings = p.sphere;
   settings.radius_km = radius_km;
   settings.driftworld_uplift = p.uplift_profile == "driftworld";
+  settings.rank_by_score = p.overlap == "score";
+  settings.merge_plates = p.collisions == "plates";
+  settings.add_uplifts = p.uplift_sources == "all";
+  settings.fill_abyss = p.accretion == "abyss";
+  settings.rift_largest = p.rifting == "largest";
   settings.force.gravity_m_s2 = context.planet.gravity_m_s2;
   settings.floor_by_age = p.ocean_floor == "age";
   settings.no_net_rotation = p.no_net_rotation;
