@@ -11,6 +11,7 @@
 #include "geo/kernels/sphere_mesh.hpp"
 #include "geo/kernels/sphere_partition.hpp"
 #include "geo/kernels/sphere_state.hpp"
+#include "geo/kernels/surface_rivers.hpp"
 #include "geo/kernels/tectonic_laws.hpp"
 
 namespace geo {
@@ -55,6 +56,8 @@ struct SphereSettings {
   bool add_uplifts = false;    ///< of all plates that go below one, not of the nearest alone
   bool fill_abyss = false;     ///< sediment piles on all floor below accretion_top_km
   bool rift_largest = false;   ///< only the largest plate rifts, into two, however much is land
+  bool by_rivers = false;      ///< rivers carve and deposit, in place of erosion by height
+  RiverLaw rivers;             ///< their step and rebound are the model's
   bool no_net_rotation = true;
   bool hold_motions = true;  ///< whether a plate goes on turning as it is told to
   std::int64_t least_steps = 10, most_steps = 60;  ///< between resamplings
@@ -78,6 +81,8 @@ struct SphereBudget {
   double accreted_km3 = 0.0;      ///< sediment that the wedges behind trenches grew by
   double raised_km3 = 0.0;        ///< added by subduction: magma and accretion
   double eroded_km3 = 0.0;
+  double deposited_km3 = 0.0;   ///< laid on continents and their shelves by rivers
+  double sea_floor_km3 = 0.0;   ///< laid on ocean floor by rivers
   double emerged_km3 = 0.0;     ///< of arcs when they became continental
   double stretched_km2 = 0.0;   ///< margins that broken continents grew
   double swallowed_km3 = 0.0;   ///< taken by collisions from below and given back as mountains
@@ -186,6 +191,7 @@ class SphereTectonics {
  private:
   class EdgeForces;
   class FrontUplift;
+  class MovingSurface;
   void move();
   void set_frames();
   void rank_plates();
@@ -198,6 +204,7 @@ class SphereTectonics {
   void add_uplifts(const FrontUplift& uplift);
   void raise();
   void erupt();
+  void run_rivers();
   void pull_slabs();
   void balance_forces();
   void collide();

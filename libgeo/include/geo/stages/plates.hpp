@@ -53,6 +53,7 @@ struct PlatesParameters {
   std::string uplift_sources = "nearest";
   std::string accretion = "wedge";
   std::string rifting = "any";
+  std::string erosion = "height";
   std::string ocean_floor = "damping";
   SphereSettings sphere;
   SphereStart start;

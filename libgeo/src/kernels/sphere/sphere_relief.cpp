@@ -131,7 +131,7 @@ void SphereTectonics::raise() {
         }
       }
       if (crust.continental[i] != 0) {
-        const double worn_km = erosion_km(z_km, law);
+        const double worn_km = s.by_rivers ? 0.0 : erosion_km(z_km, law);
         z_km += raised_km + worn_km;
         crust.thickness_m[i] += static_cast<float>(1e3 * s.rebound * (raised_km + worn_km));
         sum[kRaised] += s.rebound * raised_km;

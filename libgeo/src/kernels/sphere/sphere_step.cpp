@@ -216,6 +216,7 @@ void SphereTectonics::advance() {
   spread_fronts();
   raise();
   erupt();
+  if (settings_.by_rivers) run_rivers();
   if (settings_.by_forces) {
     balance_forces();
   } else {
