@@ -87,6 +87,7 @@ class RunSession {
   void read_initial_relief();
   void read_given_fields();
   void read_beginning();
+  void refuse_beginning() const;
   [[nodiscard]] Hypsography hypsography() const;
   [[nodiscard]] int count_complete_stages() const;
   [[nodiscard]] bool is_complete(int position) const;
