@@ -535,6 +535,39 @@ std::string two_plates(const std::string& properties, const std::string& ring) {
 }
 
 const BadInput kPlates[] = {
+    {"WithARelief",
+     kConfiguration,
+     {"fields.plates = earth: is for stage plates", "begins with erosion", "--dem",
+      "must be empty"},
+     [](const fs::path& folder) {
+       return quick_run(folder / "relief.nc", folder / "out", {"--set", "fields.plates=earth"});
+     }},
+    {"FirstReliefWithARelief",
+     kConfiguration,
+     {"fields.first_relief = x.nc: is for stage plates", "must be empty"},
+     [](const fs::path& folder) {
+       return quick_run(folder / "relief.nc", folder / "out",
+                        {"--set", "fields.first_relief=x.nc"});
+     }},
+    {"OthersBehindAStageThatStays",
+     kConfiguration,
+     {"--from isostasy", "fields.plates is \"earth\", was \"\"", "--overwrite"},
+     [](const fs::path& folder) {
+       const Words drift{"run", "-o", (folder / "out").string(), "--set", "plates.model=sphere"};
+       Words first = drift, again = drift;
+       for (const char* word : {"--grid", "64x32", "--to", "plates", "--set", "plates.samples=2000",
+                                "--set", "plates.time_myr=4", "--no-vtk", "--no-maps"}) {
+         first.emplace_back(word);
+       }
+       for (const char* word :
+            {"--overwrite", "--from", "isostasy", "--to", "isostasy", "--set",
+             "plates.samples=2000", "--set", "plates.time_myr=4", "--set", "fields.plates=earth"}) {
+         again.emplace_back(word);
+       }
+       const Outcome outcome = terrane(first);
+       EXPECT_EQ(outcome.code, 0) << outcome.err;
+       return again;
+     }},
     {"NoFile", kInput, {"fields.plates", "no such file", "must be earth or"}, drift_of("")},
     {"NoJson", kInput, {"plates.geojson: is no JSON"}, drift_of("<kml/>")},
     {"UnknownCode",

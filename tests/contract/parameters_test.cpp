@@ -20,9 +20,9 @@ std::vector<std::string> words(const std::string& text, char separator) {
 /// How a name may spell one factor of a unit: "day" is d, "degC" c or degc.
 std::vector<std::string> spellings(std::string base) {
   static const std::map<std::string, std::vector<std::string>> kShort{
-      {"day", {"d"}},    {"degree", {"deg"}}, {"degC", {"degc", "c"}},
-      {"K", {"k", "c"}}, {"Mm", {"1000km"}},  {"hPa", {"hpa"}},
-      {"W", {"w"}},      {"Myr", {"myr"}}};
+      {"day", {"d"}},     {"degree", {"deg"}}, {"degC", {"degc", "c"}}, {"K", {"k", "c"}},
+      {"Mm", {"1000km"}}, {"hPa", {"hpa"}},    {"Pa", {"pa"}},          {"N", {"n"}},
+      {"W", {"w"}},       {"Myr", {"myr"}}};
   const auto known = kShort.find(base);
   if (known != kShort.end()) return known->second;
   return {base};

@@ -187,6 +187,39 @@ TEST(SphereTectonics, ContinentsCollideWhenThreeHundredKilometresHaveGoneUnder) 
   EXPECT_GT(high, 3000.0);
 }
 
+TEST(SphereTectonics, ATerraneThatTwoPlatesReachInOneStepGoesWithTheSecond) {
+  // Continents round the equator on three plates; those of the outer ones come from both sides.
+  const World world(20000);
+  SphereState state;
+  state.crust.resize(world.mesh.size());
+  for (const double eastward_mm_yr : {80.0, 0.0, -80.0}) {
+    SpherePlate plate;
+    plate.axis = {0.0, 0.0, eastward_mm_yr < 0.0 ? -1.0 : 1.0};
+    plate.speed_rad_myr = std::abs(eastward_mm_yr) / 6370.0;
+    state.add_plate(plate);
+  }
+  for (std::int32_t i = 0; i < world.mesh.size(); ++i) {
+    const Vector3& at = world.samples.position(i);
+    const double east = longitude_deg(at);
+    state.crust.plate[i] = east < -30.0 ? 0 : east < 30.0 ? 1 : 2;
+    state.crust.elevation_m[i] = -5000.0F;
+    state.crust.thickness_m[i] = 7000.0F;
+    state.crust.age_myr[i] = 50.0F;
+    if (std::abs(latitude_deg(at)) > 20.0 || std::abs(east) > 120.0) continue;
+    state.crust.continental[i] = 1;
+    state.crust.elevation_m[i] = 300.0F;
+    state.crust.thickness_m[i] = 36000.0F;
+  }
+  SphereTectonics model(world.mesh, quiet(), std::move(state), 1);
+  while (model.events().empty() && model.state().time_myr < 20.0) model.advance();
+  ASSERT_EQ(model.events().size(), 2U);
+  EXPECT_EQ(model.events()[0].first, 1);
+  EXPECT_EQ(model.events()[1].first, 3);  // the terrane, which has left plate 1
+  ASSERT_EQ(model.state().plates.size(), 4U);
+  EXPECT_EQ(model.state().plates[3].carrier, model.events()[1].second);
+  EXPECT_NE(model.events()[0].second, model.events()[1].second);
+}
+
 TEST(SphereTectonics, CollisionsKeepTheVolumeOfContinents) {
   const World world(30000);
   SphereSettings settings = quiet();

@@ -177,16 +177,18 @@ std::string first_difference(std::string_view before, std::string_view after,
   const toml::table old_root = parse(before, "config.toml");
   const toml::table new_root = parse(after, "the present configuration");
   std::string found;
+  const auto is_listed = [&](std::string_view name) {
+    return std::find(sections.begin(), sections.end(), name) != sections.end();
+  };
   const auto is_compared = [&](std::string_view section) {
-    return sections.empty() ||
-           std::find(sections.begin(), sections.end(), section) != sections.end();
+    return sections.empty() || is_listed(section);
   };
   const auto compare = [&](const toml::table& from, const toml::table& other, bool forward) {
     visit_in_text_order(from, [&](const toml::key& section, const toml::node& node) {
-      if (!is_compared(section.str()) || node.as_table() == nullptr) return;
+      if (node.as_table() == nullptr) return;
       visit_in_text_order(*node.as_table(), [&](const toml::key& key, const toml::node& here) {
         const std::string name = fmt::format("{}.{}", section.str(), key.str());
-        if (!found.empty() ||
+        if (!found.empty() || !(is_compared(section.str()) || is_listed(name)) ||
             std::find(ignored_names.begin(), ignored_names.end(), name) != ignored_names.end()) {
           return;
         }

@@ -38,6 +38,33 @@ bool lists(const std::vector<const FieldSpec*>& specs, const FieldSpec& spec) {
                      [&](const FieldSpec* listed) { return listed->name == spec.name; });
 }
 
+bool has_choice(Stage& stage, std::string_view key, std::string_view value) {
+  for (const Parameter& row : stage.parameters()) {
+    if (row.name == key) return row.value() == ParameterValue(std::string(value));
+  }
+  return false;
+}
+
+/// The keys of [fields] that a stage reads something by.
+std::vector<std::string> given_fields_of(Stage& stage) {
+  const StageInfo& info = stage.info();
+  std::vector<std::string> keys;
+  const auto takes = [&](const FieldSpec& spec) {
+    return lists(info.reads, spec) || lists(info.optional, spec);
+  };
+  if (takes(field::erodibility)) keys.emplace_back("fields.erodibility");
+  if (takes(field::uplift_rate)) keys.emplace_back("fields.uplift_rate");
+  if (takes(field::ranking)) keys.emplace_back("fields.ranking");
+  if (takes(field::ranking) || has_choice(stage, "erosion.hypsometry", "rank")) {
+    keys.insert(keys.end(), {"fields.hypsography", "fields.hypsography_ocean"});
+  }
+  if (info.name == "plates") {
+    keys.insert(keys.end(),
+                {"fields.plates", "fields.first_relief", "fields.first_age", "fields.start_frame"});
+  }
+  return keys;
+}
+
 /// The grid that a relief is put on.
 Grid grid_for(const Relief& relief, const RunSettings& settings, const Planet& planet) {
   if (settings.grid_is_automatic()) return relief.grid;
@@ -261,6 +288,9 @@ void RunSession::keep_earlier_stages(const std::string& before, int old_begin) {
   std::vector<std::string> sections{"run", "dem", "planet"};
   for (int at = begin_; at < first_; ++at) {
     sections.emplace_back(name_of(at));
+    for (std::string& key : given_fields_of(*pipeline_.stages()[at])) {
+      sections.push_back(std::move(key));
+    }
     if (pipeline_.stages()[at]->info().feels_events) sections.emplace_back("event");
   }
   const auto difference =
@@ -410,9 +440,26 @@ void RunSession::read_given_fields() {
   read(field::ranking, settings_.ranking);
 }
 
+/// A run that leaves the first stage out has no use for what it begins with.
+void RunSession::refuse_beginning() const {
+  const std::pair<std::string_view, const std::string*> given[] = {
+      {"fields.plates", &settings_.plates},
+      {"fields.first_relief", &settings_.first_relief},
+      {"fields.first_age", &settings_.first_age},
+      {"fields.start_frame", &settings_.start_frame}};
+  for (const auto& [key, value] : given) {
+    if (value->empty()) continue;
+    throw ConfigurationError(
+        fmt::format("{} = {}: is for stage {}, and this run begins with {}{}: must be empty", key,
+                    *value, name_of(0), name_of(begin_),
+                    settings_.dem_file.empty() ? "" : ", with the relief of --dem"));
+  }
+}
+
 /// The first plates and the first relief, as far as the first stage is still to come. Cells of the
 /// relief are of one size whatever the grid of the run, so that the same planet comes of it.
 void RunSession::read_beginning() {
+  if (begin_ != 0) refuse_beginning();
   if (first_ != 0) return;
   if (!settings_.plates.empty()) plates_ = read_plate_outlines(settings_.plates);
   if (settings_.first_relief.empty()) {

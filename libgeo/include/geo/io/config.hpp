@@ -38,7 +38,8 @@ std::string write_events(std::span<const Event> events);
 
 /// Names the first parameter whose value in the resolved configuration `before` differs from
 /// `after`, as "section.key is X, was Y", or the first event that is another; empty when none is.
-/// `sections` limits the comparison ("event" for the events); empty means all.
+/// `sections` limits the comparison to these sections ("event" for the events) and single keys;
+/// empty means all.
 std::string first_difference(std::string_view before, std::string_view after,
                              std::span<const std::string> sections = {},
                              std::span<const std::string_view> ignored_names = {});

@@ -90,6 +90,7 @@ class RunSession {
   void read_beginning();
   void read_given_exemplars();
   [[nodiscard]] bool makes_exemplars() const;
+  void refuse_beginning() const;
   [[nodiscard]] Hypsography hypsography() const;
   [[nodiscard]] int count_complete_stages() const;
   [[nodiscard]] bool is_complete(int position) const;

@@ -57,6 +57,8 @@ class SpherePartition {
     Matrix3 inertia{};  ///< sum of (1 - r r^T) over its samples
   };
   [[nodiscard]] const Cap& cap(int plate) const { return cap_[plate]; }
+  /// Plates that there were when it was rebuilt.
+  [[nodiscard]] int plates() const noexcept { return static_cast<int>(cap_.size()); }
 
  private:
   const SphereMesh* mesh_;

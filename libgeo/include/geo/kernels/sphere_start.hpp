@@ -21,15 +21,15 @@ struct SphereStart {
   double oldest_floor_myr = 130.0;  ///< of the first sea floor, far from boundaries
   /// Heights of the samples, m: the highest are the continents, thick as such ground is; the floor
   /// is as old as it is deep. Empty: low continents from noise, a floor that ages from boundaries.
-  std::vector<float> elevation_m = {};
+  std::vector<float> elevation_m;
   /// Ages of the sea floor beside such heights, Myr, NaN where unknown; empty: all by depth.
-  std::vector<float> age_myr = {};
+  std::vector<float> age_myr;
   /// The heights are a planet's own, with slopes, aprons, trenches, plateaus and seamounts, whose
   /// depth does not tell the age of the floor: there it is that of the plain floor around.
   bool real_floor = false;
   /// Plate of each sample, where plates are given, and the rotation of each, rad/Myr; empty: drawn.
-  std::vector<std::int16_t> plate = {};
-  std::vector<Vector3> rotation_rad_myr = {};
+  std::vector<std::int16_t> plate;
+  std::vector<Vector3> rotation_rad_myr;
 };
 
 /// Plates, motion and crust of a seed. Axes are uniform on the sphere, speeds uniform from a fifth

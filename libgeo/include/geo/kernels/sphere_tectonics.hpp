@@ -7,9 +7,11 @@
 #include <vector>
 
 #include "geo/kernels/noise.hpp"
+#include "geo/kernels/plate_forces.hpp"
 #include "geo/kernels/sphere_mesh.hpp"
 #include "geo/kernels/sphere_partition.hpp"
 #include "geo/kernels/sphere_state.hpp"
+#include "geo/kernels/surface_rivers.hpp"
 #include "geo/kernels/tectonic_laws.hpp"
 
 namespace geo {
@@ -20,12 +22,14 @@ class GreatCircleLine;
 struct SphereSettings {
   TectonicConstants law;
   double radius_km = 6370.0;
-  bool driftworld_uplift = false;     ///< Driftworld's f instead of the piecewise one
-  double uplift_control_km = 200.0;   ///< where subduction raises most
-  double arc_reach_km = 1800.0;       ///< of the uplift where the overriding crust is oceanic
-  double elevation_weight = 1.0;      ///< power of the factor h in the uplift
-  double fold_per_km = 0.002;         ///< beta of the fold direction, per km of relative motion
-  double slab_pull = 1e-3;            ///< epsilon, per Myr and 1000 km of front
+  bool driftworld_uplift = false;    ///< Driftworld's f instead of the piecewise one
+  double uplift_control_km = 200.0;  ///< where subduction raises most
+  double arc_reach_km = 1800.0;      ///< of the uplift where the overriding crust is oceanic
+  double elevation_weight = 1.0;     ///< power of the factor h in the uplift
+  double fold_per_km = 0.002;        ///< beta of the fold direction, per km of relative motion
+  double slab_pull = 1e-3;           ///< epsilon, per Myr and 1000 km of front
+  bool by_forces = false;            ///< motion balances forces, in place of that
+  PlateForces force;
   double penetration_km = 300.0;      ///< of continents, before they collide
   double surge_km = 4.5;              ///< most that one collision lifts
   double oceanic_km = 7.0;            ///< thickness of new crust
@@ -46,6 +50,14 @@ struct SphereSettings {
   double plume_mm_yr = 0.0;           ///< growth of volcanoes above the first plumes
   double plume_km = 60.0;             ///< over which it falls to a half
   double plume_top_km = 2.0;          ///< height that volcanoes of the sea floor reach
+  // Rules of Driftworld in place of the paper's.
+  bool rank_by_score = false;  ///< whole plates stay up by score(), not continents and young floor
+  bool merge_plates = false;   ///< plates whose continents touch become one
+  bool add_uplifts = false;    ///< of all plates that go below one, not of the nearest alone
+  bool fill_abyss = false;     ///< sediment piles on all floor below accretion_top_km
+  bool rift_largest = false;   ///< only the largest plate rifts, into two, however much is land
+  bool by_rivers = false;      ///< rivers carve and deposit, in place of erosion by height
+  RiverLaw rivers;             ///< their step and rebound are the model's
   bool no_net_rotation = true;
   bool hold_motions = true;  ///< whether a plate goes on turning as it is told to
   std::int64_t least_steps = 10, most_steps = 60;  ///< between resamplings
@@ -69,6 +81,8 @@ struct SphereBudget {
   double accreted_km3 = 0.0;      ///< sediment that the wedges behind trenches grew by
   double raised_km3 = 0.0;        ///< added by subduction: magma and accretion
   double eroded_km3 = 0.0;
+  double deposited_km3 = 0.0;   ///< laid on continents and their shelves by rivers
+  double sea_floor_km3 = 0.0;   ///< laid on ocean floor by rivers
   double emerged_km3 = 0.0;     ///< of arcs when they became continental
   double stretched_km2 = 0.0;   ///< margins that broken continents grew
   double swallowed_km3 = 0.0;   ///< taken by collisions from below and given back as mountains
@@ -133,6 +147,17 @@ class SphereTectonics {
   double change_crust(const Vector3& place, double radius_km, bool continental);
   /// The same of all places (unit vectors) of which something holds.
   double change_crust(const std::function<bool(const Vector3&)>& holds, bool continental);
+  /// Torques on a plate about the planet's centre, in the frame of the planet.
+  struct Torques {
+    Matrix3 drag_n_m_s{};   ///< (eta / h) R^4 int f (1 - r r^T) dA, times rotation in rad/s
+    Vector3 driving_n_m{};  ///< R^2 closed int F dl of slabs, ridges and sutures
+  };
+  /// Those of settings.force on each plate with all that it carries, as of the last step. Floor
+  /// that opens between resamplings counts as there: it pushes up to where it has its age.
+  [[nodiscard]] std::vector<Torques> torques() const;
+  /// Driftworld's rank of a plate with all that it carries: a hundred for each sample of continent
+  /// less one for each of floor.
+  [[nodiscard]] double score(int plate) const { return score_[plate]; }
   /// Area of each plate with all that it carries, km2; 0 of those that are no more.
   [[nodiscard]] std::vector<double> plate_areas_km2() const;
 
@@ -164,20 +189,30 @@ class SphereTectonics {
   [[nodiscard]] std::span<const std::int32_t> nearest_front() const noexcept { return front_of_; }
 
  private:
+  class EdgeForces;
+  class FrontUplift;
+  class MovingSurface;
   void move();
   void set_frames();
+  void rank_plates();
   void find_contacts();
   void decide_pairs();
   void find_fronts();
   void spread_fronts();
+  void spread(int plate, std::span<const std::int32_t> fronts, std::vector<std::int32_t>* reached);
+  [[nodiscard]] float farthest_chord2() const;
+  void add_uplifts(const FrontUplift& uplift);
   void raise();
   void erupt();
+  void run_rivers();
   void pull_slabs();
+  void balance_forces();
   void collide();
   void collide(std::int32_t sample);
   void surge(int upper, std::span<const std::int32_t> terrane, const Vector3& centroid,
              double area_km2, double speed_mm_yr);
   void rift_by_chance();
+  [[nodiscard]] int largest_plate() const;
   void part(int plate, std::span<const std::int8_t> fragment, std::span<const Vector3> away,
             double speed_mm_yr);
   template <class Within>
@@ -208,6 +243,8 @@ class SphereTectonics {
   std::vector<std::int32_t> partner_, contacts_, front_of_;
   std::vector<std::uint8_t> hidden_;
   std::vector<Front> fronts_;
+  std::vector<double> score_;     // of each plate
+  std::vector<float> uplift_km_;  // of each sample in a step, where uplifts add up
   std::vector<float> chord2_;
   /// What spreading fronts asks of a sample, in one place of memory.
   struct Spot {

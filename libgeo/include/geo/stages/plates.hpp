@@ -48,6 +48,12 @@ struct PlatesParameters {
   double frames_myr = 0.0;
   std::string given_motions = "held";
   std::string uplift_profile = "piecewise";
+  std::string overlap = "crust";
+  std::string collisions = "terranes";
+  std::string uplift_sources = "nearest";
+  std::string accretion = "wedge";
+  std::string rifting = "any";
+  std::string erosion = "height";
   std::string ocean_floor = "damping";
   SphereSettings sphere;
   SphereStart start;

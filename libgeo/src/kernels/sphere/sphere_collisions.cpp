@@ -33,6 +33,7 @@ std::vector<std::int32_t> SphereTectonics::terrane_of(std::int32_t sample) const
 void SphereTectonics::collide() {
   const SphereCrust& crust = state_.crust;
   const auto count = static_cast<std::int32_t>(contacts_.size());
+  const double needed_km = settings_.merge_plates ? 0.0 : settings_.penetration_km;
   constexpr std::int32_t kChunk = 1024;
   std::vector<std::vector<std::int32_t>> found((count + kChunk - 1) / kChunk);
 #pragma omp parallel for schedule(dynamic)
@@ -43,7 +44,7 @@ void SphereTectonics::collide() {
       if (hidden_[i] == 0 || crust.continental[i] == 0 || crust.continental[above] == 0) continue;
       const std::int32_t front = front_of_[above];
       if (front < 0 || fronts_[front].lower != crust.plate[i]) continue;
-      if (distance_km(above, fronts_[front].sample) < settings_.penetration_km) continue;
+      if (distance_km(above, fronts_[front].sample) < needed_km) continue;
       found[chunk].push_back(i);
     }
   }
@@ -75,9 +76,13 @@ void SphereTectonics::collide(std::int32_t sample) {
   SpherePlate body = state_.plates[lower];
   body.carrier = static_cast<std::int16_t>(upper);
   body.born_myr = state_.time_myr;
+  // What has come off a plate in this step is a terrane as a whole.
+  const bool is_whole = lower >= partition_.plates();
   const double rest_km2 =
-      sample_km2() * (partition_.cap(lower).samples - static_cast<double>(terrane.size()));
-  if (rest_km2 < kRemnant * settings_.mean_area_km2) {
+      is_whole
+          ? 0.0
+          : sample_km2() * (partition_.cap(lower).samples - static_cast<double>(terrane.size()));
+  if (settings_.merge_plates || rest_km2 < kRemnant * settings_.mean_area_km2) {
     state_.plates[lower].carrier = static_cast<std::int16_t>(state_.root(upper));
   } else {
     const int carried = state_.add_plate(body);

@@ -82,8 +82,24 @@ void SphereTectonics::decide_pairs() {
   }
 }
 
+void SphereTectonics::rank_plates() {
+  const auto plates = static_cast<int>(state_.plates.size());
+  std::vector<double> own(plates);
+  score_.assign(plates, 0.0);
+  for (int p = 0; p < std::min(plates, partition_.plates()); ++p) {
+    const auto& cap = partition_.cap(p);
+    score_[state_.root(p)] += 100.0 * cap.continental - (cap.samples - cap.continental);
+  }
+  for (int p = 0; p < plates; ++p) own[p] = score_[state_.root(p)];
+  score_ = std::move(own);
+}
+
 bool SphereTectonics::is_on_top(std::int32_t sample, std::int32_t other) const {
   const SphereCrust& crust = state_.crust;
+  if (settings_.rank_by_score) {
+    const int a = crust.plate[sample], b = crust.plate[other];
+    return score_[a] != score_[b] ? score_[a] > score_[b] : a < b;
+  }
   const bool land = crust.continental[sample] != 0;
   if (land != (crust.continental[other] != 0)) return land;
   const int a = crust.plate[sample], b = crust.plate[other];
@@ -131,14 +147,19 @@ void SphereTectonics::find_fronts() {
   fronts_ = joined(found);
 }
 
+/// The square of the chord that spans the reach of subduction.
+float SphereTectonics::farthest_chord2() const {
+  const double reach = settings_.law.subduction_distance_km / settings_.radius_km;
+  const double half = std::sin(0.5 * std::min(reach, 3.1));
+  return static_cast<float>(4.0 * half * half);
+}
+
 /// The nearest front to each sample of an overriding plate within the reach of subduction: fronts
 /// are handed from sample to sample, each plate by itself.
 void SphereTectonics::spread_fronts() {
   const FibonacciSphere& samples = mesh_->samples();
   const SphereCrust& crust = state_.crust;
-  const double reach = settings_.law.subduction_distance_km / settings_.radius_km;
-  const double half = std::sin(0.5 * std::min(reach, 3.1));
-  const auto most = static_cast<float>(4.0 * half * half);
+  const float most = farthest_chord2();
   const std::int32_t n = mesh_->size();
 #pragma omp parallel for schedule(static)
   for (std::int32_t i = 0; i < n; ++i) {
@@ -156,35 +177,43 @@ void SphereTectonics::spread_fronts() {
   }
 #pragma omp parallel for schedule(dynamic, 1)
   for (std::size_t p = 0; p < of_plate.size(); ++p) {
-    if (of_plate[p].empty()) continue;
-    std::vector<std::int32_t> queue, next;
-    for (const std::int32_t k : of_plate[p]) {
-      const std::int32_t i = fronts_[k].sample;
-      spots_[i].front = k;
-      spots_[i].chord2 = 0.0F;
-      queue.push_back(i);
-    }
-    while (!queue.empty()) {
-      next.clear();
-      for (const std::int32_t i : queue) {
-        const std::int32_t front = spots_[i].front;
-        const Spot source = spots_[fronts_[front].sample];
-        for (const std::int32_t j : mesh_->neighbours(i)) {
-          Spot& at = spots_[j];
-          if (at.plate != static_cast<std::int16_t>(p) || at.front == front) continue;
-          const float x = at.x - source.x, y = at.y - source.y, z = at.z - source.z;
-          const float chord2 = x * x + y * y + z * z;
-          if (chord2 >= at.chord2) continue;
-          at.front = front;
-          at.chord2 = chord2;
-          next.push_back(j);
-        }
-      }
-      queue.swap(next);
-    }
+    if (!of_plate[p].empty()) spread(static_cast<int>(p), of_plate[p], nullptr);
   }
 #pragma omp parallel for schedule(static)
   for (std::int32_t i = 0; i < n; ++i) front_of_[i] = spots_[i].front;
+}
+
+/// Hands fronts of a plate on within it and tells whom they reach.
+void SphereTectonics::spread(int plate, std::span<const std::int32_t> fronts,
+                             std::vector<std::int32_t>* reached) {
+  std::vector<std::int32_t> queue, next;
+  const auto take = [&](std::int32_t i, Spot& at, std::int32_t front, float chord2) {
+    if (reached != nullptr && at.front < 0) reached->push_back(i);
+    at.front = front;
+    at.chord2 = chord2;
+  };
+  for (const std::int32_t k : fronts) {
+    const std::int32_t i = fronts_[k].sample;
+    take(i, spots_[i], k, 0.0F);
+    queue.push_back(i);
+  }
+  while (!queue.empty()) {
+    next.clear();
+    for (const std::int32_t i : queue) {
+      const std::int32_t front = spots_[i].front;
+      const Spot source = spots_[fronts_[front].sample];
+      for (const std::int32_t j : mesh_->neighbours(i)) {
+        Spot& at = spots_[j];
+        if (at.plate != static_cast<std::int16_t>(plate) || at.front == front) continue;
+        const float x = at.x - source.x, y = at.y - source.y, z = at.z - source.z;
+        const float chord2 = x * x + y * y + z * z;
+        if (chord2 >= at.chord2) continue;
+        take(j, at, front, chord2);
+        next.push_back(j);
+      }
+    }
+    queue.swap(next);
+  }
 }
 
 }  // namespace geo

@@ -17,27 +17,89 @@ constexpr float kYoung_myr = 40.0F;
 
 }  // namespace
 
+/// What the fronts of a step do to the plates above them.
+class SphereTectonics::FrontUplift {
+ public:
+  explicit FrontUplift(const SphereTectonics& model)
+      : m_(model), relative_(model.fronts_.size()), lift_(model.fronts_.size()) {
+    const SphereSettings& s = m_.settings_;
+    for (std::size_t k = 0; k < m_.fronts_.size(); ++k) {
+      const Front& front = m_.fronts_[k];
+      const int own = m_.state_.crust.plate[front.sample];
+      relative_[k] =
+          scaled(back(m_.frame_[own], add(m_.rotation_[front.lower], m_.rotation_[own], -1.0)),
+                 s.radius_km);
+      lift_[k] = std::pow(
+          uplift_by_elevation(1e-3 * front.lower_elevation_m, s.law.trench_km, s.law.summit_km),
+          s.elevation_weight);
+    }
+  }
+  struct Work {
+    double d_km, f, rate_mm_yr;
+    Vector3 speed;  // of what goes down below the sample, mm/yr, in the frame of its plate
+  };
+  [[nodiscard]] Work at(std::int32_t i, std::int32_t k) const {
+    const SphereSettings& s = m_.settings_;
+    const TectonicConstants& law = s.law;
+    Work work{m_.distance_km(i, m_.fronts_[k].sample), 0.0, 0.0,
+              cross(relative_[k], m_.mesh_->samples().position(i))};
+    const double reach_km =
+        m_.state_.crust.continental[i] != 0 ? law.subduction_distance_km : s.arc_reach_km;
+    work.f =
+        s.driftworld_uplift
+            ? std::max(0.0, uplift_by_distance_driftworld(work.d_km, s.uplift_control_km, reach_km))
+            : uplift_by_distance(work.d_km, s.uplift_control_km, reach_km);
+    work.rate_mm_yr =
+        law.uplift_mm_yr * work.f * uplift_by_speed(length(work.speed), law.speed_mm_yr) * lift_[k];
+    return work;
+  }
+
+ private:
+  const SphereTectonics& m_;
+  std::vector<Vector3> relative_;  // of each front, in the frame of its plate
+  std::vector<double> lift_;       // how much the height of what goes down counts
+};
+
+/// The sum of what all plates that go below one do to it, each by its own nearest front.
+void SphereTectonics::add_uplifts(const FrontUplift& uplift) {
+  const std::size_t plates = state_.plates.size();
+  std::vector<std::vector<std::int32_t>> of_pair(plates * plates);
+  for (std::size_t k = 0; k < fronts_.size(); ++k) {
+    const auto upper = static_cast<std::size_t>(state_.crust.plate[fronts_[k].sample]);
+    const auto lower = static_cast<std::size_t>(state_.root(fronts_[k].lower));
+    of_pair[upper * plates + lower].push_back(static_cast<std::int32_t>(k));
+  }
+  uplift_km_.assign(state_.crust.plate.size(), 0.0F);
+  const float most = farthest_chord2();
+  const auto forget = [&](std::int32_t i) {
+    spots_[i].front = -1;
+    spots_[i].chord2 = most;
+  };
+#pragma omp parallel for schedule(static)
+  for (std::int32_t i = 0; i < mesh_->size(); ++i) forget(i);
+#pragma omp parallel for schedule(dynamic, 1)
+  for (std::size_t p = 0; p < plates; ++p) {
+    std::vector<std::int32_t> reached;
+    for (std::size_t q = 0; q < plates; ++q) {
+      reached.clear();
+      spread(static_cast<int>(p), of_pair[p * plates + q], &reached);
+      for (const std::int32_t i : reached) {
+        const double rate_mm_yr = uplift.at(i, spots_[i].front).rate_mm_yr;
+        uplift_km_[i] += static_cast<float>(rate_mm_yr * settings_.law.step_myr);
+        forget(i);
+      }
+    }
+  }
+}
+
 /// Uplift of overriding plates, erosion, damping, accretion, ageing: all that goes on everywhere.
 void SphereTectonics::raise() {
-  const FibonacciSphere& samples = mesh_->samples();
   const SphereSettings& s = settings_;
   const TectonicConstants& law = s.law;
   SphereCrust& crust = state_.crust;
   const auto step_myr = static_cast<float>(law.step_myr);
-  // What each front moves like, in the frame of its plate.
-  std::vector<Vector3> relative(fronts_.size());
-  for (std::size_t k = 0; k < fronts_.size(); ++k) {
-    const int own = crust.plate[fronts_[k].sample];
-    relative[k] = scaled(back(frame_[own], add(rotation_[fronts_[k].lower], rotation_[own], -1.0)),
-                         s.radius_km);
-  }
-  // How much the height of what goes down counts.
-  std::vector<double> lift(fronts_.size());
-  for (std::size_t k = 0; k < fronts_.size(); ++k) {
-    lift[k] = std::pow(
-        uplift_by_elevation(1e-3 * fronts_[k].lower_elevation_m, law.trench_km, law.summit_km),
-        s.elevation_weight);
-  }
+  const FrontUplift uplift(*this);
+  if (s.add_uplifts) add_uplifts(uplift);
   enum { kRaised, kEroded, kEmerged, kEmergedArea, kAccreted, kSums };
   constexpr std::int32_t kBlock = 4096;
   const std::int32_t n = crust.size(), blocks = (n + kBlock - 1) / kBlock;
@@ -50,22 +112,14 @@ void SphereTectonics::raise() {
       double z_km = 1e-3 * crust.elevation_m[i], raised_km = 0.0;
       bool wedge = false;
       if (const std::int32_t k = front_of_[i]; k >= 0) {
-        const Front& front = fronts_[k];
-        const double d_km = distance_km(i, front.sample);
-        const Vector3 speed = cross(relative[k], samples.position(i));
-        const double reach_km =
-            crust.continental[i] != 0 ? law.subduction_distance_km : s.arc_reach_km;
-        const double f =
-            s.driftworld_uplift
-                ? std::max(0.0, uplift_by_distance_driftworld(d_km, s.uplift_control_km, reach_km))
-                : uplift_by_distance(d_km, s.uplift_control_km, reach_km);
-        const double rate =
-            law.uplift_mm_yr * f * uplift_by_speed(length(speed), law.speed_mm_yr) * lift[k];
-        raised_km = std::max(0.0, std::min(rate * law.step_myr, law.summit_km - z_km));
-        wedge = d_km < s.accretion_width_km;
-        if (f > kFolding) {
+        const auto work = uplift.at(i, k);
+        const double rise_km =
+            s.add_uplifts ? static_cast<double>(uplift_km_[i]) : work.rate_mm_yr * law.step_myr;
+        raised_km = std::max(0.0, std::min(rise_km, law.summit_km - z_km));
+        wedge = work.d_km < s.accretion_width_km;
+        if (work.f > kFolding) {
           Vector3 fold{crust.fold[i][0], crust.fold[i][1], crust.fold[i][2]};
-          fold = turned_fold(fold, speed, s.fold_per_km, law.step_myr);
+          fold = turned_fold(fold, work.speed, s.fold_per_km, law.step_myr);
           const double size = std::max(1.0, length(fold));
           for (int c = 0; c < 3; ++c) crust.fold[i][c] = static_cast<float>(fold[c] / size);
           const bool collided =
@@ -77,7 +131,7 @@ void SphereTectonics::raise() {
         }
       }
       if (crust.continental[i] != 0) {
-        const double worn_km = erosion_km(z_km, law);
+        const double worn_km = s.by_rivers ? 0.0 : erosion_km(z_km, law);
         z_km += raised_km + worn_km;
         crust.thickness_m[i] += static_cast<float>(1e3 * s.rebound * (raised_km + worn_km));
         sum[kRaised] += s.rebound * raised_km;
@@ -89,7 +143,7 @@ void SphereTectonics::raise() {
                                    ? 1e-3 * (ocean_depth_m(age) - ocean_depth_m(age + law.step_myr))
                                    : damping_km(z_km, law);
         z_km += raised_km + sunk_km;
-        if (wedge && z_km < s.accretion_top_km) {
+        if ((wedge || s.fill_abyss) && z_km < s.accretion_top_km) {
           const double piled_km = std::min(s.accretion_top_km, z_km + accretion_km(law));
           sum[kAccreted] += piled_km - z_km;
           z_km = piled_km;

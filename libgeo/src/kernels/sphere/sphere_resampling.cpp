@@ -124,6 +124,13 @@ void SphereTectonics::resample() {
   const double volume_before_km3 = budget_.continental_km3;
   budget_.created_km2 =
       sample_km2() * sum_over(n, [&](std::int32_t i) { return owner[i] < 0 ? 1.0 : 0.0; });
+  // Only where plates are ranked does a continent go below floor.
+  const double sunk_km3 =
+      1e-3 * sample_km2() * sum_over(n, [&](std::int32_t i) {
+        const bool is_below_floor = before.plate[i] >= 0 && before.continental[i] != 0 &&
+                                    hidden_[i] != 0 && before.continental[partner_[i]] == 0;
+        return is_below_floor ? static_cast<double>(before.thickness_m[i]) : 0.0;
+      });
   const auto gone_km2 = [&](std::int8_t type) {
     return sample_km2() * sum_over(n, [&](std::int32_t i) {
              return before.continental[i] == type && (before.plate[i] < 0 || hidden_[i] != 0) ? 1.0
@@ -149,7 +156,8 @@ void SphereTectonics::resample() {
   fronts_.clear();
   contacts_.clear();
   measure_volume();
-  budget_.resampling_km3 = budget_.continental_km3 - volume_before_km3;
+  budget_.lost_km3 += sunk_km3;
+  budget_.resampling_km3 = budget_.continental_km3 - volume_before_km3 + sunk_km3;
   budget_.ocean_change_km2 = oceanic(state_.crust) - ocean_before_km2;
   budget_.ocean_error_km2 = budget_.created_km2 - budget_.consumed_km2 - budget_.ocean_change_km2;
   budget_.resampled = true;

@@ -7,23 +7,35 @@
 
 namespace geo {
 
+int SphereTectonics::largest_plate() const {
+  int largest = 0;
+  for (int p = 1; p < partition_.plates(); ++p) {
+    if (state_.plates[p].carrier >= 0) continue;
+    if (partition_.cap(p).samples > partition_.cap(largest).samples) largest = p;
+  }
+  return largest;
+}
+
 void SphereTectonics::rift_by_chance() {
   const RandomStream random(seed_, "plates.rifts");
   const auto step = static_cast<std::uint64_t>(state_.steps) << 10U;
   const auto plates = static_cast<int>(state_.plates.size());
+  const int largest = settings_.rift_largest ? largest_plate() : -1;
   for (int p = 0; p < plates; ++p) {
     if (!state_.plates[p].alive || state_.plates[p].carrier >= 0) continue;
+    if (settings_.rift_largest && p != largest) continue;
     const auto& cap = partition_.cap(p);
     const double ratio = sample_km2() * cap.samples / settings_.mean_area_km2;
     if (ratio < settings_.rift_smallest) continue;
     // Continents break more easily than the floor of oceans.
-    const double weight = 0.2 + 0.8 * cap.continental / std::max(1, cap.samples);
+    const double weight =
+        settings_.rift_largest ? 1.0 : 0.2 + 0.8 * cap.continental / std::max(1, cap.samples);
     const std::uint64_t index = step + static_cast<std::uint64_t>(p);
     const double chance =
         rift_probability(settings_.rift_per_myr * settings_.law.step_myr, weight, ratio);
     if (random.uniform(index) >= chance) continue;
     const double draw = random.uniform(index, 1);
-    const int fragments = draw < 0.6 ? 2 : draw < 0.9 ? 3 : 4;
+    const int fragments = settings_.rift_largest || draw < 0.6 ? 2 : draw < 0.9 ? 3 : 4;
     // Places drawn on the sphere until enough lie on the plate.
     std::vector<Vector3> places;
     for (std::uint64_t k = 0; k < 4000 && std::ssize(places) < fragments; ++k) {

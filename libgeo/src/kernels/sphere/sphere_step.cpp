@@ -68,6 +68,7 @@ void SphereTectonics::repartition() {
     if (plate.carrier >= 0 && !state_.plates[plate.carrier].alive) plate.carrier = -1;
   }
   set_frames();
+  rank_plates();
 }
 
 void SphereTectonics::set_frames() {
@@ -207,6 +208,7 @@ void SphereTectonics::advance() {
   begin_step();
   has_begun_ = false;
   partition_.count_continents(state_);
+  rank_plates();
   move();
   find_contacts();
   decide_pairs();
@@ -214,7 +216,12 @@ void SphereTectonics::advance() {
   spread_fronts();
   raise();
   erupt();
-  pull_slabs();
+  if (settings_.by_rivers) run_rivers();
+  if (settings_.by_forces) {
+    balance_forces();
+  } else {
+    pull_slabs();
+  }
   state_.time_myr += settings_.law.step_myr;
   ++state_.steps;
   budget_.time_myr = state_.time_myr;

@@ -19,6 +19,13 @@ SphereSettings settings_of(const PlatesParameters& p, double radius_km, const Co
   SphereSettings settings = p.sphere;
   settings.radius_km = radius_km;
   settings.driftworld_uplift = p.uplift_profile == "driftworld";
+  settings.rank_by_score = p.overlap == "score";
+  settings.merge_plates = p.collisions == "plates";
+  settings.add_uplifts = p.uplift_sources == "all";
+  settings.fill_abyss = p.accretion == "abyss";
+  settings.rift_largest = p.rifting == "largest";
+  settings.by_rivers = p.erosion == "rivers";
+  settings.force.gravity_m_s2 = context.planet.gravity_m_s2;
   settings.floor_by_age = p.ocean_floor == "age";
   settings.no_net_rotation = p.no_net_rotation;
   settings.hold_motions = p.given_motions == "held";
@@ -46,6 +53,8 @@ class Books {
     emerged_ += step.emerged_km2;
     raised_ += step.raised_km3;
     eroded_ += step.eroded_km3;
+    deposited_ += step.deposited_km3;
+    sea_floor_ += step.sea_floor_km3;
     emerged_km3_ += step.emerged_km3;
     changed_ += step.changed_km3;
     lost_ += step.lost_km3;
@@ -57,10 +66,11 @@ class Books {
   }
   /// What a step is told by, before the areas of its plates.
   static std::vector<std::string> columns() {
-    return {"time_myr",      "plates",          "resampled",  "collisions",    "rifts",
-            "created_km2",   "consumed_km2",    "buried_km2", "emerged_km2",   "stretched_km2",
-            "accreted_km3",  "continental_km3", "raised_km3", "eroded_km3",    "emerged_km3",
-            "swallowed_km3", "changed_km3",     "lost_km3",   "resampling_km3"};
+    return {"time_myr",      "plates",          "resampled",  "collisions",     "rifts",
+            "created_km2",   "consumed_km2",    "buried_km2", "emerged_km2",    "stretched_km2",
+            "accreted_km3",  "continental_km3", "raised_km3", "eroded_km3",     "emerged_km3",
+            "swallowed_km3", "changed_km3",     "lost_km3",   "resampling_km3", "deposited_km3",
+            "sea_floor_km3"};
   }
   static std::vector<double> row(const SphereTectonics& model) {
     const SphereBudget& b = model.budget();
@@ -82,7 +92,9 @@ class Books {
                             b.swallowed_km3,
                             b.changed_km3,
                             b.lost_km3,
-                            b.resampling_km3};
+                            b.resampling_km3,
+                            b.deposited_km3,
+                            b.sea_floor_km3};
     for (const double area_km2 : model.plate_areas_km2()) {
       row.push_back(area_km2 > 0.0 ? area_km2 : std::numeric_limits<double>::quiet_NaN());
     }
@@ -101,21 +113,25 @@ class Books {
     budget["continental_end_km3"] = last_.continental_km3;
     budget["continental_raised_km3"] = raised_;
     budget["continental_eroded_km3"] = eroded_;
+    budget["continental_deposited_km3"] = deposited_;
+    budget["sea_floor_deposited_km3"] = sea_floor_;
     budget["continental_emerged_km3"] = emerged_km3_;
     budget["continental_changed_km3"] = changed_;
     budget["continental_lost_km3"] = lost_;
     budget["continental_resampling_km3"] = resampling_;
-    budget["continental_closing_error"] = (last_.continental_km3 - first_km3_ - raised_ + eroded_ -
-                                           emerged_km3_ - changed_ + lost_ - resampling_) /
-                                          std::max(1.0, last_.continental_km3);
+    budget["continental_closing_error"] =
+        (last_.continental_km3 - first_km3_ - raised_ + eroded_ - deposited_ - emerged_km3_ -
+         changed_ + lost_ - resampling_) /
+        std::max(1.0, last_.continental_km3);
   }
 
  private:
   static double change(const SphereBudget& step) {
-    return step.raised_km3 - step.eroded_km3 + step.emerged_km3 + step.changed_km3 - step.lost_km3 +
-           step.resampling_km3;
+    return step.raised_km3 - step.eroded_km3 + step.deposited_km3 + step.emerged_km3 +
+           step.changed_km3 - step.lost_km3 + step.resampling_km3;
   }
   double created_ = 0.0, consumed_ = 0.0, buried_ = 0.0, emerged_ = 0.0;
+  double deposited_ = 0.0, sea_floor_ = 0.0;
   double raised_ = 0.0, eroded_ = 0.0, emerged_km3_ = 0.0, changed_ = 0.0, lost_ = 0.0;
   double resampling_ = 0.0;
   double first_km3_ = -1.0;
