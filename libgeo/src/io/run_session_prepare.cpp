@@ -62,6 +62,7 @@ std::vector<std::string> given_fields_of(Stage& stage) {
     keys.insert(keys.end(),
                 {"fields.plates", "fields.first_relief", "fields.first_age", "fields.start_frame"});
   }
+  if (has_choice(stage, "island.detail", "exemplars")) keys.emplace_back("fields.exemplars");
   return keys;
 }
 
