@@ -61,6 +61,9 @@ class SpherePartition {
   [[nodiscard]] int plates() const noexcept { return static_cast<int>(cap_.size()); }
 
  private:
+  [[nodiscard]] std::span<const Block> blocks_of(int plate) const;
+  void measure(int plate);
+
   const SphereMesh* mesh_;
   FibonacciSphere coarse_;
   double reach_;  // how far a sample may be from the coarse places asked for it, radians

@@ -64,8 +64,12 @@ void SpherePartition::rebuild(const SphereState& state) {
     return static_cast<std::size_t>(state.crust.plate[i]) * m + coarse_of_[i];
   };
   std::vector<std::int32_t> first(static_cast<std::size_t>(plates) * m + 1, 0);
-  for (const std::int32_t i : by_place_) {
-    if (state.crust.plate[i] >= 0) ++first[key(i) + 1];
+  // Samples of one place have keys of their own: places do not meet.
+#pragma omp parallel for schedule(static)
+  for (std::int32_t g = 0; g < m; ++g) {
+    for (const std::int32_t i : samples_at(g)) {
+      if (state.crust.plate[i] >= 0) ++first[key(i) + 1];
+    }
   }
   for (std::size_t k = 1; k < first.size(); ++k) first[k] += first[k - 1];
   order_.resize(first.back());
@@ -79,48 +83,64 @@ void SpherePartition::rebuild(const SphereState& state) {
                          first[at + 1] - first[at]});
     }
   }
-  for (const std::int32_t i : by_place_) {
-    if (state.crust.plate[i] >= 0) order_[first[key(i)]++] = i;
+#pragma omp parallel for schedule(static)
+  for (std::int32_t g = 0; g < m; ++g) {
+    for (const std::int32_t i : samples_at(g)) {
+      if (state.crust.plate[i] >= 0) order_[first[key(i)]++] = i;
+    }
   }
   cap_.assign(plates, {});
+#pragma omp parallel for schedule(dynamic, 1)
+  for (std::int32_t p = 0; p < plates; ++p) measure(p);
+  count_continents(state);
+}
+
+std::span<const SpherePartition::Block> SpherePartition::blocks_of(int plate) const {
+  const auto by_plate = [](const Block& block, int number) { return block.plate < number; };
+  const auto from = std::lower_bound(blocks_.begin(), blocks_.end(), plate, by_plate);
+  const auto to = std::lower_bound(from, blocks_.end(), plate + 1, by_plate);
+  return {from, to};
+}
+
+/// Sums over a plate and the places near it.
+void SpherePartition::measure(int plate) {
   const FibonacciSphere& samples = mesh_->samples();
-  for (const Block& block : blocks_) {
-    Cap& cap = cap_[block.plate];
+  Cap& cap = cap_[plate];
+  const std::size_t row = static_cast<std::size_t>(plate) * coarse_.size();
+  for (const Block& block : blocks_of(plate)) {
     cap.samples += block.count;
     for (const std::int32_t i : this->samples(block)) {
       const Vector3& r = samples.position(i);
       cap.centre = add(cap.centre, r);
       for (int a = 0; a < 3; ++a) {
-        for (int b = 0; b < 3; ++b) cap.inertia[a][b] += (a == b ? 1.0 : 0.0) - r[a] * r[b];
+        for (int b = a; b < 3; ++b) cap.inertia[a][b] += (a == b ? 1.0 : 0.0) - r[a] * r[b];
       }
     }
-    const std::size_t row = static_cast<std::size_t>(block.plate) * m;
     for (std::int32_t k = around_first_[block.coarse]; k < around_first_[block.coarse + 1]; ++k) {
       near_[row + around_[k]] = 1;
     }
   }
-  count_continents(state);
-  for (Cap& cap : cap_) {
-    cap.centre = normalised(cap.centre);
-    cap.cos_radius = cap.samples > 0 ? 1.0 : 2.0;
+  for (int a = 0; a < 3; ++a) {
+    for (int b = 0; b < a; ++b) cap.inertia[a][b] = cap.inertia[b][a];
   }
-  for (const Block& block : blocks_) {
-    Cap& cap = cap_[block.plate];
+  cap.centre = normalised(cap.centre);
+  if (cap.samples == 0) return;
+  cap.cos_radius = 1.0;
+  for (const Block& block : blocks_of(plate)) {
     cap.cos_radius = std::min(cap.cos_radius, dot(cap.centre, centre(block.coarse)));
   }
-  for (Cap& cap : cap_) {
-    if (cap.samples == 0) continue;
-    const double radius = std::acos(std::clamp(cap.cos_radius, -1.0, 1.0)) + reach_;
-    cap.cos_radius = radius >= 3.14159 ? -2.0 : std::cos(radius);
-  }
+  const double radius = std::acos(std::clamp(cap.cos_radius, -1.0, 1.0)) + reach_;
+  cap.cos_radius = radius >= 3.14159 ? -2.0 : std::cos(radius);
 }
 
 void SpherePartition::count_continents(const SphereState& state) {
-  for (Cap& cap : cap_) cap.continental = 0;
-  for (const Block& block : blocks_) {
-    for (const std::int32_t i : samples(block)) {
-      cap_[block.plate].continental += state.crust.continental[i];
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int p = 0; p < plates(); ++p) {
+    std::int32_t continental = 0;
+    for (const Block& block : blocks_of(p)) {
+      for (const std::int32_t i : samples(block)) continental += state.crust.continental[i];
     }
+    cap_[p].continental = continental;
   }
 }
 
