@@ -43,8 +43,8 @@ struct ExemplarLibrary {
 /// Main direction of ridges by the structure tensor, and how strongly it is the main one:
 ///   tan 2 a = 2 J_xy / (J_xx - J_yy),  ridges across a,
 ///   strength = |(J_xx - J_yy, 2 J_xy)| / (J_xx + J_yy),
-/// J_ij the mean of g_i g_j, g the gradient (central differences within the plane or torus). Returns {angle from east within
-/// [0, pi), strength}. Bigün & Granlund (1987).
+/// J_ij the mean of g_i g_j, g the gradient (central differences within the plane or torus).
+/// Returns {angle from east within [0, pi), strength}. Bigün & Granlund (1987).
 [[nodiscard]] std::array<double, 2> ridge_direction(const Grid& grid,
                                                     std::span<const float> elevation_m);
 
