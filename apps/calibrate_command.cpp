@@ -151,7 +151,8 @@ void add_calibrate_command(CLI::App& program, Action& action) {
   command->add_option("--set", o.assignments, "Set one parameter; may be repeated")
       ->type_name("section.key=value")
       ->expected(1)
-      ->take_all();
+      ->take_all()
+      ->allow_extra_args(false);  // a configuration may follow
   command->add_flag("--resume", o.resume, "Go on after the last complete iteration of the folder");
   command->add_flag("--overwrite", o.overwrite, "Replace the calibration that the folder holds");
   command->add_option("--threads", o.threads, "Threads (default: as many as there are cores)")

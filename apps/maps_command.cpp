@@ -121,7 +121,8 @@ void add_maps_command(CLI::App& program, Action& action) {
       ->add_option("--field", options->fields, "Draws that field alone, whatever it is; repeatable")
       ->type_name("NAME")
       ->expected(1)
-      ->take_all();
+      ->take_all()
+      ->allow_extra_args(false);  // the folder may follow
   command
       ->add_option("--stage", options->stage,
                    "Stage or island that the field is of (default: the last that wrote it)")

@@ -169,7 +169,8 @@ void add_run_command(CLI::App& program, Action& action) {
   command->add_option("--set", o.assignments, "Set one parameter; may be repeated")
       ->type_name("section.key=value")
       ->expected(1)
-      ->take_all();
+      ->take_all()
+      ->allow_extra_args(false);  // a configuration may follow
   command->add_option("--grid", o.grid, "Cells of the grid")->type_name("WIDTHxHEIGHT");
   command
       ->add_option("--dem", o.dem,

@@ -78,6 +78,12 @@ TEST(Params, OfAStageWithTheNameOfACommandAreItsOwn) {
   EXPECT_THAT(json.front().at("name").get<std::string>(), StartsWith("island."));
 }
 
+TEST(Run, ASettingMayStandBeforeTheConfiguration) {
+  const Outcome outcome = terrane({"run", "--set", "output.maps=false", "absent.toml"});
+  EXPECT_EQ(outcome.code, 4) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("absent.toml: "));
+}
+
 TEST(Params, AsTomlRunAsTheyAre) {
   const TemporaryFolder folder;
   ReliefFile{}.write(folder / "relief.nc");
