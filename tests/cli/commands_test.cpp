@@ -78,7 +78,7 @@ TEST(Params, OfAStageWithTheNameOfACommandAreItsOwn) {
   EXPECT_THAT(json.front().at("name").get<std::string>(), StartsWith("island."));
 }
 
-TEST(Run, ASettingMayStandBeforeTheConfiguration) {
+TEST(Options, ASettingMayStandBeforeTheConfiguration) {
   const Outcome outcome = terrane({"run", "--set", "output.maps=false", "absent.toml"});
   EXPECT_EQ(outcome.code, 4) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("absent.toml: "));
