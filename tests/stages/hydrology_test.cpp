@@ -85,6 +85,40 @@ TEST(Hydrology, SameBitsForAnyNumberOfThreads) {
   }
 }
 
+// Where meridians converge a river along one of them cuts a valley and no slot.
+TEST(Hydrology, RiversOverThePoleCutNoSlots) {
+  const Grid grid = Grid::sphere(1024, 512);
+  State state(std::make_shared<Grid>(grid));
+  const Noise noise(11, "relief");
+  const auto z = state.update(field::elevation);
+  const auto t = state.update(field::temperature), p = state.update(field::precipitation);
+  const auto e = state.update(field::potential_evaporation);
+  for (Index c = 0; c < grid.size(); ++c) {
+    const auto at = grid.unit_vector(grid.column(c), grid.row(c));
+    z[c] = static_cast<float>(2500 * noise.fbm(at, 6.0, 3, 0.4) + 1500 * at[0] +
+                              8000 * (std::abs(at[2]) - 0.9));
+    t[c] = 10;
+    p[c] = 2000;
+    e[c] = 200;
+  }
+  const std::vector<float> before(z.begin(), z.end());
+  Context context;
+  const State done = run(std::move(state), context);
+  const auto after = done.read(field::elevation);
+  int valleys = 0, slots = 0;
+  for (Index c = 0; c < grid.size(); ++c) {
+    const int i = grid.column(c), j = grid.row(c), nx = grid.nx();
+    const float cut = before[c] - after[c];
+    if (4 * grid.spacing_east_m(j) > grid.face_east_m(j) || cut < 5.0F) continue;
+    ++valleys;
+    const float west = after[grid.cell((i + nx - 1) % nx, j)];
+    const float east = after[grid.cell((i + 1) % nx, j)];
+    if (std::min(west, east) > after[c] + 0.5F * cut) ++slots;
+  }
+  EXPECT_GT(valleys, 1000);
+  EXPECT_EQ(slots, 0);
+}
+
 // Two continents, one of them where the poles of the turned planet lie.
 std::vector<double> largest_basins(bool turned) {
   const Grid grid = Grid::sphere(720, 360);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geo/core/error.hpp"
+#include "geo/kernels/valley_width.hpp"
 
 namespace geo {
 namespace {
@@ -102,7 +103,7 @@ void carve_valleys(const Grid& grid, const FlowGraph& graph, std::span<const std
   };
   // From the mouths upwards, so that receivers are final.
   const auto lower = [&](Index cell, double valley_m) {
-    const double share = std::min(1.0, law.width_m / std::sqrt(grid.area_m2(grid.row(cell))));
+    const double share = std::min(1.0, law.width_m / valley_width_m(grid, grid.row(cell)));
     const double wanted_m = elevation_m[cell] + share * (valley_m - elevation_m[cell]);
     const Index to = graph.receiver[cell];
     const float base = to == cell ? elevation_m[cell] : std::max(elevation_m[to], 0.0F);

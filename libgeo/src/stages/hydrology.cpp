@@ -9,6 +9,7 @@
 #include "geo/kernels/flow_graph.hpp"
 #include "geo/kernels/lakes.hpp"
 #include "geo/kernels/rivers.hpp"
+#include "geo/kernels/valley_width.hpp"
 #include "geo/kernels/water_balance.hpp"
 
 namespace geo {
@@ -145,10 +146,11 @@ class HydrologyStage final : public Stage {
     return {p_.river_threshold_m3_s, p_.river_reference_m3_s};
   }
 
-  /// False dams cut and valleys carved; rivers are those that flow while every depression
-  /// overflows.
+  /// False dams cut and valleys carved, as wide as cells are high where meridians converge; rivers
+  /// are those that flow while every depression overflows.
   void shape_valleys(const Grid& grid, const Bytes& outlets, const Bytes& sea,
                      std::span<const double> runoff, std::span<float> z) const {
+    const std::vector<float> before(z.begin(), z.end());
     breach_dams(grid, outlets, {p_.breach_depth_m, p_.breach_length_km * 1000}, z);
     const FlowGraph graph = route_water(grid, z, outlets).graph;
     std::vector<double> discharge(runoff.begin(), runoff.end());
@@ -159,6 +161,7 @@ class HydrologyStage final : public Stage {
                            p_.river_threshold_m3_s, p_.valley_blend, 1000 * p_.valley_width_km};
       carve_valleys(grid, graph, sea, discharge, law, z);
     }
+    widen_valleys<float>(grid, before, sea, z);
   }
 
   [[nodiscard]] Bytes frozen(const Lakes& lakes, std::span<const float> temperature) const {

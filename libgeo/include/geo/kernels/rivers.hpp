@@ -45,11 +45,10 @@ struct CarvingLaw {
 
 /// Carves valleys: rivers cut to their `valley_depth`, in each round no more than 23 % of their
 /// height; above 1600 m, in bedrock, 42 % of the cut is held back (Whipple 2004). Then the cells
-/// beside rivers sink towards the mean of their 3 x 3 neighbourhood. A cell of area A larger than
-/// the valley sinks by width / sqrt(A) of all that, so that as much rock goes from a coarse grid as
-/// from a fine one. No cell sinks below its
-/// receiver or the sea or rises, so every way down stays one, no pit forms, and land stays land.
-/// Cost: linear.
+/// beside rivers sink towards the mean of their 3 x 3 neighbourhood. Where a grid's valleys
+/// (`valley_width_m`) are wider than these, all that is taken by the share of the widths, so that
+/// as much rock goes from a coarse grid as from a fine one. No cell sinks below its receiver or the
+/// sea or rises, so every way down stays one, no pit forms, and land stays land. Cost: linear.
 void carve_valleys(const Grid& grid, const FlowGraph& graph, std::span<const std::uint8_t> sea,
                    std::span<const double> discharge_m3_s, const CarvingLaw& law,
                    std::span<float> elevation_m);
