@@ -4,6 +4,7 @@
 #include <CLI/App.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -68,14 +69,23 @@ std::string flags_text(const geo::FieldSpec& spec) {
   return fmt::format("{}", fmt::join(flags, ", "));
 }
 
+/// "0 to 1", ">= 0" or nothing.
+std::string bounds_text(const geo::FieldSpec& spec) {
+  const bool low = std::isfinite(spec.least), high = std::isfinite(spec.most);
+  if (low && high) return fmt::format("{:g} to {:g}", spec.least, spec.most);
+  if (low) return fmt::format(">= {:g}", spec.least);
+  return high ? fmt::format("<= {:g}", spec.most) : "";
+}
+
 void print_table(const std::vector<Row>& rows) {
   const auto line = [](std::string_view name, std::string_view type, std::string_view units,
-                       std::string_view writers, std::string_view doc) {
-    fmt::print("{:<25}  {:<7}  {:<10}  {:<18}  {}\n", name, type, units, writers, doc);
+                       std::string_view bounds, std::string_view writers, std::string_view doc) {
+    fmt::print("{:<25}  {:<7}  {:<10}  {:<10}  {:<18}  {}\n", name, type, units, bounds, writers,
+               doc);
   };
-  line("field", "type", "unit", "written by", "meaning");
+  line("field", "type", "unit", "range", "written by", "meaning");
   for (const Row& row : rows) {
-    line(row.spec->name, type_name(row.spec->type), row.spec->units,
+    line(row.spec->name, type_name(row.spec->type), row.spec->units, bounds_text(*row.spec),
          fmt::format("{}", fmt::join(row.writers, " ")), row.spec->doc);
   }
 }
@@ -90,6 +100,8 @@ void print_json(const std::vector<Row>& rows) {
                                  {"cell_methods", row.spec->cell_methods},
                                  {"written_by", row.writers},
                                  {"doc", row.spec->doc}};
+    if (std::isfinite(row.spec->least)) entry["valid_min"] = row.spec->least;
+    if (std::isfinite(row.spec->most)) entry["valid_max"] = row.spec->most;
     for (const geo::Flag& flag : row.spec->flags) {
       entry["flags"][std::to_string(flag.value)] = flag.meaning;
     }
@@ -99,12 +111,12 @@ void print_json(const std::vector<Row>& rows) {
 }
 
 void print_markdown(const std::vector<Row>& rows) {
-  fmt::print("| field | type | unit | CF standard name | written by | meaning |\n");
-  fmt::print("|---|---|---|---|---|---|\n");
+  fmt::print("| field | type | unit | range | CF standard name | written by | meaning |\n");
+  fmt::print("|---|---|---|---|---|---|---|\n");
   for (const Row& row : rows) {
-    fmt::print("| `{}` | {} | {} | {} | {} | {} |\n", row.spec->name, type_name(row.spec->type),
-               row.spec->units, row.spec->standard_name, fmt::join(row.writers, ", "),
-               row.spec->doc);
+    fmt::print("| `{}` | {} | {} | {} | {} | {} | {} |\n", row.spec->name,
+               type_name(row.spec->type), row.spec->units, bounds_text(*row.spec),
+               row.spec->standard_name, fmt::join(row.writers, ", "), row.spec->doc);
   }
   for (const Row& row : rows) {
     if (row.spec->flags.empty()) continue;

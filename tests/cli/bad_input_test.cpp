@@ -401,6 +401,14 @@ const BadInput kReliefs[] = {
     {"TextFile", kInput, {"bad.nc", "not a NetCDF file"}, run_bytes([](auto&) {
        return "latitude,longitude,elevation\n";
      })},
+    {"FieldBelowItsBound",
+     kInput,
+     {"k.nc:k: erodibility is -", "yr-1 somewhere; must be at least 0"},
+     [](const fs::path& folder) {
+       ReliefFile{.variable = "k", .units = "yr-1"}.write(folder / "k.nc");
+       return quick_run(folder / "relief.nc", folder / "out",
+                        {"--set", "fields.erodibility=" + (folder / "k.nc").string()});
+     }},
     {"Folder",
      kIo,
      {"Is a directory"},

@@ -154,6 +154,16 @@ def check_field(where, reference, variable):
     fill = attribute(variable, "_FillValue")
     expect(fill is not None and np.asarray(fill).dtype == variable.dtype, where,
            "_FillValue is missing or of another type")
+    variable.set_auto_mask(False)
+    values = variable[:]
+    variable.set_auto_mask(True)
+    for name, outside in (("valid_min", np.less), ("valid_max", np.greater)):
+        bound = attribute(variable, name)
+        if bound is None:
+            continue
+        expect(np.asarray(bound).dtype == variable.dtype, where, name, "is of another type")
+        beyond = np.count_nonzero(outside(values, bound) & (values != fill))
+        expect(beyond == 0, where, beyond, "values beyond", name, bound)
     mapping = attribute(variable, "grid_mapping")
     on_planet = reference.is_latitude_longitude or reference.is_projected
     expect((mapping is not None) == on_planet, where, "grid_mapping is", mapping)

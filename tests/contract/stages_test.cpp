@@ -179,7 +179,7 @@ TEST(EveryStage, DeclaresEachFieldOnceAndInOneRole) {
   }
 }
 
-TEST(EveryStage, WritesWhatItDeclaresAndNothingThatIsNotFinite) {
+TEST(EveryStage, WritesWhatItDeclaresFiniteAndWithinTheBoundsOfEachField) {
   on_every_stage([](const Stage& stage, const State& before) {
     State state = copy_of(before);
     const State made = run(stage, state);
@@ -190,6 +190,8 @@ TEST(EveryStage, WritesWhatItDeclaresAndNothingThatIsNotFinite) {
             for (std::size_t cell = 0; cell < values.size(); ++cell) {
               ASSERT_TRUE(std::isfinite(static_cast<double>(values[cell])))
                   << spec->name << " in cell " << cell;
+              ASSERT_GE(static_cast<double>(values[cell]), spec->least) << spec->name;
+              ASSERT_LE(static_cast<double>(values[cell]), spec->most) << spec->name;
               if (spec->flags.empty()) continue;
               ASSERT_TRUE(std::any_of(spec->flags.begin(), spec->flags.end(),
                                       [&](const Flag& flag) { return flag.value == values[cell]; }))

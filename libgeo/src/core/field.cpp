@@ -44,259 +44,357 @@ constexpr std::array kKoppenFlags{
 
 }  // namespace
 
-const Field<std::int16_t> plate_id{{"plate_id",
-                                    "1",
-                                    "",
-                                    "number of the tectonic plate, from 0",
-                                    Type::int16,
-                                    {},
-                                    -1,
-                                    "area: point"}};
-const Field<float> continental_fraction{{"continental_fraction", "1", "",
-                                         "share of continental crust, 0 ocean floor to 1 continent",
-                                         Type::float32}};
-const Field<float> plate_velocity_east{
-    {"plate_velocity_east", "mm yr-1", "", "eastward velocity of the plate", Type::float32}};
-const Field<float> plate_velocity_north{
-    {"plate_velocity_north", "mm yr-1", "", "northward velocity of the plate", Type::float32}};
-const Field<std::int8_t> boundary_type{{"boundary_type", "", "",
-                                        "what adjacent plates do to each other", Type::int8,
-                                        kBoundaryFlags, -1, "area: point"}};
+const Field<std::int16_t> plate_id{{.name = "plate_id",
+                                    .units = "1",
+                                    .doc = "number of the tectonic plate, from 0",
+                                    .type = Type::int16,
+                                    .cell_methods = "area: point",
+                                    .least = 0.0}};
+const Field<float> continental_fraction{
+    {.name = "continental_fraction",
+     .units = "1",
+     .doc = "share of continental crust, 0 ocean floor to 1 continent",
+     .type = Type::float32,
+     .least = 0.0,
+     .most = 1.0}};
+const Field<float> plate_velocity_east{{.name = "plate_velocity_east",
+                                        .units = "mm yr-1",
+                                        .doc = "eastward velocity of the plate",
+                                        .type = Type::float32}};
+const Field<float> plate_velocity_north{{.name = "plate_velocity_north",
+                                         .units = "mm yr-1",
+                                         .doc = "northward velocity of the plate",
+                                         .type = Type::float32}};
+const Field<std::int8_t> boundary_type{{.name = "boundary_type",
+                                        .units = "",
+                                        .doc = "what adjacent plates do to each other",
+                                        .type = Type::int8,
+                                        .flags = kBoundaryFlags,
+                                        .cell_methods = "area: point"}};
 const Field<float> boundary_strength{
-    {"boundary_strength", "1", "",
-     "relative velocity across the plate boundary over the fastest on the planet", Type::float32}};
-const Field<float> crust_age{{"crust_age", "Myr", "",
-                              "age of the ocean floor, on continents of the last thermal event",
-                              Type::float32}};
-const Field<std::int8_t> orogeny_type{{"orogeny_type", "", "",
-                                       "mountain building at the nearest convergent boundary",
-                                       Type::int8, kOrogenyFlags, -1, "area: point"}};
-const Field<float> heat_anomaly{
-    {"heat_anomaly", "1", "", "heat of the mantle below against its mean, 0 to 1", Type::float32}};
-const Field<float> crust_elevation{{"crust_elevation", "m", "",
-                                    "height of the crust that the plates' history has made",
-                                    Type::float32}};
-const Field<float> orogeny_age{
-    {"orogeny_age", "Myr", "", "time since continental crust was last folded", Type::float32}};
-const Field<float> fold_direction_east{
-    {"fold_direction_east", "1", "", "eastward part of the direction of folds", Type::float32}};
-const Field<float> fold_direction_north{
-    {"fold_direction_north", "1", "", "northward part of the direction of folds", Type::float32}};
+    {.name = "boundary_strength",
+     .units = "1",
+     .doc = "relative velocity across the plate boundary over the fastest on the planet",
+     .type = Type::float32,
+     .least = 0.0,
+     .most = 1.0}};
+const Field<float> crust_age{
+    {.name = "crust_age",
+     .units = "Myr",
+     .doc = "age of the ocean floor, on continents of the last thermal event",
+     .type = Type::float32,
+     .least = 0.0}};
+const Field<std::int8_t> orogeny_type{
+    {.name = "orogeny_type",
+     .units = "",
+     .doc = "mountain building at the nearest convergent boundary",
+     .type = Type::int8,
+     .flags = kOrogenyFlags,
+     .cell_methods = "area: point"}};
+const Field<float> heat_anomaly{{.name = "heat_anomaly",
+                                 .units = "1",
+                                 .doc = "heat of the mantle below against its mean, 0 to 1",
+                                 .type = Type::float32,
+                                 .least = 0.0,
+                                 .most = 1.0}};
+const Field<float> crust_elevation{{.name = "crust_elevation",
+                                    .units = "m",
+                                    .doc = "height of the crust that the plates' history has made",
+                                    .type = Type::float32}};
+const Field<float> orogeny_age{{.name = "orogeny_age",
+                                .units = "Myr",
+                                .doc = "time since continental crust was last folded",
+                                .type = Type::float32,
+                                .least = 0.0}};
+const Field<float> fold_direction_east{{.name = "fold_direction_east",
+                                        .units = "1",
+                                        .doc = "eastward part of the direction of folds",
+                                        .type = Type::float32,
+                                        .least = -1.0,
+                                        .most = 1.0}};
+const Field<float> fold_direction_north{{.name = "fold_direction_north",
+                                         .units = "1",
+                                         .doc = "northward part of the direction of folds",
+                                         .type = Type::float32,
+                                         .least = -1.0,
+                                         .most = 1.0}};
 const Field<float> ridge_direction_east{
-    {"ridge_direction_east", "1", "",
-     "eastward part of the direction of the ridge that made the floor", Type::float32}};
+    {.name = "ridge_direction_east",
+     .units = "1",
+     .doc = "eastward part of the direction of the ridge that made the floor",
+     .type = Type::float32,
+     .least = -1.0,
+     .most = 1.0}};
 const Field<float> ridge_direction_north{
-    {"ridge_direction_north", "1", "",
-     "northward part of the direction of the ridge that made the floor", Type::float32}};
-const Field<float> ranking{
-    {"ranking", "1", "", "what orders places by height, in any unit", Type::float32}};
+    {.name = "ridge_direction_north",
+     .units = "1",
+     .doc = "northward part of the direction of the ridge that made the floor",
+     .type = Type::float32,
+     .least = -1.0,
+     .most = 1.0}};
+const Field<float> ranking{{.name = "ranking",
+                            .units = "1",
+                            .doc = "what orders places by height, in any unit",
+                            .type = Type::float32}};
 const Field<float> convergent_deformation{
-    {"convergent_deformation", "1", "",
-     "shortening of the crust near convergent boundaries, 0 to 1", Type::float32}};
+    {.name = "convergent_deformation",
+     .units = "1",
+     .doc = "shortening of the crust near convergent boundaries, 0 to 1",
+     .type = Type::float32,
+     .least = 0.0,
+     .most = 1.0}};
 const Field<float> divergent_deformation{
-    {"divergent_deformation", "1", "", "stretching of the crust near divergent boundaries, 0 to 1",
-     Type::float32}};
-const Field<float> transform_deformation{{"transform_deformation", "1", "",
-                                          "shear of the crust near transform boundaries, 0 to 1",
-                                          Type::float32}};
+    {.name = "divergent_deformation",
+     .units = "1",
+     .doc = "stretching of the crust near divergent boundaries, 0 to 1",
+     .type = Type::float32,
+     .least = 0.0,
+     .most = 1.0}};
+const Field<float> transform_deformation{
+    {.name = "transform_deformation",
+     .units = "1",
+     .doc = "shear of the crust near transform boundaries, 0 to 1",
+     .type = Type::float32,
+     .least = 0.0,
+     .most = 1.0}};
 const Field<float> lithospheric_weakness{
-    {"lithospheric_weakness", "1", "",
-     "weakness of the lithosphere, 1 at plate boundaries, 0 in cratons", Type::float32}};
-const Field<float> crust_thickness{
-    {"crust_thickness", "m", "", "thickness of the crystalline crust", Type::float32}};
-const Field<float> crust_density{
-    {"crust_density", "kg m-3", "", "mean density of the crust", Type::float32}};
-const Field<std::int8_t> rock_type{
-    {"rock_type", "", "", "rock at the surface", Type::int8, kRockFlags, -1, "area: point"}};
-const Field<float> elevation{{"elevation", "m", "surface_altitude",
-                              "elevation of the solid surface above the planet's sea level",
-                              Type::float32}};
-const Field<float> uplift_rate{{"uplift_rate", "m yr-1", "", "rock uplift rate", Type::float32}};
-const Field<float> erosion_rate{
-    {"erosion_rate", "m yr-1", "", "surface lowering by rivers and hillslopes", Type::float32}};
-const Field<float> erodibility{{"erodibility", "yr-1", "",
-                                "stream-power erodibility K, with m = 0.5 and n = 1",
-                                Type::float32}};
-const Field<double> drainage_area{{"drainage_area",
-                                   "m2",
-                                   "",
-                                   "upstream area including the cell",
-                                   Type::float64,
-                                   {},
-                                   -1,
-                                   "area: point"}};
-const Field<double> inflow_area{{"inflow_area",
-                                 "m2",
-                                 "",
-                                 "drainage area beyond the edge whose water enters here",
-                                 Type::float64,
-                                 {},
-                                 -1,
-                                 "area: point"}};
-const Field<float> inflow_discharge{{"inflow_discharge",
-                                     "m3 s-1",
-                                     "",
-                                     "mean discharge that enters here from beyond the edge",
-                                     Type::float32,
-                                     {},
-                                     -1,
-                                     "area: point"}};
+    {.name = "lithospheric_weakness",
+     .units = "1",
+     .doc = "weakness of the lithosphere, 1 at plate boundaries, 0 in cratons",
+     .type = Type::float32,
+     .least = 0.0,
+     .most = 1.0}};
+const Field<float> crust_thickness{{.name = "crust_thickness",
+                                    .units = "m",
+                                    .doc = "thickness of the crystalline crust",
+                                    .type = Type::float32,
+                                    .least = 0.0}};
+const Field<float> crust_density{{.name = "crust_density",
+                                  .units = "kg m-3",
+                                  .doc = "mean density of the crust",
+                                  .type = Type::float32,
+                                  .least = 0.0}};
+const Field<std::int8_t> rock_type{{.name = "rock_type",
+                                    .units = "",
+                                    .doc = "rock at the surface",
+                                    .type = Type::int8,
+                                    .flags = kRockFlags,
+                                    .cell_methods = "area: point"}};
+const Field<float> elevation{{.name = "elevation",
+                              .units = "m",
+                              .standard_name = "surface_altitude",
+                              .doc = "elevation of the solid surface above the planet's sea level",
+                              .type = Type::float32}};
+const Field<float> uplift_rate{
+    {.name = "uplift_rate", .units = "m yr-1", .doc = "rock uplift rate", .type = Type::float32}};
+const Field<float> erosion_rate{{.name = "erosion_rate",
+                                 .units = "m yr-1",
+                                 .doc = "surface lowering by rivers and hillslopes",
+                                 .type = Type::float32}};
+const Field<float> erodibility{{.name = "erodibility",
+                                .units = "yr-1",
+                                .doc = "stream-power erodibility K, with m = 0.5 and n = 1",
+                                .type = Type::float32,
+                                .least = 0.0}};
+const Field<double> drainage_area{{.name = "drainage_area",
+                                   .units = "m2",
+                                   .doc = "upstream area including the cell",
+                                   .type = Type::float64,
+                                   .cell_methods = "area: point",
+                                   .least = 0.0}};
+const Field<double> inflow_area{{.name = "inflow_area",
+                                 .units = "m2",
+                                 .doc = "drainage area beyond the edge whose water enters here",
+                                 .type = Type::float64,
+                                 .cell_methods = "area: point",
+                                 .least = 0.0}};
+const Field<float> inflow_discharge{{.name = "inflow_discharge",
+                                     .units = "m3 s-1",
+                                     .doc = "mean discharge that enters here from beyond the edge",
+                                     .type = Type::float32,
+                                     .cell_methods = "area: point",
+                                     .least = 0.0}};
 const Field<std::int32_t> flow_receiver{
-    {"flow_receiver",
-     "1",
-     "",
-     "flat index (row * nx + column) of the cell that takes the water",
-     Type::int32,
-     {},
-     -1,
-     "area: point"}};
-const Field<std::int8_t> flow_direction{{"flow_direction", "", "",
-                                         "direction in which the water leaves", Type::int8,
-                                         kDirectionFlags, -1, "area: point"}};
-const Field<float> temperature{{"temperature",
-                                "degC",
-                                "air_temperature",
-                                "annual mean air temperature near the surface",
-                                Type::float32,
-                                {},
-                                -1,
-                                "area: mean time: mean"}};
-const Field<float> temperature_range{
-    {"temperature_range", "K", "", "warmest minus coldest month", Type::float32}};
-const Field<float> precipitation{{"precipitation",
-                                  "mm yr-1",
-                                  "lwe_precipitation_rate",
-                                  "annual precipitation",
-                                  Type::float32,
-                                  {},
-                                  -1,
-                                  "area: mean time: mean"}};
+    {.name = "flow_receiver",
+     .units = "1",
+     .doc = "flat index (row * nx + column) of the cell that takes the water",
+     .type = Type::int32,
+     .cell_methods = "area: point",
+     .least = 0.0}};
+const Field<std::int8_t> flow_direction{{.name = "flow_direction",
+                                         .units = "",
+                                         .doc = "direction in which the water leaves",
+                                         .type = Type::int8,
+                                         .flags = kDirectionFlags,
+                                         .cell_methods = "area: point"}};
+const Field<float> temperature{{.name = "temperature",
+                                .units = "degC",
+                                .standard_name = "air_temperature",
+                                .doc = "annual mean air temperature near the surface",
+                                .type = Type::float32,
+                                .cell_methods = "area: mean time: mean",
+                                .least = -273.15}};
+const Field<float> temperature_range{{.name = "temperature_range",
+                                      .units = "K",
+                                      .doc = "warmest minus coldest month",
+                                      .type = Type::float32,
+                                      .least = 0.0}};
+const Field<float> precipitation{{.name = "precipitation",
+                                  .units = "mm yr-1",
+                                  .standard_name = "lwe_precipitation_rate",
+                                  .doc = "annual precipitation",
+                                  .type = Type::float32,
+                                  .cell_methods = "area: mean time: mean",
+                                  .least = 0.0}};
 const Field<float> precipitation_seasonality{
-    {"precipitation_seasonality", "1", "",
-     "amplitude of the annual harmonic of precipitation over its mean, positive when the "
-     "summer of the hemisphere is wet",
-     Type::float32}};
-const Field<float> wind_east{
-    {"wind_east", "m s-1", "eastward_wind", "eastward wind near the surface", Type::float32}};
-const Field<float> wind_north{
-    {"wind_north", "m s-1", "northward_wind", "northward wind near the surface", Type::float32}};
-const Field<float> distance_to_coast{{"distance_to_coast",
-                                      "m",
-                                      "",
-                                      "distance to the nearest coast, on land and at sea",
-                                      Type::float32,
-                                      {},
-                                      -1,
-                                      "area: point"}};
-const Field<float> potential_evaporation{
-    {"potential_evaporation", "mm yr-1", "", "annual potential evaporation", Type::float32}};
-const Field<float> slope{{"slope",
-                          "m m-1",
-                          "",
-                          "steepest descent to any of the eight neighbours",
-                          Type::float32,
-                          {},
-                          -1,
-                          "area: point"}};
-const Field<float> discharge{{"discharge",
-                              "m3 s-1",
-                              "water_volume_transport_in_river_channel",
-                              "mean discharge out of the cell",
-                              Type::float32,
-                              {},
-                              -1,
-                              "area: point"}};
-const Field<float> river_intensity{{"river_intensity",
-                                    "1",
-                                    "",
-                                    "prominence of the river in the cell, 0 to 1",
-                                    Type::float32,
-                                    {},
-                                    -1,
-                                    "area: point"}};
-const Field<float> lake_depth{
-    {"lake_depth", "m", "", "depth of standing water above the solid surface", Type::float32}};
-const Field<std::int32_t> lake_id{{"lake_id",
-                                   "1",
-                                   "",
-                                   "number of the lake, 0 where there is none",
-                                   Type::int32,
-                                   {},
-                                   -1,
-                                   "area: point"}};
-const Field<std::int32_t> basin_id{{"basin_id",
-                                    "1",
-                                    "",
-                                    "number of the drainage basin, 1 the largest, 0 the sea",
-                                    Type::int32,
-                                    {},
-                                    -1,
-                                    "area: point"}};
-const Field<std::int8_t> stream_order{
-    {"stream_order", "1", "", "Strahler order of the river", Type::int8, {}, -1, "area: point"}};
-const Field<std::int8_t> biome{
-    {"biome", "", "", "biome after Whittaker", Type::int8, kBiomeFlags, -1, "area: point"}};
-const Field<std::int8_t> koppen_class{{"koppen_class", "", "", "climate class after Köppen-Geiger",
-                                       Type::int8, kKoppenFlags, -1, "area: point"}};
-const Field<float> net_primary_productivity{{"net_primary_productivity", "g m-2 yr-1", "",
-                                             "net primary productivity as dry matter (Miami model)",
-                                             Type::float32}};
-const Field<float> settlement_suitability{{"settlement_suitability", "1", "",
-                                           "suitability for agriculture and settlement, 0 to 1",
-                                           Type::float32}};
+    {.name = "precipitation_seasonality",
+     .units = "1",
+     .doc = "amplitude of the annual harmonic of precipitation over its mean, positive when the "
+            "summer of the hemisphere is wet",
+     .type = Type::float32,
+     .least = -2.0,
+     .most = 2.0}};
+const Field<float> wind_east{{.name = "wind_east",
+                              .units = "m s-1",
+                              .standard_name = "eastward_wind",
+                              .doc = "eastward wind near the surface",
+                              .type = Type::float32}};
+const Field<float> wind_north{{.name = "wind_north",
+                               .units = "m s-1",
+                               .standard_name = "northward_wind",
+                               .doc = "northward wind near the surface",
+                               .type = Type::float32}};
+const Field<float> distance_to_coast{{.name = "distance_to_coast",
+                                      .units = "m",
+                                      .doc = "distance to the nearest coast, on land and at sea",
+                                      .type = Type::float32,
+                                      .cell_methods = "area: point"}};
+const Field<float> potential_evaporation{{.name = "potential_evaporation",
+                                          .units = "mm yr-1",
+                                          .doc = "annual potential evaporation",
+                                          .type = Type::float32,
+                                          .least = 0.0}};
+const Field<float> slope{{.name = "slope",
+                          .units = "m m-1",
+                          .doc = "steepest descent to any of the eight neighbours",
+                          .type = Type::float32,
+                          .cell_methods = "area: point",
+                          .least = 0.0}};
+const Field<float> discharge{{.name = "discharge",
+                              .units = "m3 s-1",
+                              .standard_name = "water_volume_transport_in_river_channel",
+                              .doc = "mean discharge out of the cell",
+                              .type = Type::float32,
+                              .cell_methods = "area: point",
+                              .least = 0.0}};
+const Field<float> river_intensity{{.name = "river_intensity",
+                                    .units = "1",
+                                    .doc = "prominence of the river in the cell, 0 to 1",
+                                    .type = Type::float32,
+                                    .cell_methods = "area: point",
+                                    .least = 0.0,
+                                    .most = 1.0}};
+const Field<float> lake_depth{{.name = "lake_depth",
+                               .units = "m",
+                               .doc = "depth of standing water above the solid surface",
+                               .type = Type::float32,
+                               .least = 0.0}};
+const Field<std::int32_t> lake_id{{.name = "lake_id",
+                                   .units = "1",
+                                   .doc = "number of the lake, 0 where there is none",
+                                   .type = Type::int32,
+                                   .cell_methods = "area: point",
+                                   .least = 0.0}};
+const Field<std::int32_t> basin_id{{.name = "basin_id",
+                                    .units = "1",
+                                    .doc = "number of the drainage basin, 1 the largest, 0 the sea",
+                                    .type = Type::int32,
+                                    .cell_methods = "area: point",
+                                    .least = 0.0}};
+const Field<std::int8_t> stream_order{{.name = "stream_order",
+                                       .units = "1",
+                                       .doc = "Strahler order of the river",
+                                       .type = Type::int8,
+                                       .cell_methods = "area: point",
+                                       .least = 0.0}};
+const Field<std::int8_t> biome{{.name = "biome",
+                                .units = "",
+                                .doc = "biome after Whittaker",
+                                .type = Type::int8,
+                                .flags = kBiomeFlags,
+                                .cell_methods = "area: point"}};
+const Field<std::int8_t> koppen_class{{.name = "koppen_class",
+                                       .units = "",
+                                       .doc = "climate class after Köppen-Geiger",
+                                       .type = Type::int8,
+                                       .flags = kKoppenFlags,
+                                       .cell_methods = "area: point"}};
+const Field<float> net_primary_productivity{
+    {.name = "net_primary_productivity",
+     .units = "g m-2 yr-1",
+     .doc = "net primary productivity as dry matter (Miami model)",
+     .type = Type::float32,
+     .least = 0.0}};
+const Field<float> settlement_suitability{
+    {.name = "settlement_suitability",
+     .units = "1",
+     .doc = "suitability for agriculture and settlement, 0 to 1",
+     .type = Type::float32,
+     .least = 0.0,
+     .most = 1.0}};
 
 std::span<const FieldSpec* const> all() {
-  static const std::array<const FieldSpec*, 51> kAll{&plate_id,
-                                                     &continental_fraction,
-                                                     &plate_velocity_east,
-                                                     &plate_velocity_north,
-                                                     &boundary_type,
-                                                     &boundary_strength,
-                                                     &crust_age,
-                                                     &orogeny_type,
-                                                     &heat_anomaly,
-                                                     &crust_elevation,
-                                                     &orogeny_age,
-                                                     &fold_direction_east,
-                                                     &fold_direction_north,
-                                                     &ridge_direction_east,
-                                                     &ridge_direction_north,
-                                                     &ranking,
-                                                     &convergent_deformation,
-                                                     &divergent_deformation,
-                                                     &transform_deformation,
-                                                     &lithospheric_weakness,
-                                                     &crust_thickness,
-                                                     &crust_density,
-                                                     &rock_type,
-                                                     &elevation,
-                                                     &erodibility,
-                                                     &uplift_rate,
-                                                     &erosion_rate,
-                                                     &drainage_area,
-                                                     &inflow_area,
-                                                     &inflow_discharge,
-                                                     &flow_receiver,
-                                                     &flow_direction,
-                                                     &temperature,
-                                                     &temperature_range,
-                                                     &precipitation,
-                                                     &precipitation_seasonality,
-                                                     &wind_east,
-                                                     &wind_north,
-                                                     &distance_to_coast,
-                                                     &potential_evaporation,
-                                                     &slope,
-                                                     &discharge,
-                                                     &river_intensity,
-                                                     &lake_depth,
-                                                     &lake_id,
-                                                     &basin_id,
-                                                     &stream_order,
-                                                     &biome,
-                                                     &koppen_class,
-                                                     &net_primary_productivity,
-                                                     &settlement_suitability};
+  static const auto kAll = std::to_array<const FieldSpec*>({&plate_id,
+                                                            &continental_fraction,
+                                                            &plate_velocity_east,
+                                                            &plate_velocity_north,
+                                                            &boundary_type,
+                                                            &boundary_strength,
+                                                            &crust_age,
+                                                            &orogeny_type,
+                                                            &heat_anomaly,
+                                                            &crust_elevation,
+                                                            &orogeny_age,
+                                                            &fold_direction_east,
+                                                            &fold_direction_north,
+                                                            &ridge_direction_east,
+                                                            &ridge_direction_north,
+                                                            &ranking,
+                                                            &convergent_deformation,
+                                                            &divergent_deformation,
+                                                            &transform_deformation,
+                                                            &lithospheric_weakness,
+                                                            &crust_thickness,
+                                                            &crust_density,
+                                                            &rock_type,
+                                                            &elevation,
+                                                            &erodibility,
+                                                            &uplift_rate,
+                                                            &erosion_rate,
+                                                            &drainage_area,
+                                                            &inflow_area,
+                                                            &inflow_discharge,
+                                                            &flow_receiver,
+                                                            &flow_direction,
+                                                            &temperature,
+                                                            &temperature_range,
+                                                            &precipitation,
+                                                            &precipitation_seasonality,
+                                                            &wind_east,
+                                                            &wind_north,
+                                                            &distance_to_coast,
+                                                            &potential_evaporation,
+                                                            &slope,
+                                                            &discharge,
+                                                            &river_intensity,
+                                                            &lake_depth,
+                                                            &lake_id,
+                                                            &basin_id,
+                                                            &stream_order,
+                                                            &biome,
+                                                            &koppen_class,
+                                                            &net_primary_productivity,
+                                                            &settlement_suitability});
   return kAll;
 }
 

@@ -260,6 +260,18 @@ Relief read_raster(const std::string& file_and_variable, const std::string& othe
   }
 }
 
+/// The same values, none of which may be what the quantity cannot be.
+Relief within_bounds(Relief given, const FieldSpec& spec) {
+  for (const float value : given.elevation_m) {
+    if (!(value < spec.least) && !(value > spec.most)) continue;
+    const bool low = value < spec.least;
+    throw InputError(fmt::format("{}: {} is {:.6g} {} somewhere; must be at {} {:g}", given.source,
+                                 spec.name, value, spec.units, low ? "least" : "most",
+                                 low ? spec.least : spec.most));
+  }
+  return given;
+}
+
 }  // namespace
 
 Relief read_relief(const std::string& file_and_variable, const Planet& planet) {
@@ -272,14 +284,16 @@ Relief read_relief_with_gaps(const std::string& file_and_variable, const Planet&
 
 Relief read_field(const std::string& file_and_variable, const FieldSpec& spec,
                   const Planet& planet) {
-  return read_raster(file_and_variable, std::string(spec.name), std::string(spec.units),
-                     Gaps::refused, planet);
+  return within_bounds(read_raster(file_and_variable, std::string(spec.name),
+                                   std::string(spec.units), Gaps::refused, planet),
+                       spec);
 }
 
 Relief read_field_with_gaps(const std::string& file_and_variable, const FieldSpec& spec,
                             const Planet& planet) {
-  return read_raster(file_and_variable, std::string(spec.name), std::string(spec.units), Gaps::nan,
-                     planet);
+  return within_bounds(read_raster(file_and_variable, std::string(spec.name),
+                                   std::string(spec.units), Gaps::nan, planet),
+                       spec);
 }
 
 std::vector<float> resample(const Relief& relief, const Grid& target) {

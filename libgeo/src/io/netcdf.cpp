@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "checkpoint_group.hpp"
@@ -63,6 +64,12 @@ void put_typed_attributes(const nc::File& file, int variable, const FieldSpec& s
     fill = static_cast<T>(spec.missing);
   }
   nc::check(nc_def_var_fill(file.id(), variable, NC_FILL, &fill));
+  for (const auto& [name, bound] :
+       {std::pair{"valid_min", spec.least}, std::pair{"valid_max", spec.most}}) {
+    if (std::isinf(bound)) continue;
+    const T value = static_cast<T>(bound);
+    nc::check(nc_put_att(file.id(), variable, name, nc::type_of(spec.type), 1, &value));
+  }
   if (spec.flags.empty()) return;
   std::vector<T> values;
   std::string meanings;

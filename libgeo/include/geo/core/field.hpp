@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string_view>
 #include <type_traits>
@@ -31,9 +32,9 @@ struct Flag {
 /// named quantity. Names equal NetCDF variable names.
 struct FieldSpec {
   std::string_view name;
-  std::string_view units;          ///< as UDUNITS reads them; "1" for pure numbers, "" for flags
-  std::string_view standard_name;  ///< CF standard name, or empty where CF has none
-  std::string_view doc;            ///< one phrase, becomes `long_name`
+  std::string_view units;  ///< as UDUNITS reads them; "1" for pure numbers, "" for flags
+  std::string_view standard_name = {};  ///< CF standard name, or empty where CF has none
+  std::string_view doc;                 ///< one phrase, becomes `long_name`
   Type type;
   std::span<const Flag> flags = {};
   /// Value of cells where the quantity does not exist (CF `_FillValue` of integer fields);
@@ -41,6 +42,9 @@ struct FieldSpec {
   int missing = -1;
   /// How the value stands for the cell: "area: mean", "area: point", "area: sum"; empty: mean.
   std::string_view cell_methods = "area: mean";
+  /// What no value falls short of or exceeds, by what the quantity is; infinite without a bound.
+  double least = -std::numeric_limits<double>::infinity();
+  double most = std::numeric_limits<double>::infinity();
 };
 
 /// A row of the vocabulary with the type of its values, so that access is checked by the compiler.
