@@ -98,6 +98,17 @@ TEST(WriteFailure, FileSizeLimitIsTold) {
   }
 }
 
+TEST(WriteFailure, APlanetFromItsSeedTellsItToo) {
+  const TemporaryFolder folder;
+  const Outcome outcome =
+      terrane({.arguments = {"run", "--preset", "preview", "--grid", "64x32", "-o", folder / "out"},
+               .environment = {},
+               .working_folder = {},
+               .file_size_limit_bytes = 60000L});
+  expect_refusal(outcome, "cannot write ", "File too large");
+  expect_no_temporary_files(folder / "out");
+}
+
 TEST(WriteFailure, FullStandardOutputIsTold) {
   const TemporaryFolder folder;
   const std::string command =

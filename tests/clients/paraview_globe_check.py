@@ -82,8 +82,11 @@ def ranges_of_files(globe):
 
 
 def check_ranges(globe):
-    """Every field of every file is on the globe with its range."""
-    expect(globe.source.factor == 1, "a small planet is thinned out by", globe.source.factor)
+    """Every field of every file is on the globe with its range, or within it on a large planet, of
+    which the globe shows every second, third... cell."""
+    is_small = globe.columns * globe.rows < 500_000
+    expect(not is_small or globe.source.factor == 1, "a small planet is thinned out by",
+           globe.source.factor)
     surface = globe.parts["relief"].warp.Input
     surface.UpdatePipeline(globe.time)
     for name, (low, high) in ranges_of_files(globe).items():
@@ -95,7 +98,8 @@ def check_ranges(globe):
         # Where an island is cut out of the globe, its values are not there.
         inside = seen[0] >= low - 1e-5 * abs(low) and seen[1] <= high + 1e-5 * abs(high)
         same = close(seen[0], low) and close(seen[1], high)
-        expect(inside if globe.islands else same, name, "ranges over", seen, "not", (low, high))
+        in_part = globe.islands or globe.source.factor > 1
+        expect(inside if in_part else same, name, "ranges over", seen, "not", (low, high))
 
 
 def open_edges(source):

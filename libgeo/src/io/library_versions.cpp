@@ -11,10 +11,12 @@
 #include <string>
 
 #include "geo/io/manifest.hpp"
+#include "netcdf_file.hpp"
 
 namespace geo::io {
 
 std::map<std::string, std::string> library_versions() {
+  const auto lock = nc::lock_library();
   unsigned major = 0, minor = 0, release = 0;
   H5get_libversion(&major, &minor, &release);
   // "4.9.0 of Jan 1 2023 ..." begins with the number.
