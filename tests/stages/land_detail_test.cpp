@@ -75,9 +75,7 @@ TEST(LandDetail, ChangesLandAloneAndKeepsItsBroadMeans) {
   expect_sound(land_of("growth", "margins", 3));
 }
 
-TEST(LandDetail, StandsOnHeightsThatPlatesGave) {
-  expect_sound(land_of("hypsography", "given", 3));
-}
+TEST(LandDetail, StandsOnHeightsThatPlatesGave) { expect_sound(land_of("raster", "given", 3)); }
 
 TEST(LandDetail, IsReadByTheFoldsOnlyWhereItIsAskedFor) {
   const auto guided = [](const std::string& detail) {

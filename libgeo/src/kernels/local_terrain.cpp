@@ -109,7 +109,17 @@ LocalTerrain look_around(const Grid& planet, const TerrainGuide& guide, const Ve
   }
   constexpr double kSure = 0.3, kFolded = 0.05;
   const bool sure = folds.weight > kFolded && folds.strength() > kSure;
-  local.fold_rad = sure ? folds.angle() : level.angle();
+  if (!sure) {
+    local.fold_rad = level.angle();
+  } else if (guide.level_weight > 0.0 && level.weight > 0.0) {
+    Doubled both = folds;
+    const double weight = guide.level_weight * folds.weight / level.weight;
+    both.cosine += weight * level.cosine;
+    both.sine += weight * level.sine;
+    local.fold_rad = both.angle();
+  } else {
+    local.fold_rad = folds.angle();
+  }
   return local;
 }
 

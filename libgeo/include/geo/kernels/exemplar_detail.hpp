@@ -18,6 +18,7 @@ struct TerrainGuide {
   std::span<const float> fold_east, fold_north;
   double old_myr = 100.0;      ///< age from which orogens count as old mountains
   double plain_slope = 0.005;  ///< rise over run about a place below which it is a plain
+  double level_weight = 0.0;   ///< what the level lines of the relief count beside given folds
 };
 
 /// What a planet's cells about one place say, in the frame of east and north there.
@@ -28,7 +29,8 @@ struct LocalTerrain {
 };
 /// Looks at 5 x 5 places a cell apart. Terrain as Cortial et al. (2019): in an orogeny, by its type
 /// or old by its age; else old mountains where it is steep, plain where not. Folds run as given,
-/// or where there are none along the level lines of the planet's own relief.
+/// or where there are none along the level lines of the planet's own relief; with a `level_weight`
+/// between the two.
 [[nodiscard]] LocalTerrain look_around(const Grid& planet, const TerrainGuide& guide,
                                        const std::array<double, 3>& unit, double spacing_m);
 

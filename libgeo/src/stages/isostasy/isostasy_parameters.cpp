@@ -113,11 +113,10 @@ std::vector<Parameter> IsostasyParameters::declarations() {
           "cortial2019"),
       real("isostasy.detail_longest_km", detail_longest_km, "km", 10.0, 1000.0,
            "longest waves of detail made of exemplars; longer ones are the plates' work", "design"),
-      real(
-          "isostasy.detail_amplitude", detail_amplitude, "1", 0.0, 10.0,
-          "height of that detail over the noise that it replaces, or over what longer waves around "
-          "lead to expect",
-          "huang1989"),
+      real("isostasy.detail_amplitude", detail_amplitude, "1", 0.0, 10.0,
+           "height of that detail over the noise that it replaces; it is higher where longer waves "
+           "around lead to expect it",
+           "huang1989"),
       real("isostasy.old_orogeny_myr", old_orogeny_myr, "Myr", 0.0, 5000.0,
            "age from which orogens are made like old mountains", "cortial2019"),
       real("isostasy.plain_slope", plain_slope, "1", 0.0, 1.0,

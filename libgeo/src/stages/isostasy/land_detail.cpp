@@ -58,8 +58,8 @@ std::vector<float> squares_of_own(const Crust<float>& crust, std::span<const flo
 }
 
 /// Standard deviation of the detail, on the grid of `heights`, which hold the longer waves alone:
-/// that of the waves it replaces, whose squares are `own`, or that of waves up to twice as long
-/// gone on with by the law of the band, whichever is larger.
+/// so many times that of the waves it replaces, whose squares are `own`, or that of waves up to
+/// twice as long gone on with by the law of the band, whichever is larger.
 std::vector<float> deviation_of(const IsostasyParameters& p, const Grid& grid,
                                 const ExemplarBand& band, const std::vector<float>& heights,
                                 const std::vector<float>& own, const std::vector<float>& land) {
@@ -75,13 +75,14 @@ std::vector<float> deviation_of(const IsostasyParameters& p, const Grid& grid,
   const std::vector<float> whole = smoothed(grid, land, around_m);
 
   const double gain2 = std::exp2(-2.0 * band.hurst);
+  const double amplitude2 = p.detail_amplitude * p.detail_amplitude;
   const double law2 = gain2 / (1.0 - gain2);
-  constexpr double kOfHeight = 0.5;
+  constexpr double kOfHeight = 0.25;
   std::vector<float> deviation(heights.size());
   for (std::size_t c = 0; c < deviation.size(); ++c) {
-    const double replaced2 = std::max(0.0F, replaced[c]) / std::max(1e-3F, whole[c]);
+    const double replaced2 = amplitude2 * std::max(0.0F, replaced[c]) / std::max(1e-3F, whole[c]);
     const double expected2 = law2 * std::max(0.0F, power[c]);
-    const double wanted = p.detail_amplitude * std::sqrt(std::max(replaced2, expected2));
+    const double wanted = std::sqrt(std::max(replaced2, expected2));
     const double most = kOfHeight * std::max(1.0F, heights[c]);
     deviation[c] = static_cast<float>(wanted / std::hypot(1.0, wanted / most));
   }
@@ -92,6 +93,8 @@ std::vector<float> unit_detail(const Crust<float>& crust, const CoarseGrid& coar
                                const Orogens& orogens, const ExemplarLibrary& library,
                                const ExemplarBand& band, const std::vector<float>& heights,
                                std::span<const float> inland) {
+  // Belts are seldom folded quite along themselves, but ranges are what makes a belt.
+  constexpr double kLevelWeight = 2.0;
   const IsostasyParameters& p = crust.parameters;
   const auto seen = [&]<class T>(std::span<const T> field) {
     return field.empty() ? std::vector<T>{} : coarse.middle(field);
@@ -103,9 +106,10 @@ std::vector<float> unit_detail(const Crust<float>& crust, const CoarseGrid& coar
   std::transform(inland.begin(), inland.end(), wanted.begin(),
                  [](float weight) { return weight > 0.0F ? 1 : 0; });
   std::vector<float> detail(crust.grid.size());
-  exemplar_detail_on_sphere(crust.grid, wanted, coarse.grid(),
-                            {heights, type, age, east, north, p.old_orogeny_myr, p.plain_slope},
-                            library, band, crust.seed, detail);
+  exemplar_detail_on_sphere(
+      crust.grid, wanted, coarse.grid(),
+      {heights, type, age, east, north, p.old_orogeny_myr, p.plain_slope, kLevelWeight}, library,
+      band, crust.seed, detail);
   return detail;
 }
 

@@ -13,9 +13,10 @@ struct Orogens {
 };
 
 /// Gives the land detail like exemplars (Cortial et al. 2019, section 5) in place of the waves
-/// shorter than `detail_longest_km` that it has. Its height is `detail_amplitude` times that of what
-/// it replaces, or of what waves twice as long around lead to expect of a self-affine relief, and
-/// always less than the land's; means over larger windows stay, and so do the shores and the sea.
+/// shorter than `detail_longest_km` that it has. Its height is `detail_amplitude` times that of
+/// what it replaces, or what waves twice as long around lead to expect of a self-affine relief, and
+/// a quarter of the land's height at most; means over larger windows stay, and so do the shores and
+/// the sea.
 void detail_land(const Crust<float>& crust, const CoarseGrid& coarse, const Orogens& orogens,
                  const ExemplarLibrary& library);
 
