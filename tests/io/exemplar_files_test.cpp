@@ -256,6 +256,28 @@ TEST_F(ExemplarFiles, TerrainsThatAFolderHasNoneOfAreGrown) {
   EXPECT_EQ(library->exemplars[0].nx, kColumns);
 }
 
+TEST_F(ExemplarFiles, OnesTooSmallForAPlanetAreLeftOutInOneLine) {
+  setenv("XDG_CACHE_HOME", folder_.path().c_str(), 1);
+  std::filesystem::create_directory(folder_ / "given");
+  write_netcdf_file(folder_ / "given/andean.nc");
+  std::vector<std::string> warnings;
+  const auto library = planet_exemplars_of(folder_ / "given", Planet{}, 150e3, warnings);
+  ASSERT_EQ(library->exemplars.size(), 4U);
+  for (const Exemplar& e : library->exemplars) EXPECT_EQ(e.cell_m, kGrownForPlanets.cell_m);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_THAT(warnings[0], testing::HasSubstr("andean ("));
+  EXPECT_THAT(warnings[0], testing::HasSubstr("must be 500 km a side"));
+  EXPECT_EQ(warnings[0].find('\n'), std::string::npos);
+  // Shorter waves it does hold.
+  warnings.clear();
+  const auto shorter =
+      planet_exemplars_of(folder_ / "given", Planet{}, 0.29 * kRows * kCell_m, warnings);
+  EXPECT_TRUE(warnings.empty());
+  EXPECT_EQ(shorter->exemplars[0].nx, kColumns);
+  // Each size has a cache of its own.
+  EXPECT_EQ(exemplars_of({}, Planet{})->exemplars[0].cell_m, kGrownForIslands.cell_m);
+}
+
 TEST_F(ExemplarFiles, TheCacheGivesTheSameBitsAndHeals) {
   namespace fs = std::filesystem;
   setenv("XDG_CACHE_HOME", folder_.path().c_str(), 1);

@@ -209,6 +209,22 @@ TEST(ExemplarDetail, WithoutGivenFoldsRidgesFollowThePlanetsRelief) {
   EXPECT_NEAR(local.share[static_cast<std::size_t>(Terrain::old_mountains)], 1.0, 1e-9);
 }
 
+TEST(ExemplarDetail, LevelLinesMayCountBesideGivenFolds) {
+  Uniform planet(OrogenyType::andean, 0.9);
+  for (Index c = 0; c < planet.grid.size(); ++c) {  // level from west to east
+    planet.z[c] = static_cast<float>(3e3 + 20.0 * planet.grid.latitude_deg(planet.grid.row(c)));
+  }
+  TerrainGuide guide = planet.guide();
+  const std::array<double, 3> unit{1.0, 0.0, 0.0};
+  const auto fold = [&](double weight) {
+    guide.level_weight = weight;
+    return look_around(planet.grid, guide, unit, 78e3).fold_rad;
+  };
+  EXPECT_LT(apart(fold(0.0), 0.9), 0.01);
+  EXPECT_LT(apart(fold(1.0), 0.45), 0.01);
+  EXPECT_LT(apart(fold(1e6), 0.0), 0.01);
+}
+
 TEST(ExemplarDetail, TerrainIsThatOfTheOrogenyItsAgeAndTheSlope) {
   Uniform planet(OrogenyType::himalayan);
   std::vector<float> age(planet.grid.size(), 20.0F);

@@ -162,6 +162,28 @@ TEST(RegionScore, FindsTheCoastAndKeepsAwayFromThePoles) {
   EXPECT_GE(near, 7);
 }
 
+TEST(RegionScore, WindowsOfOneCellStandOnLandAtTheShore) {
+  const Grid planet = Grid::sphere(128, 64);
+  std::vector<float> z(planet.size());
+  const Noise noise(4, "land");
+  for (Index c = 0; c < planet.size(); ++c) {
+    const float wave = noise.fbm(planet.unit_vector(planet.column(c), planet.row(c)), 2.0, 4);
+    z[c] = 8000.0F * wave - 1000.0F;
+  }
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const Index best = best_region(planet, z, {}, 100e3, 50e3, seed);
+    int land = 0, sea = 0;
+    for (int dj = -1; dj <= 1; ++dj) {
+      for (int di = -1; di <= 1; ++di) {
+        const int i = (planet.column(best) + di + planet.nx()) % planet.nx();
+        (z[planet.cell(i, planet.row(best) + dj)] >= 0.0F ? land : sea) += 1;
+      }
+    }
+    EXPECT_GT(land, 0) << "seed " << seed;
+    EXPECT_GT(sea, 0) << "seed " << seed;
+  }
+}
+
 TEST(FineRelief, DetailHasUnitVarianceAndNoEdge) {
   const Grid fine = Grid::equal_area(256, 128, 400.0, Centre{30, 40});
   std::vector<float> detail(fine.size());

@@ -352,5 +352,33 @@ TEST(DriftedPlates, AreMissedWhereSimulatedCrustIsAskedFor) {
   EXPECT_THROW(stage->run(io, context), InputError);
 }
 
+TEST(DriftingPlates, FoldsLieAcrossTheWayTheirPlatesMeet) {
+  double alike = 0.0;
+  int places = 0;
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const State state = drifted(240, seed, quick()).state;
+    const Grid& grid = state.grid();
+    const auto plate = state.read(field::plate_id);
+    const auto east = state.read(field::plate_velocity_east);
+    const auto north = state.read(field::plate_velocity_north);
+    const auto fold_east = state.read(field::fold_direction_east);
+    const auto fold_north = state.read(field::fold_direction_north);
+    const auto type = state.read(field::orogeny_type);
+    const auto age = state.read(field::orogeny_age);
+    for (Index c = 0; c < grid.size(); ++c) {
+      const Index next = grid.neighbour(c, kEast);
+      const double fold = std::hypot(fold_east[c], fold_north[c]);
+      if (type[c] != static_cast<std::int8_t>(OrogenyType::andean) || !(age[c] < 5.0F)) continue;
+      if (plate[next] == plate[c] || fold < 0.3) continue;
+      const double e = east[next] - east[c], n = north[next] - north[c], speed = std::hypot(e, n);
+      if (speed < 20.0) continue;
+      alike += std::pow((fold_east[c] * e + fold_north[c] * n) / (fold * speed), 2.0);
+      ++places;
+    }
+  }
+  ASSERT_GT(places, 50);
+  EXPECT_LT(alike / places, 0.3);  // of 0.5 for any directions
+}
+
 }  // namespace
 }  // namespace geo

@@ -24,7 +24,7 @@ std::string digest_of_elevation(const std::vector<float>& elevation_m) {
 
 }  // namespace
 
-fs::path exemplar_cache() {
+fs::path exemplar_cache(const GrownSize& size) {
   const auto folder = [](const char* variable) {
     const char* const value = std::getenv(variable);
     return fs::path(value == nullptr ? "" : value);
@@ -37,7 +37,7 @@ fs::path exemplar_cache() {
   }
   const BuildInfo& build = build_info();
   const std::string key = digest_of(build.version + build.commit + build.compiler);
-  return cache / "terrane" / fmt::format("exemplars-{}.nc", key.substr(0, 16));
+  return cache / "terrane" / fmt::format("exemplars-{:.0f}m-{}.nc", size.cell_m, key.substr(0, 16));
 }
 
 std::optional<ExemplarLibrary> read_cached(const fs::path& path) {

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 
 #include "exemplar_cache.hpp"
 #include "geo/core/error.hpp"
 #include "geo/io/dem.hpp"
+#include "geo/kernels/exemplar_detail.hpp"
 #include "geotiff.hpp"
 
 namespace geo::io {
@@ -145,6 +147,21 @@ void cut_to_whole(Exemplar& e) {
   e.ny = ny;
 }
 
+double shorter_side_km(const Exemplar& e) { return 1e-3 * std::min(e.nx, e.ny) * e.cell_m; }
+
+/// With grown ones for the terrains that a library has none of.
+std::shared_ptr<const ExemplarLibrary> completed(ExemplarLibrary library, const GrownSize& size) {
+  std::array<bool, kTerrains> there{};
+  for (const Exemplar& e : library.exemplars) there[static_cast<std::size_t>(e.terrain)] = true;
+  if (std::find(there.begin(), there.end(), false) != there.end()) {
+    for (Exemplar& grown : grown_exemplars(size).exemplars) {
+      if (there[static_cast<std::size_t>(grown.terrain)]) continue;
+      library.exemplars.push_back(std::move(grown));
+    }
+  }
+  return std::make_shared<const ExemplarLibrary>(std::move(library));
+}
+
 }  // namespace
 
 ExemplarLibrary read_exemplars(const fs::path& folder, const Planet& planet) {
@@ -175,34 +192,43 @@ ExemplarLibrary read_exemplars(const fs::path& folder, const Planet& planet) {
   return library;
 }
 
-ExemplarLibrary grown_exemplars() {
-  const fs::path cache = exemplar_cache();
+ExemplarLibrary grown_exemplars(const GrownSize& size) {
+  const fs::path cache = exemplar_cache(size);
   if (auto library = read_cached(cache)) return std::move(*library);
-  ExemplarLibrary library = grow_exemplars();
+  ExemplarLibrary library = grow_exemplars(size);
   write_cached(cache, library);
   return library;
 }
 
-bool asks_for_exemplars(std::span<const Parameter> parameters) {
-  const Parameter* detail = find_parameter(parameters, "island.detail");
+bool asks_for_exemplars(std::span<const Parameter> parameters, std::string_view key) {
+  const Parameter* detail = find_parameter(parameters, key);
   return detail != nullptr && detail->value() == ParameterValue("exemplars");
 }
 
 std::shared_ptr<const ExemplarLibrary> exemplars_of(const fs::path& folder, const Planet& planet) {
-  if (folder.empty()) return std::make_shared<const ExemplarLibrary>(grown_exemplars());
-  ExemplarLibrary library = read_exemplars(folder, planet);
-  const std::size_t given = library.exemplars.size();
-  for (int t = 0; t < kTerrains; ++t) {
-    const auto terrain = static_cast<Terrain>(t);
-    const bool there = std::any_of(library.exemplars.begin(),
-                                   library.exemplars.begin() + static_cast<std::ptrdiff_t>(given),
-                                   [&](const Exemplar& e) { return e.terrain == terrain; });
-    if (there) continue;
-    for (Exemplar& grown : grown_exemplars().exemplars) {
-      if (grown.terrain == terrain) library.exemplars.push_back(std::move(grown));
-    }
+  ExemplarLibrary library;
+  if (!folder.empty()) library = read_exemplars(folder, planet);
+  return completed(std::move(library), kGrownForIslands);
+}
+
+std::shared_ptr<const ExemplarLibrary> planet_exemplars_of(const fs::path& folder,
+                                                           const Planet& planet, double longest_m,
+                                                           std::vector<std::string>& warnings) {
+  ExemplarLibrary library;
+  if (!folder.empty()) library = read_exemplars(folder, planet);
+  std::vector<std::string> left_out;
+  std::erase_if(library.exemplars, [&](const Exemplar& e) {
+    const bool serves = holds_waves(e, longest_m);
+    if (!serves) left_out.push_back(fmt::format("{} ({:.0f} km)", e.name, shorter_side_km(e)));
+    return !serves;
+  });
+  if (!left_out.empty()) {
+    warnings.push_back(fmt::format(
+        "exemplars: too small or coarse for a planet's waves of {:.0f} km: {}; grown ones stand in "
+        "(must be {:.0f} km a side, or isostasy.detail_longest_km less)",
+        1e-3 * longest_m, fmt::join(left_out, ", "), 1e-3 * least_side_m(longest_m)));
   }
-  return std::make_shared<const ExemplarLibrary>(std::move(library));
+  return completed(std::move(library), kGrownForPlanets);
 }
 
 }  // namespace geo::io

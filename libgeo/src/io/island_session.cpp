@@ -70,7 +70,8 @@ void IslandSession::prepare() {
         folder_.path().string(), spec->name, folder_.path().string()));
   }
   folder_.check_writable(0.0);
-  if (asks_for_exemplars(parameters_)) exemplars_ = exemplars_of(settings_.exemplars, planet_);
+  if (asks_for_exemplars(parameters_, "island.detail"))
+    exemplars_ = exemplars_of(settings_.exemplars, planet_);
 }
 
 State IslandSession::read_planet() const {

@@ -201,8 +201,10 @@ void RunSession::compute(const RunEvents& events) {
   context.hypsography = hypsography();
   context.plates = plates_;
   context.first_relief = first_relief_;
-  if (makes_exemplars() && !exemplars_) exemplars_ = exemplars_of({}, planet_);
+  find_exemplars();
+  for (const std::string& warning : warnings_) tell(events.warning, warning);
   context.exemplars = exemplars_;
+  context.planet_exemplars = planet_exemplars_;
   context.events = settings_.events;
   context.on_progress = events.progress;
   context.stop = events.stop;

@@ -62,7 +62,9 @@ std::vector<std::string> given_fields_of(Stage& stage) {
     keys.insert(keys.end(),
                 {"fields.plates", "fields.first_relief", "fields.first_age", "fields.start_frame"});
   }
-  if (has_choice(stage, "island.detail", "exemplars")) keys.emplace_back("fields.exemplars");
+  if (has_choice(stage, fmt::format("{}.detail", info.name), "exemplars")) {
+    keys.emplace_back("fields.exemplars");
+  }
   return keys;
 }
 
@@ -489,14 +491,22 @@ void RunSession::read_beginning() {
 
 /// Refuses bad ones before anything is computed; those that terrane grows can wait.
 void RunSession::read_given_exemplars() {
-  if (settings_.exemplars.empty() || !makes_exemplars()) return;
-  exemplars_ = exemplars_of(settings_.exemplars, planet_);
+  if (!settings_.exemplars.empty()) find_exemplars();
 }
 
-/// Whether an island is still to be made, and like exemplars.
-bool RunSession::makes_exemplars() const {
-  return first_ <= last_ && pipeline_.stages()[last_]->info().own_grid &&
-         asks_for_exemplars(parameters_);
+/// For the stages that are still to be made like them.
+void RunSession::find_exemplars() {
+  const auto is_ahead = [&](std::string_view stage) {
+    const int at = pipeline_.find(stage);
+    return at >= 0 && first_ <= at && at <= last_ &&
+           asks_for_exemplars(parameters_, fmt::format("{}.detail", stage));
+  };
+  if (!exemplars_ && is_ahead("island")) exemplars_ = exemplars_of(settings_.exemplars, planet_);
+  if (!planet_exemplars_ && is_ahead("isostasy")) {
+    const Parameter* longest_km = find_parameter(parameters_, "isostasy.detail_longest_km");
+    planet_exemplars_ = planet_exemplars_of(settings_.exemplars, planet_,
+                                            1e3 * std::get<double>(longest_km->value()), warnings_);
+  }
 }
 
 Prediction RunSession::prediction() const {

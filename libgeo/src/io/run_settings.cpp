@@ -69,10 +69,11 @@ std::vector<Parameter> RunSettings::parameters() {
            "muller2008"),
       text("fields.start_frame", start_frame,
            "frame of an earlier run, from which drifting plates go on, bit for bit", "design"),
-      text("fields.exemplars", exemplars,
-           "folder of NetCDF or GeoTIFF files, elevations in m, that terrain is made like where "
-           "island.detail is exemplars; empty is those that terrane grows itself",
-           "cortial2019"),
+      text(
+          "fields.exemplars", exemplars,
+          "folder of NetCDF or GeoTIFF files, elevations in m, that terrain is made like where "
+          "island.detail or isostasy.detail is exemplars; empty is those that terrane grows itself",
+          "cortial2019"),
       flag("output.vtk", vtk, "write a VTK file beside each NetCDF file", "design"),
       flag("output.globe", globe,
            "write each stage of the planet also as a closed surface that ParaView shows as a globe",

@@ -71,10 +71,11 @@ struct Ground {
 
 /// Folds and beds bend together; rock differs from patch to patch and, as joints do, from place to
 /// place.
-Ground ground_of(const Grid& grid, const Recipe& recipe, const RandomStream& random) {
+Ground ground_of(const Grid& grid, const Recipe& recipe, double ranges,
+                 const RandomStream& random) {
   constexpr double kBends = 0.02, kPatches = 0.4, kJoints = 0.35;
   const double n = recipe.fold_waves;
-  const Waves folds(random, 0, 0.3 * n, n), beds(random, 1, 0.4 * n, 1.5 * n);
+  const Waves folds(random, 0, 0.3 * n / ranges, n), beds(random, 1, 0.4 * n, 1.5 * n);
   const Waves patches(random, 2, 6.0, 6.0), bends(random, 3, 2.0, 1.0);
   Ground ground{std::vector<float>(grid.size()), std::vector<float>(grid.size()),
                 std::vector<std::uint8_t>(grid.size())};
@@ -136,10 +137,11 @@ void wear(const Grid& grid, const Recipe& recipe, const Ground& ground, int step
 
 }  // namespace
 
-Exemplar grow_exemplar(Terrain terrain) {
+Exemplar grow_exemplar(Terrain terrain, const GrownSize& size) {
   constexpr int kCells = 256, kCoarsest = 64;
-  constexpr double kCell_m = 300.0;
-  const Recipe recipe = recipe_of(terrain);
+  Recipe recipe = recipe_of(terrain);
+  recipe.fold_waves *= size.folds;
+  recipe.folds *= size.ranges;
   const RandomStream random(1, "exemplar." + std::string(name_of(terrain)));
   std::vector<float> z(kCoarsest * kCoarsest);
   for (std::size_t c = 0; c < z.size(); ++c) {
@@ -147,29 +149,29 @@ Exemplar grow_exemplar(Terrain terrain) {
   }
   int steps = 80;
   for (int n = kCoarsest; n <= kCells; n *= 2, steps /= 2) {
-    const double cell_m = kCell_m * kCells / n;
+    const double cell_m = size.cell_m * kCells / n;
     const Grid grid = Grid::torus(n, n, cell_m, cell_m);
-    wear(grid, recipe, ground_of(grid, recipe, random), steps, z);
+    wear(grid, recipe, ground_of(grid, recipe, size.ranges, random), steps, z);
     if (n < kCells) z = refined(z, n);
   }
   Exemplar exemplar{.name = std::string(name_of(terrain)),
                     .terrain = terrain,
                     .nx = kCells,
                     .ny = kCells,
-                    .cell_m = kCell_m,
+                    .cell_m = size.cell_m,
                     .periodic = true,
                     .elevation_m = std::move(z)};
   measure_exemplar(exemplar, terrain);
   return exemplar;
 }
 
-ExemplarLibrary grow_exemplars() {
+ExemplarLibrary grow_exemplars(const GrownSize& size) {
   // One thread each: their grids are too small to share.
   ExemplarLibrary library;
   library.exemplars.resize(kTerrains);
 #pragma omp parallel for schedule(dynamic, 1)
   for (int t = 0; t < kTerrains; ++t) {
-    library.exemplars[t] = grow_exemplar(static_cast<Terrain>(t));
+    library.exemplars[t] = grow_exemplar(static_cast<Terrain>(t), size);
   }
   return library;
 }

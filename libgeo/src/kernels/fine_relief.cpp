@@ -112,6 +112,12 @@ void unit_detail(const Grid& fine, const DetailLaw& law, std::uint64_t seed,
   }
 }
 
+double with_detail(double height_m, double detail_m, double inland) {
+  const double plainly = height_m + detail_m;
+  if (!(detail_m < 0.0 && height_m > 0.0 && inland > 0.0)) return plainly;
+  return plainly + inland * (height_m * std::exp(detail_m / height_m) - plainly);
+}
+
 double edge_ramp(const Grid& fine, int column, int row, double width_m) {
   const double east = std::min(column, fine.nx() - 1 - column) * fine.spacing_east_m(row);
   const double north = std::min(row, fine.ny() - 1 - row) * fine.step_north_m();

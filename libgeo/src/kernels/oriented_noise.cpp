@@ -7,28 +7,19 @@
 
 #include "geo/core/error.hpp"
 #include "geo/core/random.hpp"
+#include "geo/core/tangent_frame.hpp"
 #include "geo/core/vector3.hpp"
 #include "geo/kernels/cubic_rows.hpp"
 #include "geo/kernels/fibonacci_sphere.hpp"
 #include "geo/kernels/shapes.hpp"
 #include "geo/kernels/smoothing.hpp"
+#include "sphere_rows.hpp"
 #include "wide.hpp"
 
 namespace geo {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-
-struct Frame {
-  Vector3 east, north;
-};
-
-Frame frame_at(const Vector3& unit) {
-  const double across = std::hypot(unit[0], unit[1]);
-  const Vector3 east =
-      across > 0.0 ? Vector3{-unit[1] / across, unit[0] / across, 0.0} : Vector3{0.0, 1.0, 0.0};
-  return {east, cross(unit, east)};
-}
 
 /// A group of crests, in the frame of the axis: its centre, and u and v in half extents per radian.
 struct Group {
@@ -49,31 +40,6 @@ inline float cosine_of_turns(float x) {
 inline float positive_part(float x) { return 0.5F * (x + std::abs(x)); }
 inline float between_0_and_1(float x) { return 0.5F * (1.0F + std::abs(x) - std::abs(x - 1.0F)); }
 
-/// Which groups may touch each band of rows, in the order of the groups.
-class Bands {
- public:
-  static constexpr int kRows = 8;
-  Bands(const Grid& grid, std::span<const Group> groups, double reach)
-      : lists_((grid.ny() + kRows - 1) / kRows) {
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-      const double latitude = std::asin(std::clamp(groups[g].centre[2], -1.0F, 1.0F));
-      const auto row = [&](double y) {
-        return std::clamp(static_cast<int>((y / kPi + 0.5) * grid.ny()), 0, grid.ny() - 1);
-      };
-      for (int b = row(latitude - reach) / kRows; b <= row(latitude + reach) / kRows; ++b) {
-        lists_[b].push_back(static_cast<std::int32_t>(g));
-      }
-    }
-  }
-  [[nodiscard]] std::size_t size() const { return lists_.size(); }
-  [[nodiscard]] std::span<const std::int32_t> operator[](std::size_t band) const {
-    return lists_[band];
-  }
-
- private:
-  std::vector<std::vector<std::int32_t>> lists_;
-};
-
 /// One row of the grid as groups see it: places, what is east and north there, and which way crests
 /// run.
 struct Row {
@@ -86,7 +52,7 @@ struct Row {
   void stand_at(const Grid& grid, int j) {
     for (int i = 0; i < grid.nx(); ++i) {
       const Vector3 at = grid.to_axis(grid.unit_vector(i, j));
-      const Frame frame = frame_at(at);
+      const TangentFrame frame = tangent_frame(at);
       for (int c = 0; c < 3; ++c) {
         place[c][i] = static_cast<float>(at[c]);
         east[c][i] = static_cast<float>(frame.east[c]);
@@ -126,29 +92,6 @@ TERRANE_WIDE void add_group(Row& row, const Group& g, float waves, int first, in
   }
 }
 
-/// A row of the grid as groups look for it.
-struct Parallel {
-  Parallel(const Grid& grid, int row)
-      : columns(grid.nx()),
-        sine(std::sin(((row + 0.5) / grid.ny() - 0.5) * kPi)),
-        cosine(std::cos(((row + 0.5) / grid.ny() - 0.5) * kPi)) {}
-  int columns;
-  double sine, cosine;
-
-  /// Calls with the columns between two longitudes, radians from the middle of a group.
-  template <class Action>
-  void between(const Group& group, double west, double east, Action&& action) const {
-    const double per_radian = columns / (2.0 * kPi);
-    const double middle = (group.longitude / (2.0 * kPi) + 0.5) * columns - 0.5;
-    const int first = static_cast<int>(std::floor(middle + west * per_radian));
-    const int last = static_cast<int>(std::ceil(middle + east * per_radian)) + 1;
-    if (last - first >= columns) return action(0, columns);
-    if (first < 0) action(first + columns, columns);
-    action(std::max(first, 0), std::min(last, columns));
-    if (last > columns) action(0, last - columns);
-  }
-};
-
 /// Calls with the columns of a parallel that may lie within a group; `reach` is that of its ends,
 /// radians.
 template <class Action>
@@ -173,14 +116,10 @@ void each_span(const Parallel& row, const Group& g, double reach, Action&& actio
     const double root = b * b - a * c;
     if (root <= 0.0) return;
     const double half = std::sqrt(root) / a, middle = -b / a;
-    return row.between(g, std::max(middle - half, -farthest), std::min(middle + half, farthest),
-                       action);
+    return row.between(g.longitude, std::max(middle - half, -farthest),
+                       std::min(middle + half, farthest), action);
   }
-  const double down = row.cosine * g.ring;
-  const double least = std::cos(reach) - row.sine * g.centre[2];
-  if (least >= down) return;
-  const double half = least <= -down ? kPi : std::acos(least / down);
-  row.between(g, -half, half, action);
+  row.within({g.longitude, g.ring, g.centre[2]}, reach, action);
 }
 
 /// What a grid's cells can show of a wavelength, 0 to 1.
@@ -209,7 +148,7 @@ std::vector<Group> draw_groups(const Grid& on, const Orientation& crests, const 
                                std::clamp(static_cast<int>(y), 0, on.ny() - 1));
     const double c = crests.cosine[cell], s = crests.sine[cell];
     const double angle = 0.5 * std::atan2(s, c);
-    const Frame frame = frame_at(at);
+    const TangentFrame frame = tangent_frame(at);
     const Vector3 along = add(scaled(frame.east, std::cos(angle)), frame.north, std::sin(angle));
     const Vector3 aside = cross(at, along);
     Group& g = all[k];
@@ -284,7 +223,9 @@ void add_oriented_noise(const Grid& grid, const Grid& on, const Orientation& cre
   // u and v are measured in the plane that touches the sphere: a little more on the sphere.
   const double reach =
       1.02 * std::asin(std::min(0.9, std::max(band.width_km, band.length_km) / radius_km));
-  const Bands bands(grid, groups, reach);
+  const RowBands bands(grid, groups.size(), reach, [&](std::size_t g) -> double {
+    return std::asin(std::clamp(groups[g].centre[2], -1.0F, 1.0F));
+  });
   const auto waves = static_cast<float>(band.width_km / band.wavelength_km);
   const CubicRows rows(on, grid);
 #pragma omp parallel
@@ -293,8 +234,7 @@ void add_oriented_noise(const Grid& grid, const Grid& on, const Orientation& cre
     std::vector<float> scratch;
 #pragma omp for schedule(dynamic, 1)
     for (std::size_t b = 0; b < bands.size(); ++b) {
-      const int end = std::min(grid.ny(), (static_cast<int>(b) + 1) * Bands::kRows);
-      for (int j = static_cast<int>(b) * Bands::kRows; j < end; ++j) {
+      for (int j = bands.begin(b); j < bands.end(b); ++j) {
         rows.read(crests.cosine, j, std::span<float>(row.crest[0]), scratch);
         rows.read(crests.sine, j, std::span<float>(row.crest[1]), scratch);
         row.stand_at(grid, j);

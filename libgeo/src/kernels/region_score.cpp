@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <vector>
 
 #include "geo/core/error.hpp"
@@ -25,6 +26,11 @@ Reach reach_at(const Grid& planet, int row, double width_m, double height_m) {
   return {static_cast<int>(std::lround(std::clamp(columns, 0.0, static_cast<double>(most)))),
           static_cast<int>(
               std::lround(std::clamp(rows, 0.0, static_cast<double>((planet.ny() - 1) / 2))))};
+}
+
+/// A window that is chosen by its shores and its relief is looked at with the cells around it.
+Reach with_surroundings(const Reach& reach) {
+  return {std::max(1, reach.columns), std::max(1, reach.rows)};
 }
 
 /// Sums and extremes over the rows of a window, one entry per column.
@@ -125,7 +131,7 @@ Index best_region(const Grid& planet, std::span<const float> elevation_m,
   check_sphere(planet);
   const int ny = planet.ny(), middle = ny / 2;
   const int tenth = static_cast<int>(std::ceil(0.1 * ny));
-  const int row_reach = reach_at(planet, middle, width_m, height_m).rows;
+  const int row_reach = with_surroundings(reach_at(planet, middle, width_m, height_m)).rows;
   std::vector<int> rows;
   for (int j = tenth + row_reach; j + row_reach < ny - tenth;
        j += std::max(1, (2 * row_reach + 1) / 8)) {
@@ -134,28 +140,31 @@ Index best_region(const Grid& planet, std::span<const float> elevation_m,
   if (rows.empty()) rows.push_back(middle);
 
   struct Best {
+    bool has_land = false;
     double score = -std::numeric_limits<double>::infinity();
     Index cell = 0;
+    [[nodiscard]] bool operator<(const Best& other) const {
+      return std::tie(has_land, score) < std::tie(other.has_land, other.score);
+    }
   };
   std::vector<Best> best_of_row(rows.size());
 #pragma omp parallel for schedule(dynamic, 1)
   for (std::size_t at = 0; at < rows.size(); ++at) {
     const int j = rows[at];
-    const Reach reach = reach_at(planet, j, width_m, height_m);
+    const Reach reach = with_surroundings(reach_at(planet, j, width_m, height_m));
     ColumnSums sums(planet.nx());
     add_rows(planet, elevation_m, boundary_type, std::max(0, j - reach.rows),
              std::min(ny - 1, j + reach.rows), 0, planet.nx(), sums);
     const int count = 2 * reach.columns + 1;
     for (int i = 0; i < planet.nx(); i += std::max(1, count / 8)) {
       const Index cell = planet.cell(i, j);
-      const double score = figures_of(sums, i - reach.columns, count)
-                               .score(region_noise(planet, cell, width_m, seed));
-      if (score > best_of_row[at].score) best_of_row[at] = {score, cell};
+      const RegionFigures figures = figures_of(sums, i - reach.columns, count);
+      const Best here{figures.land_fraction > 0.0,
+                      figures.score(region_noise(planet, cell, width_m, seed)), cell};
+      if (best_of_row[at] < here) best_of_row[at] = here;
     }
   }
-  return std::max_element(best_of_row.begin(), best_of_row.end(),
-                          [](const Best& a, const Best& b) { return a.score < b.score; })
-      ->cell;
+  return std::max_element(best_of_row.begin(), best_of_row.end())->cell;
 }
 
 }  // namespace geo

@@ -95,14 +95,6 @@ void read_planet(const PlanetCells& cells, std::span<const float> planet_elevati
   });
 }
 
-/// A height with detail on it. Plains near the level of the sea would become flats at it wherever
-/// detail dips further: inland, h exp(d / h) stays above it and drains.
-double with_detail(double height_m, double detail_m, double inland) {
-  const double plainly = height_m + detail_m;
-  if (!(detail_m < 0.0 && height_m > 0.0 && inland > 0.0)) return plainly;
-  return plainly + inland * (height_m * std::exp(detail_m / height_m) - plainly);
-}
-
 /// Unit detail of exemplars. Waves that they do not hold, too long for a piece of them or too short
 /// for their cells, are noise of the same law.
 std::vector<float> exemplary_detail(const PlanetCells& cells, const PlanetRelief& planet,

@@ -61,8 +61,9 @@ struct Context {
   /// The first plates and the first relief of a history; empty unless given.
   std::vector<PlateOutline> plates;
   std::shared_ptr<const GivenRelief> first_relief;
-  /// What terrain is made like, where exemplars are asked for; empty: stages grow their own.
-  std::shared_ptr<const ExemplarLibrary> exemplars;
+  /// What an island's terrain is made like, and a planet's, where exemplars are asked for; empty:
+  /// stages grow their own.
+  std::shared_ptr<const ExemplarLibrary> exemplars, planet_exemplars;
   /// What befalls the planet; empty unless asked for.
   std::vector<Event> events;
   /// Called with the fraction of the stage that is done; may be empty.

@@ -89,7 +89,7 @@ class RunSession {
   void read_given_fields();
   void read_beginning();
   void read_given_exemplars();
-  [[nodiscard]] bool makes_exemplars() const;
+  void find_exemplars();
   void refuse_beginning() const;
   [[nodiscard]] Hypsography hypsography() const;
   [[nodiscard]] int count_complete_stages() const;
@@ -128,7 +128,8 @@ class RunSession {
   FieldsAtHand at_hand_;
   std::vector<PlateOutline> plates_;
   std::shared_ptr<const GivenRelief> first_relief_;
-  std::shared_ptr<const ExemplarLibrary> exemplars_;
+  std::shared_ptr<const ExemplarLibrary> exemplars_, planet_exemplars_;
+  std::vector<std::string> warnings_;  ///< of what was given
 };
 
 }  // namespace geo::io

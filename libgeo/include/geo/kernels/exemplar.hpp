@@ -55,12 +55,24 @@ struct ExemplarLibrary {
 /// numbers, or no relief.
 void measure_exemplar(Exemplar& exemplar, std::optional<Terrain> terrain = {});
 
+/// How large relief is that is grown, on a torus of 256 cells a side.
+struct GrownSize {
+  double cell_m = 300.0;
+  double folds = 1.0;   ///< factor of their number across the torus
+  double ranges = 1.0;  ///< how far folds stand out as ranges, and how straight they run
+};
+/// For what is finer than a planet's cells: 77 km a side.
+inline constexpr GrownSize kGrownForIslands{};
+/// For what is finer than a planet's plates: 1024 km a side, ranges and basins some 85 km apart.
+inline constexpr GrownSize kGrownForPlanets{.cell_m = 4000.0, .folds = 1.75, .ranges = 3.0};
+
 /// A library grown with the kernel that wears continents down: for each terrain, stream power and
-/// creep against uplift on a torus of 77 km, over beds of hard and soft rock and folds that run
-/// east. Uplift is one-sided (andean), broad and fast (himalayan), slow over strongly banded rock
-/// with much creep (old mountains), or next to none (plain). A function of nothing: the same
-/// library always. Takes some seconds.
-[[nodiscard]] ExemplarLibrary grow_exemplars();
-[[nodiscard]] Exemplar grow_exemplar(Terrain terrain);
+/// creep against uplift on a torus, over beds of hard and soft rock and folds that run east. Uplift
+/// is one-sided (andean), broad and fast (himalayan), slow over strongly banded rock with much
+/// creep (old mountains), or next to none (plain). With exponents 1/2 and 1 of area and slope,
+/// steady relief is as high on a torus of any size. A function of its size alone: the same library
+/// always. Takes some seconds.
+[[nodiscard]] ExemplarLibrary grow_exemplars(const GrownSize& size = kGrownForIslands);
+[[nodiscard]] Exemplar grow_exemplar(Terrain terrain, const GrownSize& size = kGrownForIslands);
 
 }  // namespace geo

@@ -56,6 +56,11 @@ struct IsostasyParameters {
   double fabric_age_myr = 45.0;
   double land_roughness_m = 60.0;
   double noise_factor = 1.0;
+  std::string detail = "noise";
+  double detail_longest_km = 150.0;
+  double detail_amplitude = 2.0;
+  double old_orogeny_myr = 100.0;
+  double plain_slope = 0.002;
   DeepSediment sediment;
 
   [[nodiscard]] std::vector<Parameter> declarations();

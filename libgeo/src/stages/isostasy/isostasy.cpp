@@ -7,6 +7,7 @@
 #include "geo/stages/isostasy/rocks.hpp"
 #include "geo/stages/sea_level.hpp"
 #include "given_crust.hpp"
+#include "land_detail.hpp"
 #include "sea_floor_fabric.hpp"
 
 namespace geo {
@@ -105,24 +106,38 @@ void report(const Crust<float>& crust, Budget& budget) {
   budget["crust_m3"] = all_crust;
 }
 
+const StageInfo& stage_info() {
+  static const StageInfo kInfo{
+      "isostasy",
+      "crust, rock and the height at which they float",
+      {&field::plate_id, &field::continental_fraction, &field::boundary_type,
+       &field::boundary_strength, &field::crust_age, &field::heat_anomaly,
+       &field::plate_velocity_east, &field::plate_velocity_north},
+      {&field::crust_elevation, &field::crust_thickness, &field::crust_density,
+       &field::ridge_direction_east, &field::ridge_direction_north},
+      {&field::convergent_deformation, &field::divergent_deformation, &field::transform_deformation,
+       &field::lithospheric_weakness, &field::continental_fraction, &field::crust_thickness,
+       &field::crust_density, &field::rock_type, &field::erodibility, &field::elevation}};
+  return kInfo;
+}
+
+/// What exemplars are chosen and turned by.
+StageInfo guided_by_folds(StageInfo info) {
+  for (const FieldSpec* spec : std::initializer_list<const FieldSpec*>{
+           &field::orogeny_type, &field::orogeny_age, &field::fold_direction_east,
+           &field::fold_direction_north}) {
+    info.optional.push_back(spec);
+  }
+  return info;
+}
+
 class IsostasyStage final : public Stage {
  public:
   explicit IsostasyStage(IsostasyParameters parameters) : parameters_(std::move(parameters)) {}
 
   [[nodiscard]] const StageInfo& info() const override {
-    static const StageInfo kInfo{
-        "isostasy",
-        "crust, rock and the height at which they float",
-        {&field::plate_id, &field::continental_fraction, &field::boundary_type,
-         &field::boundary_strength, &field::crust_age, &field::heat_anomaly,
-         &field::plate_velocity_east, &field::plate_velocity_north},
-        {&field::crust_elevation, &field::crust_thickness, &field::crust_density,
-         &field::ridge_direction_east, &field::ridge_direction_north},
-        {&field::convergent_deformation, &field::divergent_deformation,
-         &field::transform_deformation, &field::lithospheric_weakness, &field::continental_fraction,
-         &field::crust_thickness, &field::crust_density, &field::rock_type, &field::erodibility,
-         &field::elevation}};
-    return kInfo;
+    static const StageInfo kGuided = guided_by_folds(stage_info());
+    return follows_exemplars() ? kGuided : stage_info();
   }
   [[nodiscard]] std::vector<Parameter> parameters() override { return parameters_.declarations(); }
 
@@ -140,11 +155,28 @@ class IsostasyStage final : public Stage {
     context.budget["sea_level_shift_m"] = level_m;
     engrave_sea_floor(crust, coarse, io.read_optional(field::ridge_direction_east),
                       io.read_optional(field::ridge_direction_north));
+    if (follows_exemplars()) detail_land_like_exemplars(crust, coarse, io, context);
     classify_rock(crust);
     report(crust, context.budget);
   }
 
  private:
+  [[nodiscard]] bool follows_exemplars() const { return parameters_.detail == "exemplars"; }
+
+  static void detail_land_like_exemplars(const Crust<float>& crust, const CoarseGrid& coarse,
+                                         const StageIo& io, const Context& context) {
+    auto library = context.planet_exemplars;
+    if (!library) {
+      library = std::make_shared<const ExemplarLibrary>(grow_exemplars(kGrownForPlanets));
+    }
+    detail_land(crust, coarse,
+                {.type = io.read_optional(field::orogeny_type),
+                 .age_myr = io.read_optional(field::orogeny_age),
+                 .fold_east = io.read_optional(field::fold_direction_east),
+                 .fold_north = io.read_optional(field::fold_direction_north)},
+                *library);
+  }
+
   IsostasyParameters parameters_;
 };
 

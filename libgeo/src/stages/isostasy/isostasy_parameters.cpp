@@ -106,6 +106,21 @@ std::vector<Parameter> IsostasyParameters::declarations() {
            "standard deviation of the noise from which rivers find their ways", "huang1989"),
       real("isostasy.noise_factor", noise_factor, "1", 0.0, 100.0,
            "factor of the blueprint's noise overlay, blueprint crust alone", "tectonica2026"),
+      choice(
+          "isostasy.detail", detail, {"noise", "exemplars"},
+          "what the relief of continents is made of where it is finer than plates make it: noise, "
+          "or relief like exemplars (fields.exemplars), turned to the folds",
+          "cortial2019"),
+      real("isostasy.detail_longest_km", detail_longest_km, "km", 10.0, 1000.0,
+           "longest waves of detail made of exemplars; longer ones are the plates' work", "design"),
+      real("isostasy.detail_amplitude", detail_amplitude, "1", 0.0, 10.0,
+           "height of that detail over the noise that it replaces; it is higher where longer waves "
+           "around lead to expect it",
+           "huang1989"),
+      real("isostasy.old_orogeny_myr", old_orogeny_myr, "Myr", 0.0, 5000.0,
+           "age from which orogens are made like old mountains", "cortial2019"),
+      real("isostasy.plain_slope", plain_slope, "1", 0.0, 1.0,
+           "rise over run of the relief of longer waves below which terrain is a plain", "design"),
       real("isostasy.pelagic_m", sediment.early_m, "m", 0.0, 10000.0,
            "sediment that soon covers new sea floor", "muller2008"),
       real("isostasy.pelagic_rate_m_myr", sediment.rate_m_myr, "m Myr-1", 0.0, 1000.0,

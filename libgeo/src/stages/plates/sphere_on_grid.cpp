@@ -194,7 +194,9 @@ void SphereOnGrid::draw_crust(const Cell& at, Index cell, const Vector3& unit,
   out.orogeny_age[cell] = land ? static_cast<float>(own_age) : 0.0F;
   out.orogeny[cell] = crust.orogeny[at.nearest];
   out.heat[cell] = heat(unit);
-  const auto folds = east_north(grid_.to_axis(fold), up);
+  // Drifting plates know which way the ground was shortened: folds lie across it.
+  const Vector3 way = grid_.to_axis(fold);
+  const auto folds = east_north(p_.model == "sphere" ? cross(up, way) : way, up);
   const auto ridges = east_north(grid_.to_axis(ridge), up);
   out.fold_east[cell] = static_cast<float>(folds.east);
   out.fold_north[cell] = static_cast<float>(folds.north);
