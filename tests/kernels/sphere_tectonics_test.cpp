@@ -372,6 +372,28 @@ TEST(SphereTectonics, ChangesTheCrustOfARegionWhereverItsPlatesAre) {
   EXPECT_EQ(model.change_crust(within, true), 0.0);
 }
 
+TEST(SphereTectonics, BendsTheCoastsOfChangedCrustAndKeepsTheirArea) {
+  const World world(40000);
+  SphereTectonics model(world.mesh, quiet(), hemispheres(world, 60.0), 1);
+  const Vector3 middle = place(10.0, 60.0);
+  constexpr double kRadius = 0.25, kWarp_km = 150.0;
+  const double area_km2 = model.change_crust(
+      [&](const Vector3& at) { return angle_between(at, middle) < kRadius; }, true, kWarp_km);
+  const double circle_km2 = 2.0 * std::numbers::pi * 6370.0 * 6370.0 * (1.0 - std::cos(kRadius));
+  EXPECT_NEAR(area_km2, circle_km2, 0.08 * circle_km2);
+  double inner_km = 1e9, outer_km = 0.0;
+  for (std::int32_t i = 0; i < world.mesh.size(); ++i) {
+    const double far_km = 6370.0 * angle_between(world.samples.position(i), middle);
+    const bool land = model.state().crust.continental[i] != 0;
+    if (land) outer_km = std::max(outer_km, far_km);
+    if (!land) inner_km = std::min(inner_km, far_km);
+  }
+  EXPECT_GT(outer_km - 6370.0 * kRadius, 0.3 * kWarp_km);
+  EXPECT_LT(outer_km - 6370.0 * kRadius, 2.2 * kWarp_km);
+  EXPECT_LT(inner_km - 6370.0 * kRadius, -0.3 * kWarp_km);
+  EXPECT_GT(inner_km - 6370.0 * kRadius, -2.2 * kWarp_km);
+}
+
 TEST(SphereTectonics, TakesTheNetRotationAway) {
   const World world(5000);
   SphereSettings settings;
@@ -468,7 +490,8 @@ TEST(SphereTectonics, WhatIsDoneBetweenStepsIsInTheBooksOfTheNext) {
   model.begin_step();
   const std::vector<Vector3> line{place(-30.0, 90.0), place(30.0, 90.0)};
   model.rift_along(1, GreatCircleLine(line), 2, 0.0);
-  const double area_km2 = model.change_crust(place(0.0, -90.0), 1000.0, true);
+  const double area_km2 = model.change_crust(
+      [](const Vector3& at) { return angle_between(at, place(0.0, -90.0)) < 0.15; }, true);
   model.advance();
   EXPECT_EQ(model.budget().rifts, 1);
   EXPECT_NEAR(model.budget().changed_km3, 36.0 * area_km2, 1e-6 * area_km2);

@@ -39,12 +39,13 @@ struct SphereSettings {
   double accretion_top_km = -3.0;     ///< up to which a trench's sediment piles
   double accretion_width_km = 100.0;  ///< of the wedge
   double margin_km = 120.0;           ///< width of stretched crust where a continent breaks
-  double margin_source_km = 400.0;    ///< from which inland it flows there
-  double margin_thinning = 0.12;      ///< most that the inland thins for it
+  double margin_source_km = 500.0;    ///< from which inland it flows there
+  double margin_thinning = 0.18;      ///< most that the inland thins for it, at the break
   double rift_per_myr = 0.004;        ///< lambda_0
   double rift_smallest = 0.5;         ///< smaller plates, in mean areas, do not rift
   double rift_speed_mm_yr = 30.0;     ///< at which fragments part
   double rift_warp_km = 400.0;        ///< of their borders
+  double coast_warp_km = 120.0;       ///< of crust that events change
   double mean_area_km2 = 1.27e7;      ///< A_0
   double smallest_piece_km2 = 5e5;    ///< detached pieces below join a neighbour
   double plume_mm_yr = 0.0;           ///< growth of volcanoes above the first plumes
@@ -142,11 +143,11 @@ class SphereTectonics {
   void set_motion(int plate, const Vector3& axis, double speed_rad_myr);
   /// Holds all plates as they move now.
   void hold_motions();
-  /// The crust within a circle, whatever its plates, becomes continental or oceanic. Returns the
-  /// area that changed, km2.
-  double change_crust(const Vector3& place, double radius_km, bool continental);
-  /// The same of all places (unit vectors) of which something holds.
-  double change_crust(const std::function<bool(const Vector3&)>& holds, bool continental);
+  /// The crust at all places (unit vectors) of which something holds becomes continental or
+  /// oceanic, whatever its plates. Places are asked for as far as `warp_km` beside where they are,
+  /// so that coasts bend. Returns the area that changed, km2.
+  double change_crust(const std::function<bool(const Vector3&)>& holds, bool continental,
+                      double warp_km = 0.0);
   /// Torques on a plate about the planet's centre, in the frame of the planet.
   struct Torques {
     Matrix3 drag_n_m_s{};   ///< (eta / h) R^4 int f (1 - r r^T) dA, times rotation in rad/s
@@ -215,8 +216,6 @@ class SphereTectonics {
   [[nodiscard]] int largest_plate() const;
   void part(int plate, std::span<const std::int8_t> fragment, std::span<const Vector3> away,
             double speed_mm_yr);
-  template <class Within>
-  double change_samples(Within&& within, bool continental);
   [[nodiscard]] Vector3 net_rotation() const;
   void fill_gaps(SphereCrust& now, std::vector<std::int16_t>& owner);
   void stretch_margins(std::span<const std::int32_t> gaps, std::span<const std::int32_t> nearest,
@@ -233,7 +232,7 @@ class SphereTectonics {
   SphereSettings settings_;
   SphereState state_;
   std::uint64_t seed_;
-  Noise warp_;
+  Noise warp_, coasts_;
   SphereBudget budget_;
   bool has_begun_ = false;  // the next step
   std::vector<SphereEvent> events_;
