@@ -228,6 +228,7 @@ void SphereTectonics::advance() {
   budget_.time_myr = state_.time_myr;
   collide();
   rift_by_chance();
+  founder_by_chance();
   if (is_due()) {
     resample();
   } else {

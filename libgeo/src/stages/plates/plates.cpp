@@ -198,9 +198,25 @@ std::vector<Parameter> PlatesParameters::declarations() {
       real("plates.arc_km", sphere.arc_km, "km", 5.0, 80.0,
            "sphere: thickness of an island arc's crust when it emerges", "christensen1995"),
       real("plates.plume_mm_yr", sphere.plume_mm_yr, "mm yr-1", 0.0, 100.0,
-           "sphere: growth of volcanoes on the sea floor above plumes", "cortial2019"),
+           "sphere: output of plumes below the sea floor, as the growth of one mound on floor at "
+           "rest",
+           "cortial2019"),
       real("plates.plume_km", sphere.plume_km, "km", 1.0, 1000.0,
-           "sphere: distance from a plume over which that falls to a half", "design"),
+           "sphere: distance from a plume over which that growth falls to a half", "design"),
+      real("plates.volcano_km", sphere.volcano_km, "km", 1.0, 500.0,
+           "sphere: distance from a volcano's middle over which its growth falls to a half, most "
+           "of a sample's spacing at least",
+           "tenbrink1991"),
+      real("plates.volcano_spacing_km", sphere.volcano_spacing_km, "km", 1.0, 5000.0,
+           "sphere: mean way of a plate from one volcano of a plume to the next", "tenbrink1991"),
+      real("plates.island_wear_myr", sphere.island_wear_myr, "Myr", 0.0, 1000.0,
+           "sphere: time in which volcanic islands wear down to 1/e of their height; 0 keeps them",
+           "ramalho2013"),
+      real(
+          "plates.swell_decay_myr", sphere.swell_decay_myr, "Myr", 0.0, 1000.0,
+          "sphere: time in which the sea floor sinks back to 1/e of what lifted it above the depth "
+          "of its age, by age alone; 0 keeps it",
+          "detrick1978"),
       real("plates.plume_top_km", sphere.plume_top_km, "km", -5.0, 10.0,
            "sphere: height that those volcanoes reach", "design"),
       real("plates.margin_km", sphere.margin_km, "km", 0.0, 1000.0,
@@ -217,6 +233,15 @@ std::vector<Parameter> PlatesParameters::declarations() {
            "sphere: speed at which fragments leave the middle of their plate", "design"),
       real("plates.rift_warp_km", sphere.rift_warp_km, "km", 0.0, 5000.0,
            "sphere: how far the borders of fragments are warped", "cortial2019"),
+      real("plates.foundering_myr", sphere.founder_per_myr, "Myr-1", 0.0, 1.0,
+           "sphere: rate at which each 1000 km of a passive margin with old floor become a "
+           "subduction zone",
+           "bradley2008"),
+      real("plates.foundering_age_myr", sphere.founder_age_myr, "Myr", 0.0, 5000.0,
+           "sphere: age from which floor at a passive margin is so old", "bradley2008"),
+      real("plates.foundering_speed_mm_yr", sphere.founder_speed_mm_yr, "mm yr-1", 0.0, 1000.0,
+           "sphere: speed at which floor that founders begins to go below its continent",
+           "stern2004"),
       real("plates.coast_warp_km", sphere.coast_warp_km, "km", 0.0, 2000.0,
            "sphere: how far the outline of crust that an event changes is warped, of a circle a "
            "fifth of its radius at most",

@@ -67,7 +67,9 @@ class Stroke {
     const Vector3 at = place_of(change.latitude_deg, change.longitude_deg);
     auto& plumes = model_.state().plumes;
     if (change.active) {
-      plumes.push_back({at, change.growth_mm_yr});
+      std::int64_t number = 0;
+      for (const SpherePlume& plume : plumes) number = std::max(number, plume.number + 1);
+      plumes.push_back({.place = at, .growth_mm_yr = change.growth_mm_yr, .number = number});
     } else {
       const auto nearest = std::max_element(plumes.begin(), plumes.end(),
                                             [&](const SpherePlume& a, const SpherePlume& b) {
