@@ -272,30 +272,87 @@ TEST(SphereTectonics, SlabPullBringsAPlateToItsFront) {
   EXPECT_EQ(model.state().plates[0].axis, (Vector3{0.0, 0.0, -1.0}));
 }
 
-TEST(SphereTectonics, APlumeLeavesAChainOfVolcanoes) {
-  const World world(40000);
+/// A plume below plate 1, which has gone 1200 km east of it in 24 Myr.
+SphereTectonics chain_of_volcanoes(const World& world, std::uint64_t seed) {
   SphereSettings settings = quiet();
   settings.law.damping_mm_yr = 0.0;
-  settings.plume_km = 120.0;
   settings.least_steps = 60;
-  // Plate 1 turns eastwards at 50 mm/yr: 24 Myr later its first volcano is 1200 km east.
+  settings.plume_top_km = 10.0;
+  settings.island_wear_myr = 0.0;
   SphereState state = hemispheres(world, 100.0);
-  state.plumes = {{place(10.0, 60.0), 1.0}};
-  SphereTectonics model(world.mesh, settings, std::move(state), 1);
+  state.plumes = {{.place = place(10.0, 60.0), .growth_mm_yr = 1.0}};
+  SphereTectonics model(world.mesh, settings, std::move(state), seed);
   for (int k = 0; k < 12; ++k) model.advance();
+  return model;
+}
+
+TEST(SphereTectonics, APlumeLeavesAChainOfSeparateVolcanoes) {
+  const World world(400000);  // 36 km apart
+  const SphereTectonics model = chain_of_volcanoes(world, 1);
+  const SphereCrust& crust = model.state().crust;
   const Matrix3 frame = model.state().plates[1].turn.matrix();
-  double west = 400.0, east = -400.0;
+  double built_km3 = 0.0;
+  std::vector<double> summits_km;
   for (std::int32_t i = 0; i < world.mesh.size(); ++i) {
-    if (model.state().crust.plate[i] != 1 || model.state().crust.elevation_m[i] < -4800.0F)
-      continue;
     const Vector3 at = times(frame, world.samples.position(i));
-    if (std::abs(longitude_deg(at) - 60.0) > 40.0) continue;
-    EXPECT_NEAR(latitude_deg(at), 10.0, 3.5);
-    west = std::min(west, longitude_deg(at));
-    east = std::max(east, longitude_deg(at));
+    if (crust.plate[i] != 1 || std::abs(longitude_deg(at) - 65.0) > 20.0) continue;
+    if (std::abs(latitude_deg(at) - 10.0) > 10.0) continue;
+    const double high_m = crust.elevation_m[i] + 5000.0;
+    EXPECT_NEAR(crust.thickness_m[i] - 7000.0, high_m, 0.01);
+    built_km3 += 1e-3 * high_m * world.samples.area_sr() * 6370.0 * 6370.0;
+    if (high_m < 800.0) continue;
+    EXPECT_NEAR(latitude_deg(at), 10.0, 1.5);
+    bool is_summit = true;
+    for (const std::int32_t j : world.mesh.neighbours(i)) {
+      is_summit = is_summit && crust.elevation_m[j] < crust.elevation_m[i];
+    }
+    const double along_km =
+        (longitude_deg(at) - 60.0) * kKmPerDegree * std::cos(10.0 * std::numbers::pi / 180.0);
+    if (is_summit) summits_km.push_back(along_km);
   }
-  EXPECT_NEAR(west, 60.0, 3.5);
-  EXPECT_NEAR(east, 60.0 + 1200.0 / kKmPerDegree, 4.0);
+  // What the one mound would hold that grows by 1 mm/yr and halves at 60 km: pi 60^2 / ln 2.
+  const double output_km3 = 24.0 * std::numbers::pi * 3600.0 / std::numbers::ln2;
+  EXPECT_NEAR(built_km3, output_km3, 1e-3 * output_km3);
+  // 50 mm/yr on the equator. One volcano for each 100 km of way, as far as samples part them.
+  const double way_km = 24.0 * 50.0 * std::cos(10.0 * std::numbers::pi / 180.0);
+  EXPECT_GE(std::ssize(summits_km), 8);
+  EXPECT_LE(std::ssize(summits_km), 16);
+  const auto [low, high] = std::minmax_element(summits_km.begin(), summits_km.end());
+  EXPECT_NEAR(*low, 0.0, 120.0);
+  EXPECT_NEAR(*high, way_km, 120.0);
+  // Another seed has other volcanoes.
+  EXPECT_NE(chain_of_volcanoes(world, 2).state().crust.elevation_m, crust.elevation_m);
+}
+
+TEST(SphereTectonics, IslandsSinkWithTheirFloorWearDownAndSwellsDecay) {
+  const World world(2000);
+  SphereSettings settings = quiet();
+  settings.floor_by_age = true;
+  settings.least_steps = 60;
+  SphereState state = hemispheres(world, 0.0);
+  enum { kPlain = 500, kSeamount = 700, kSwell = 900, kIsland = 1100 };
+  SphereCrust& crust = state.crust;
+  for (float& age : crust.age_myr) age = 30.0F;
+  for (float& z : crust.elevation_m) z = static_cast<float>(-ocean_depth_m(30.0));
+  const auto lift = [&](std::int32_t i, float lava_m, float swell_m) {
+    crust.elevation_m[i] += lava_m + swell_m;
+    crust.thickness_m[i] += lava_m;
+  };
+  lift(kSeamount, 3000.0F, 0.0F);
+  lift(kSwell, 0.0F, 1000.0F);
+  lift(kIsland, 6000.0F, 0.0F);
+  const double island_m = crust.elevation_m[kIsland];
+  ASSERT_GT(island_m, 1000.0);
+  SphereTectonics model(world.mesh, settings, std::move(state), 1);
+  for (int k = 0; k < 15; ++k) model.advance();
+  const auto& z = model.state().crust.elevation_m;
+  EXPECT_NEAR(z[kPlain], -ocean_depth_m(60.0), 0.1);
+  EXPECT_NEAR(z[kSeamount] - z[kPlain], 3000.0, 0.1);
+  EXPECT_NEAR(z[kSwell] - z[kPlain], 1000.0 * std::exp(-30.0 / settings.swell_decay_myr), 1.0);
+  // Sinking floor alone would leave it 800 m high.
+  const double sunk_m = ocean_depth_m(60.0) - ocean_depth_m(30.0);
+  EXPECT_LT(z[kIsland], 0.2 * (island_m - sunk_m));
+  EXPECT_GT(z[kIsland], -sunk_m);
 }
 
 TEST(SphereTectonics, RiftsAlongALineToBothSidesOfIt) {
@@ -370,6 +427,28 @@ TEST(SphereTectonics, ChangesTheCrustOfARegionWhereverItsPlatesAre) {
               within(times(frame, world.samples.position(i))));
   }
   EXPECT_EQ(model.change_crust(within, true), 0.0);
+}
+
+TEST(SphereTectonics, BendsTheCoastsOfChangedCrustAndKeepsTheirArea) {
+  const World world(40000);
+  SphereTectonics model(world.mesh, quiet(), hemispheres(world, 60.0), 1);
+  const Vector3 middle = place(10.0, 60.0);
+  constexpr double kRadius = 0.25, kWarp_km = 150.0;
+  const double area_km2 = model.change_crust(
+      [&](const Vector3& at) { return angle_between(at, middle) < kRadius; }, true, kWarp_km);
+  const double circle_km2 = 2.0 * std::numbers::pi * 6370.0 * 6370.0 * (1.0 - std::cos(kRadius));
+  EXPECT_NEAR(area_km2, circle_km2, 0.08 * circle_km2);
+  double inner_km = 1e9, outer_km = 0.0;
+  for (std::int32_t i = 0; i < world.mesh.size(); ++i) {
+    const double far_km = 6370.0 * angle_between(world.samples.position(i), middle);
+    const bool land = model.state().crust.continental[i] != 0;
+    if (land) outer_km = std::max(outer_km, far_km);
+    if (!land) inner_km = std::min(inner_km, far_km);
+  }
+  EXPECT_GT(outer_km - 6370.0 * kRadius, 0.3 * kWarp_km);
+  EXPECT_LT(outer_km - 6370.0 * kRadius, 2.2 * kWarp_km);
+  EXPECT_LT(inner_km - 6370.0 * kRadius, -0.3 * kWarp_km);
+  EXPECT_GT(inner_km - 6370.0 * kRadius, -2.2 * kWarp_km);
 }
 
 TEST(SphereTectonics, TakesTheNetRotationAway) {
@@ -468,7 +547,8 @@ TEST(SphereTectonics, WhatIsDoneBetweenStepsIsInTheBooksOfTheNext) {
   model.begin_step();
   const std::vector<Vector3> line{place(-30.0, 90.0), place(30.0, 90.0)};
   model.rift_along(1, GreatCircleLine(line), 2, 0.0);
-  const double area_km2 = model.change_crust(place(0.0, -90.0), 1000.0, true);
+  const double area_km2 = model.change_crust(
+      [](const Vector3& at) { return angle_between(at, place(0.0, -90.0)) < 0.15; }, true);
   model.advance();
   EXPECT_EQ(model.budget().rifts, 1);
   EXPECT_NEAR(model.budget().changed_km3, 36.0 * area_km2, 1e-6 * area_km2);

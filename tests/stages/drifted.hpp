@@ -58,6 +58,7 @@ inline PlatesParameters with_frames() {
   p.time_myr = 100.0;
   p.frames_myr = 20.0;
   p.sphere.rift_per_myr = 0.02;
+  p.sphere.plume_mm_yr = 1.0;
   return p;
 }
 

@@ -243,7 +243,6 @@ TEST(DriftedPlates, FollowTheTimeline) {
 
 TEST(DriftedPlates, TellWhatEachStepDid) {
   PlatesParameters parameters = with_frames();
-  parameters.sphere.plume_mm_yr = 1.0;
   State state(std::make_shared<Grid>(Grid::sphere(32, 16)));
   Context told;
   (void)frames_of(parameters, state, nullptr, {}, &told);
@@ -288,6 +287,7 @@ TEST(DriftedPlates, TellWhatEachStepDid) {
   }
   EXPECT_GT(created, 0.0);
   EXPECT_GT(steps.rows.back()[column("accreted_km3")], 0.0);
+  EXPECT_GT(steps.rows.back()[column("erupted_km3")], 0.0);
 }
 
 TEST(DriftedPlates, FollowLinesRegionsAndPlumesOfTheTimeline) {

@@ -60,6 +60,7 @@ std::string words_of(const EventRecord& event) {
   if (has(event, "time_myr")) {
     const char* what = event.kind == PlateMotion::kKind        ? "A plate takes a new course"
                        : event.kind == "continental-collision" ? "Continents collide"
+                       : event.kind == "subduction-initiation" ? "Old floor founders at a margin"
                        : event.kind == CrustChange::kKind      ? "Crust changes its type"
                        : event.kind == PlumeChange::kKind      ? "A plume begins or ends"
                                                                : "A plate breaks";

@@ -16,7 +16,7 @@ struct SphereCrust {
   std::vector<std::int16_t> plate;       ///< place in SphereState::plates; -1: consumed
   std::vector<std::int8_t> continental;  ///< crust type: 1 continental, 0 oceanic
   std::vector<std::int8_t> orogeny;      ///< OrogenyType
-  std::vector<float> thickness_m;
+  std::vector<float> thickness_m;        ///< of ocean floor with what volcanoes have laid on it
   std::vector<float> elevation_m;
   std::vector<float> age_myr;               ///< of oceanic crust, since it left its ridge
   std::vector<float> orogeny_age_myr;       ///< of continental crust, since it was last folded
@@ -50,7 +50,12 @@ struct PlatePair {
 /// A plume of the mantle, below the plates and at rest.
 struct SpherePlume {
   Vector3 place;              ///< unit vector
-  double growth_mm_yr = 0.0;  ///< of volcanoes on the sea floor above it
+  double growth_mm_yr = 0.0;  ///< of a mound on sea floor at rest above it: sets its output
+  std::int64_t number = 0;    ///< by which its volcanoes are drawn
+  // The volcano that it feeds.
+  std::int64_t volcanoes = 0;  ///< how many there have been
+  Vector3 volcano{};           ///< unit vector, or zero before the first
+  double volcano_km3 = 0.0;    ///< what it has brought forth
 };
 
 /// All that a run of the sphere model needs to go on.

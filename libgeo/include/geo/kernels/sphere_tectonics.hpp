@@ -39,17 +39,25 @@ struct SphereSettings {
   double accretion_top_km = -3.0;     ///< up to which a trench's sediment piles
   double accretion_width_km = 100.0;  ///< of the wedge
   double margin_km = 120.0;           ///< width of stretched crust where a continent breaks
-  double margin_source_km = 400.0;    ///< from which inland it flows there
-  double margin_thinning = 0.12;      ///< most that the inland thins for it
+  double margin_source_km = 500.0;    ///< from which inland it flows there
+  double margin_thinning = 0.18;      ///< most that the inland thins for it, at the break
   double rift_per_myr = 0.004;        ///< lambda_0
   double rift_smallest = 0.5;         ///< smaller plates, in mean areas, do not rift
   double rift_speed_mm_yr = 30.0;     ///< at which fragments part
   double rift_warp_km = 400.0;        ///< of their borders
+  double founder_per_myr = 0.01;      ///< rate at which 1000 km of old passive margin founder
+  double founder_age_myr = 120.0;     ///< from which floor at a passive margin is old
+  double founder_speed_mm_yr = 50.0;  ///< at which floor that founders goes below its continent
+  double coast_warp_km = 120.0;       ///< of crust that events change
   double mean_area_km2 = 1.27e7;      ///< A_0
   double smallest_piece_km2 = 5e5;    ///< detached pieces below join a neighbour
-  double plume_mm_yr = 0.0;           ///< growth of volcanoes above the first plumes
-  double plume_km = 60.0;             ///< over which it falls to a half
-  double plume_top_km = 2.0;          ///< height that volcanoes of the sea floor reach
+  double plume_mm_yr = 0.0;           ///< output of the first plumes, as growth of one mound
+  double plume_km = 60.0;             ///< over which that would fall to a half
+  double volcano_km = 30.0;           ///< over which the growth of one volcano does
+  double volcano_spacing_km = 100.0;  ///< mean way of a plate from one volcano to the next
+  double island_wear_myr = 6.0;       ///< in which ocean floor above the sea wears down to 1/e
+  double swell_decay_myr = 30.0;  ///< the same of what lifted floor, with floor_by_age; 0: never
+  double plume_top_km = 2.0;      ///< height that volcanoes of the sea floor reach
   // Rules of Driftworld in place of the paper's.
   bool rank_by_score = false;  ///< whole plates stay up by score(), not continents and young floor
   bool merge_plates = false;   ///< plates whose continents touch become one
@@ -69,7 +77,7 @@ struct SphereBudget {
   double time_myr = 0.0;
   int plates = 0;
   bool resampled = false;
-  int collisions = 0, rifts = 0;
+  int collisions = 0, rifts = 0, founderings = 0;
   double area_error = 0.0;        ///< sum of the plates' areas over the sphere's, less 1
   double created_km2 = 0.0;       ///< new ocean floor
   double consumed_km2 = 0.0;      ///< ocean floor that had gone below another plate
@@ -87,15 +95,16 @@ struct SphereBudget {
   double stretched_km2 = 0.0;   ///< margins that broken continents grew
   double swallowed_km3 = 0.0;   ///< taken by collisions from below and given back as mountains
   double changed_km3 = 0.0;     ///< made or taken by change_crust
+  double erupted_km3 = 0.0;     ///< that plumes laid on ocean floor
   double lost_km3 = 0.0;        ///< gone below oceanic crust or beyond the highest summit
   double resampling_km3 = 0.0;  ///< what interpolation added or took
 };
 
 /// A happening worth telling.
 struct SphereEvent {
-  enum class Kind { collision, rift } kind;
+  enum class Kind { collision, rift, foundering } kind;
   double time_myr;
-  int first, second;  ///< plates: terrane's and collided one, or the plate that rifted and -1
+  int first, second;  ///< plates: terrane's and collided one, or the plate that broke and -1
   Vector3 place;      ///< centroid, unit vector
   double area_km2;    ///< of the terrane or plate
 };
@@ -142,11 +151,11 @@ class SphereTectonics {
   void set_motion(int plate, const Vector3& axis, double speed_rad_myr);
   /// Holds all plates as they move now.
   void hold_motions();
-  /// The crust within a circle, whatever its plates, becomes continental or oceanic. Returns the
-  /// area that changed, km2.
-  double change_crust(const Vector3& place, double radius_km, bool continental);
-  /// The same of all places (unit vectors) of which something holds.
-  double change_crust(const std::function<bool(const Vector3&)>& holds, bool continental);
+  /// The crust at all places (unit vectors) of which something holds becomes continental or
+  /// oceanic, whatever its plates. Places are asked for as far as `warp_km` beside where they are,
+  /// so that coasts bend. Returns the area that changed, km2.
+  double change_crust(const std::function<bool(const Vector3&)>& holds, bool continental,
+                      double warp_km = 0.0);
   /// Torques on a plate about the planet's centre, in the frame of the planet.
   struct Torques {
     Matrix3 drag_n_m_s{};   ///< (eta / h) R^4 int f (1 - r r^T) dA, times rotation in rad/s
@@ -204,6 +213,12 @@ class SphereTectonics {
   void add_uplifts(const FrontUplift& uplift);
   void raise();
   void erupt();
+  struct Eruption {
+    Vector3 place;
+    double volume_km3;
+  };
+  [[nodiscard]] std::vector<Eruption> eruptions(SpherePlume& plume, const Vector3& rotation) const;
+  void grow_volcano(int plate, const Vector3& place, double volume_km3);
   void run_rivers();
   void pull_slabs();
   void balance_forces();
@@ -214,9 +229,10 @@ class SphereTectonics {
   void rift_by_chance();
   [[nodiscard]] int largest_plate() const;
   void part(int plate, std::span<const std::int8_t> fragment, std::span<const Vector3> away,
-            double speed_mm_yr);
-  template <class Within>
-  double change_samples(Within&& within, bool continental);
+            double speed_mm_yr, SphereEvent::Kind kind);
+  [[nodiscard]] std::vector<std::int32_t> old_margins() const;
+  void founder_by_chance();
+  void founder(std::int32_t start);
   [[nodiscard]] Vector3 net_rotation() const;
   void fill_gaps(SphereCrust& now, std::vector<std::int16_t>& owner);
   void stretch_margins(std::span<const std::int32_t> gaps, std::span<const std::int32_t> nearest,
@@ -233,7 +249,7 @@ class SphereTectonics {
   SphereSettings settings_;
   SphereState state_;
   std::uint64_t seed_;
-  Noise warp_;
+  Noise warp_, coasts_;
   SphereBudget budget_;
   bool has_begun_ = false;  // the next step
   std::vector<SphereEvent> events_;

@@ -30,15 +30,29 @@ void SphereTectonics::hold_motions() {
   state_.kept_rotation_rad_myr = {};
 }
 
-template <class Within>
-double SphereTectonics::change_samples(Within&& within, bool continental) {
+double SphereTectonics::change_crust(const std::function<bool(const Vector3&)>& holds,
+                                     bool continental, double warp_km) {
   // Low land, as thick as it takes to float there; floor of the age of its surroundings.
   constexpr float kLand_m = 300.0F, kThick_m = 36000.0F;
+  // Bays eight times as long as they are deep at the most, and what lies in them.
+  constexpr double kWavelength = 8.0, kMost = 2.2;
+  constexpr int kOctaves = 6;
+  const auto warped = [&](const Vector3& at) {
+    if (warp_km <= 0.0) return at;
+    Vector3 out = at;
+    for (int c = 0; c < 3; ++c) {
+      const Vector3 shifted{at[0] + 3.1 * c, at[1] - 1.7 * c, at[2] + 0.9 * c};
+      out[c] += kMost * warp_km / settings_.radius_km *
+                coasts_.fbm(shifted, settings_.radius_km / (kWavelength * warp_km), kOctaves);
+    }
+    return normalised(out);
+  };
   SphereCrust& crust = state_.crust;
   double changed = 0.0, thickened_m = 0.0;
   for (std::int32_t i = 0; i < crust.size(); ++i) {
     const std::int16_t p = crust.plate[i];
-    if (p < 0 || (crust.continental[i] != 0) == continental || !within(i, p)) continue;
+    if (p < 0 || (crust.continental[i] != 0) == continental) continue;
+    if (!holds(warped(times(frame_[p], mesh_->samples().position(i))))) continue;
     changed += sample_km2();
     thickened_m += continental ? kThick_m : -crust.thickness_m[i];
     crust.continental[i] = continental ? 1 : 0;
@@ -53,26 +67,6 @@ double SphereTectonics::change_samples(Within&& within, bool continental) {
   budget_.changed_km3 += 1e-3 * sample_km2() * thickened_m;
   repartition();
   return changed;
-}
-
-double SphereTectonics::change_crust(const Vector3& place, double radius_km, bool continental) {
-  const double lowest = std::cos(std::min(radius_km / settings_.radius_km, 3.14159));
-  std::vector<Vector3> middle;
-  for (const Matrix3& frame : frame_) middle.push_back(back(frame, place));
-  return change_samples(
-      [&](std::int32_t i, int plate) {
-        return dot(mesh_->samples().position(i), middle[plate]) >= lowest;
-      },
-      continental);
-}
-
-double SphereTectonics::change_crust(const std::function<bool(const Vector3&)>& holds,
-                                     bool continental) {
-  return change_samples(
-      [&](std::int32_t i, int plate) {
-        return holds(times(frame_[plate], mesh_->samples().position(i)));
-      },
-      continental);
 }
 
 std::vector<double> SphereTectonics::plate_areas_km2() const {

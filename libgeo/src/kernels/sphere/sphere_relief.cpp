@@ -98,6 +98,10 @@ void SphereTectonics::raise() {
   const TectonicConstants& law = s.law;
   SphereCrust& crust = state_.crust;
   const auto step_myr = static_cast<float>(law.step_myr);
+  const auto share_gone = [&](double time_myr) {
+    return time_myr > 0.0 ? -std::expm1(-law.step_myr / time_myr) : 0.0;
+  };
+  const double decayed = share_gone(s.swell_decay_myr), worn = share_gone(s.island_wear_myr);
   const FrontUplift uplift(*this);
   if (s.add_uplifts) add_uplifts(uplift);
   enum { kRaised, kEroded, kEmerged, kEmergedArea, kAccreted, kSums };
@@ -110,13 +114,14 @@ void SphereTectonics::raise() {
     for (std::int32_t i = block * kBlock; i < std::min(n, (block + 1) * kBlock); ++i) {
       if (crust.plate[i] < 0) continue;
       double z_km = 1e-3 * crust.elevation_m[i], raised_km = 0.0;
-      bool wedge = false;
+      bool wedge = false, is_arc = false;
       if (const std::int32_t k = front_of_[i]; k >= 0) {
         const auto work = uplift.at(i, k);
         const double rise_km =
             s.add_uplifts ? static_cast<double>(uplift_km_[i]) : work.rate_mm_yr * law.step_myr;
         raised_km = std::max(0.0, std::min(rise_km, law.summit_km - z_km));
         wedge = work.d_km < s.accretion_width_km;
+        is_arc = work.f > kFolding && raised_km > 0.0;
         if (work.f > kFolding) {
           Vector3 fold{crust.fold[i][0], crust.fold[i][1], crust.fold[i][2]};
           fold = turned_fold(fold, work.speed, s.fold_per_km, law.step_myr);
@@ -139,9 +144,22 @@ void SphereTectonics::raise() {
         crust.orogeny_age_myr[i] += step_myr;
       } else {
         const double age = crust.age_myr[i];
-        const double sunk_km = s.floor_by_age
-                                   ? 1e-3 * (ocean_depth_m(age) - ocean_depth_m(age + law.step_myr))
-                                   : damping_km(z_km, law);
+        double sunk_km = 0.0;
+        if (s.floor_by_age) {
+          // What volcanoes have laid on floor goes down with it; what has lifted it from below
+          // decays.
+          const double plain_km =
+              1e-3 * (-ocean_depth_m(age) + crust.thickness_m[i]) - s.oceanic_km;
+          sunk_km = 1e-3 * (ocean_depth_m(age) - ocean_depth_m(age + law.step_myr)) -
+                    (is_arc ? 0.0 : (z_km - plain_km) * decayed);
+        } else {
+          sunk_km = damping_km(z_km, law);
+        }
+        if (z_km > 0.0) {
+          const double worn_km = z_km * worn;
+          sunk_km -= worn_km;
+          crust.thickness_m[i] -= static_cast<float>(1e3 * worn_km);
+        }
         z_km += raised_km + sunk_km;
         if ((wedge || s.fill_abyss) && z_km < s.accretion_top_km) {
           const double piled_km = std::min(s.accretion_top_km, z_km + accretion_km(law));

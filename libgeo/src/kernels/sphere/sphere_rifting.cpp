@@ -79,7 +79,8 @@ void SphereTectonics::rift(int plate, std::span<const Vector3> places, double sp
   // Away from the middle of the plate that was.
   std::vector<Vector3> away;
   for (const Vector3& place : places) away.push_back(normalised(cross(centre, place)));
-  part(plate, fragment, away, speed_mm_yr);
+  part(plate, fragment, away, speed_mm_yr, SphereEvent::Kind::rift);
+  ++budget_.rifts;
 }
 
 void SphereTectonics::rift_along(int plate, const GreatCircleLine& line, int fragments,
@@ -100,13 +101,15 @@ void SphereTectonics::rift_along(int plate, const GreatCircleLine& line, int fra
   for (const Vector3& of : sum) {
     away.push_back(normalised(cross(line.middle(), times(frame_[plate], of))));
   }
-  part(plate, fragment, away, speed_mm_yr);
+  part(plate, fragment, away, speed_mm_yr, SphereEvent::Kind::rift);
+  ++budget_.rifts;
 }
 
 /// Fragments of a plate become plates, each turned about an axis on top of the old motion. One that
 /// has no samples comes to nothing.
 void SphereTectonics::part(int plate, std::span<const std::int8_t> fragment,
-                           std::span<const Vector3> away, double speed_mm_yr) {
+                           std::span<const Vector3> away, double speed_mm_yr,
+                           SphereEvent::Kind kind) {
   auto& of = state_.crust.plate;
   const auto& cap = partition_.cap(plate);
   const Vector3 centre = times(frame_[plate], cap.centre);
@@ -130,8 +133,7 @@ void SphereTectonics::part(int plate, std::span<const std::int8_t> fragment,
       if (fragment[i] == static_cast<std::int8_t>(k)) of[i] = static_cast<std::int16_t>(number);
     }
   }
-  ++budget_.rifts;
-  events_.push_back({SphereEvent::Kind::rift, state_.time_myr, plate, -1, centre, area_km2});
+  events_.push_back({kind, state_.time_myr, plate, -1, centre, area_km2});
   repartition();
 }
 

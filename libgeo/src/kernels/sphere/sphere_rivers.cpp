@@ -131,6 +131,7 @@ void SphereTectonics::run_rivers() {
   law.dt_yr = 1e6 * settings_.law.step_myr;
   law.rebound = settings_.rebound;
   std::vector<float> rock_m(crust.plate.size());
+  const std::vector<float> before_m = crust.elevation_m;
   const SurfaceRivers rivers = route_rivers(surface.graph(), crust.elevation_m);
   geo::run_rivers(surface.graph(), rivers, law, crust.continental, crust.elevation_m, rock_m);
   const auto volume_km3 = [&](auto&& counts) {
@@ -145,7 +146,9 @@ void SphereTectonics::run_rivers() {
       volume_km3([&](std::int32_t i) { return rock_m[i] > 0.0F && crust.continental[i] == 0; });
 #pragma omp parallel for schedule(static)
   for (std::int32_t i = 0; i < crust.size(); ++i) {
-    if (crust.continental[i] != 0) crust.thickness_m[i] += rock_m[i];
+    // Floor is as much thicker as it stands higher: the rest of what it bears has sunk into it.
+    crust.thickness_m[i] +=
+        crust.continental[i] != 0 ? rock_m[i] : crust.elevation_m[i] - before_m[i];
   }
 }
 

@@ -189,6 +189,14 @@ class Beginning {
           static_cast<float>(ocean_age_of_depth_myr(-elevation_m, start_.oldest_floor_myr));
     }
     if (start_.real_floor) date_real_floor();
+    // What stands higher or lower than floor of its age goes on doing so.
+    if (!settings_.floor_by_age) return;
+#pragma omp parallel for schedule(static)
+    for (std::int32_t i = 0; i < mesh_.size(); ++i) {
+      if (crust.continental[i] != 0) continue;
+      crust.thickness_m[i] +=
+          crust.elevation_m[i] + static_cast<float>(ocean_depth_m(crust.age_myr[i]));
+    }
   }
 
   /// Ages by what is known of them, else by the depth of plain floor, away from what continents

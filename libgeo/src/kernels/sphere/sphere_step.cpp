@@ -45,6 +45,7 @@ SphereTectonics::SphereTectonics(const SphereMesh& mesh, const SphereSettings& s
       state_(std::move(state)),
       seed_(seed),
       warp_(seed, "plates.rift_warp"),
+      coasts_(seed, "plates.changed_coasts"),
       partition_(mesh) {
   if (state_.crust.size() != mesh.size())
     throw Bug("sphere model: the crust does not fit the mesh");
@@ -227,6 +228,7 @@ void SphereTectonics::advance() {
   budget_.time_myr = state_.time_myr;
   collide();
   rift_by_chance();
+  founder_by_chance();
   if (is_due()) {
     resample();
   } else {

@@ -61,6 +61,7 @@ class Books {
     resampling_ += step.resampling_km3;
     collisions_ += step.collisions;
     rifts_ += step.rifts;
+    founderings_ += step.founderings;
     if (first_km3_ < 0.0) first_km3_ = step.continental_km3 - change(step);
     last_ = step;
   }
@@ -70,7 +71,7 @@ class Books {
             "created_km2",   "consumed_km2",    "buried_km2", "emerged_km2",    "stretched_km2",
             "accreted_km3",  "continental_km3", "raised_km3", "eroded_km3",     "emerged_km3",
             "swallowed_km3", "changed_km3",     "lost_km3",   "resampling_km3", "deposited_km3",
-            "sea_floor_km3"};
+            "sea_floor_km3", "erupted_km3",     "founderings"};
   }
   static std::vector<double> row(const SphereTectonics& model) {
     const SphereBudget& b = model.budget();
@@ -94,7 +95,9 @@ class Books {
                             b.lost_km3,
                             b.resampling_km3,
                             b.deposited_km3,
-                            b.sea_floor_km3};
+                            b.sea_floor_km3,
+                            b.erupted_km3,
+                            static_cast<double>(b.founderings)};
     for (const double area_km2 : model.plate_areas_km2()) {
       row.push_back(area_km2 > 0.0 ? area_km2 : std::numeric_limits<double>::quiet_NaN());
     }
@@ -109,6 +112,7 @@ class Books {
     budget["crust_emerged_km2"] = emerged_;
     budget["collisions"] = collisions_;
     budget["rifts"] = rifts_;
+    budget["founderings"] = founderings_;
     budget["continental_start_km3"] = first_km3_;
     budget["continental_end_km3"] = last_.continental_km3;
     budget["continental_raised_km3"] = raised_;
@@ -135,7 +139,7 @@ class Books {
   double raised_ = 0.0, eroded_ = 0.0, emerged_km3_ = 0.0, changed_ = 0.0, lost_ = 0.0;
   double resampling_ = 0.0;
   double first_km3_ = -1.0;
-  int collisions_ = 0, rifts_ = 0;
+  int collisions_ = 0, rifts_ = 0, founderings_ = 0;
   SphereBudget last_;
 };
 
@@ -164,6 +168,18 @@ SphereState beginning(const PlatesParameters& parameters, const SphereMesh& mesh
   return state;
 }
 
+std::string_view word_for(SphereEvent::Kind kind) {
+  switch (kind) {
+    case SphereEvent::Kind::collision:
+      return "continental-collision";
+    case SphereEvent::Kind::rift:
+      return "plate-rifting";
+    case SphereEvent::Kind::foundering:
+      return "subduction-initiation";
+  }
+  return "";
+}
+
 /// What happened of itself and is large enough to be told, after the events that were asked for.
 void tell(const SphereTectonics& model, const Grid& grid, Context& context) {
   constexpr double kTold_km2 = 2e5;
@@ -171,10 +187,9 @@ void tell(const SphereTectonics& model, const Grid& grid, Context& context) {
   for (const SphereEvent& event : model.events()) {
     if (event.area_km2 < kTold_km2) continue;
     const Vector3 at = grid.to_axis(event.place);
-    const bool collision = event.kind == SphereEvent::Kind::collision;
     context.event_records.push_back(
         {.number = ++number,
-         .kind = collision ? "continental-collision" : "plate-rifting",
+         .kind = std::string(word_for(event.kind)),
          .name = "",
          .figures = {{"time_myr", event.time_myr},
                      {"latitude_deg", std::asin(std::clamp(at[2], -1.0, 1.0)) * kDegrees},

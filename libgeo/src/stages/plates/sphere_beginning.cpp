@@ -151,7 +151,9 @@ std::vector<SpherePlume> first_plumes(const PlatesParameters& parameters, std::u
   const RandomStream random(seed, "plates.plumes");
   std::vector<SpherePlume> plumes(static_cast<std::size_t>(std::lround(parameters.plumes)));
   for (std::size_t k = 0; k < plumes.size(); ++k) {
-    plumes[k] = {random.direction(k), parameters.sphere.plume_mm_yr};
+    plumes[k] = {.place = random.direction(k),
+                 .growth_mm_yr = parameters.sphere.plume_mm_yr,
+                 .number = static_cast<std::int64_t>(k)};
   }
   return plumes;
 }

@@ -26,7 +26,8 @@ Directions directions(const std::vector<float>& values) {
   throw InputError("the frame to go on from is damaged: its arrays do not fit");
 }
 
-constexpr std::size_t kNumbers = 9;  // of a plate: turn, axis, speed, birth
+constexpr std::size_t kNumbers = 9;         // of a plate: turn, axis, speed, birth
+constexpr std::size_t kVolcanoNumbers = 6;  // of a plume: number, volcanoes, place, volume
 
 }  // namespace
 
@@ -75,6 +76,13 @@ Checkpoint checkpoint_of(const SphereState& state) {
                   {plume.place[0], plume.place[1], plume.place[2], plume.growth_mm_yr});
   }
   to["plumes"] = plumes;
+  std::vector<double> volcanoes;
+  for (const SpherePlume& plume : state.plumes) {
+    volcanoes.insert(volcanoes.end(),
+                     {static_cast<double>(plume.number), static_cast<double>(plume.volcanoes),
+                      plume.volcano[0], plume.volcano[1], plume.volcano[2], plume.volcano_km3});
+  }
+  to["volcanoes"] = volcanoes;
   const Vector3& kept = state.kept_rotation_rad_myr;
   to["kept_rotation_rad_myr"] = std::vector<double>{kept[0], kept[1], kept[2]};
   to["clock"] =
@@ -144,7 +152,21 @@ SphereState state_of(const Checkpoint& from) {
     const auto& plumes = from.get<double>("plumes");
     if (plumes.size() % 4 != 0) refuse();
     for (std::size_t k = 0; k < plumes.size(); k += 4) {
-      state.plumes.push_back({{plumes[k], plumes[k + 1], plumes[k + 2]}, plumes[k + 3]});
+      state.plumes.push_back({.place = {plumes[k], plumes[k + 1], plumes[k + 2]},
+                              .growth_mm_yr = plumes[k + 3],
+                              .number = static_cast<std::int64_t>(k / 4)});
+    }
+  }
+  if (from.arrays.contains("volcanoes")) {
+    const auto& volcanoes = from.get<double>("volcanoes");
+    if (volcanoes.size() != kVolcanoNumbers * state.plumes.size()) refuse();
+    for (std::size_t k = 0; k < state.plumes.size(); ++k) {
+      const double* at = volcanoes.data() + kVolcanoNumbers * k;
+      SpherePlume& plume = state.plumes[k];
+      plume.number = static_cast<std::int64_t>(at[0]);
+      plume.volcanoes = static_cast<std::int64_t>(at[1]);
+      plume.volcano = {at[2], at[3], at[4]};
+      plume.volcano_km3 = at[5];
     }
   }
   state.time_myr = clock[0];

@@ -67,7 +67,9 @@ class Stroke {
     const Vector3 at = place_of(change.latitude_deg, change.longitude_deg);
     auto& plumes = model_.state().plumes;
     if (change.active) {
-      plumes.push_back({at, change.growth_mm_yr});
+      std::int64_t number = 0;
+      for (const SpherePlume& plume : plumes) number = std::max(number, plume.number + 1);
+      plumes.push_back({.place = at, .growth_mm_yr = change.growth_mm_yr, .number = number});
     } else {
       const auto nearest = std::max_element(plumes.begin(), plumes.end(),
                                             [&](const SpherePlume& a, const SpherePlume& b) {
@@ -92,14 +94,20 @@ class Stroke {
     return true;
   }
   [[nodiscard]] double area_changed_km2(const CrustChange& change) const {
+    const double warp_km = model_.settings().coast_warp_km;
     if (change.path.empty()) {
-      return model_.change_crust(place_of(change.latitude_deg, change.longitude_deg),
-                                 change.radius_km, change.continental);
+      // A small circle keeps its shape and its area as well as a large one.
+      constexpr double kMost = 0.2;
+      const Vector3 middle = place_of(change.latitude_deg, change.longitude_deg);
+      const double lowest =
+          std::cos(std::min(change.radius_km / model_.settings().radius_km, std::numbers::pi));
+      return model_.change_crust([&](const Vector3& place) { return dot(place, middle) >= lowest; },
+                                 change.continental, std::min(warp_km, kMost * change.radius_km));
     }
     const RegionOutline region(std::span(&change.path, 1));
     return model_.change_crust(
         [&](const Vector3& place) { return region.holds(position_of(grid_, place)); },
-        change.continental);
+        change.continental, warp_km);
   }
   [[nodiscard]] Vector3 place_of(double latitude_deg, double longitude_deg) const {
     return place_on(grid_, {latitude_deg, longitude_deg});
