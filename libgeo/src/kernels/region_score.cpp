@@ -159,7 +159,8 @@ Index best_region(const Grid& planet, std::span<const float> elevation_m,
     for (int i = 0; i < planet.nx(); i += std::max(1, count / 8)) {
       const Index cell = planet.cell(i, j);
       const RegionFigures figures = figures_of(sums, i - reach.columns, count);
-      const Best here{figures.land_fraction > 0.0,
+      const bool is_small = reach.columns == 1 || reach.rows == 1;
+      const Best here{is_small ? elevation_m[cell] >= 0.0F : figures.land_fraction > 0.0,
                       figures.score(region_noise(planet, cell, width_m, seed)), cell};
       if (best_of_row[at] < here) best_of_row[at] = here;
     }

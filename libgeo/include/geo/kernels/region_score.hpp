@@ -27,10 +27,10 @@ RegionFigures region_figures(const Grid& planet, std::span<const float> elevatio
                              double width_m, double height_m);
 
 /// The best window's centre cell, of those that have land where any has. Windows smaller than three
-/// cells a side are judged with the cells around them. Candidates lie an eighth of a window apart; windows that reach
-/// into the polar tenth of the rows at either end are left out; if none is left, the middle row
-/// alone is searched. Noise in 0..1 is a function of seed and position. Cost: linear in cells.
-/// Throws InputError unless `planet` is a sphere.
+/// cells a side are judged with the cells around them. Candidates lie an eighth of a window apart;
+/// windows that reach into the polar tenth of the rows at either end are left out; if none is left,
+/// the middle row alone is searched. Noise in 0..1 is a function of seed and position. Cost: linear
+/// in cells. Throws InputError unless `planet` is a sphere.
 Index best_region(const Grid& planet, std::span<const float> elevation_m,
                   std::span<const std::int8_t> boundary_type, double width_m, double height_m,
                   std::uint64_t seed);
