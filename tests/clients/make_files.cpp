@@ -14,15 +14,18 @@ namespace {
 
 using namespace geo;
 
-/// Smooth values, with gaps in every third field.
+/// Smooth values within the bounds of their field, with gaps in every third field.
 template <class T>
 Values smooth_values(const FieldSpec& spec, const Grid& grid, bool gaps) {
   std::vector<T> values(grid.size());
+  const double low = std::isfinite(spec.least) ? spec.least : -1000.0;
+  const double high = std::isfinite(spec.most) ? spec.most : low + 2000.0;
   for (Index cell = 0; cell < grid.size(); ++cell) {
     const int i = grid.column(cell), j = grid.row(cell);
     const double wave = std::sin(0.31 * i) * std::cos(0.17 * j);
     if constexpr (std::is_floating_point_v<T>) {
-      values[cell] = static_cast<T>(1000.0 * wave + j);
+      const double share = 0.45 * (1.0 + wave) + 0.1 * j / grid.ny();
+      values[cell] = static_cast<T>(low + share * (high - low));
       if (gaps && wave > 0.9) values[cell] = std::numeric_limits<T>::quiet_NaN();
     } else {
       const double most = spec.flags.empty() ? 100.0 : static_cast<double>(spec.flags.size() - 1);
