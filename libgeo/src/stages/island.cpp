@@ -15,6 +15,7 @@
 #include "geo/stages/climate.hpp"
 #include "geo/stages/erosion.hpp"
 #include "geo/stages/hydrology.hpp"
+#include "guided_by_folds.hpp"
 #include "island_climate.hpp"
 #include "island_relief.hpp"
 
@@ -69,16 +70,6 @@ void add_endorheic_bottoms(const PlanetCells& cells, std::span<const Index> rece
   for (const Index bottom : lowest) {
     if (bottom != kNoCell) outlets[bottom] = 1;
   }
-}
-
-/// What exemplars are chosen and turned by.
-StageInfo guided_by_folds(StageInfo info) {
-  for (const FieldSpec* spec : std::initializer_list<const FieldSpec*>{
-           &field::orogeny_type, &field::orogeny_age, &field::fold_direction_east,
-           &field::fold_direction_north}) {
-    info.optional.push_back(spec);
-  }
-  return info;
 }
 
 class IslandStage final : public Stage {

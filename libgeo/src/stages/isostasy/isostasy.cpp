@@ -1,5 +1,6 @@
 #include "geo/stages/isostasy.hpp"
 
+#include "../guided_by_folds.hpp"
 #include "blueprint_crust.hpp"
 #include "geo/core/error.hpp"
 #include "geo/stages/isostasy/floating_crust.hpp"
@@ -119,16 +120,6 @@ const StageInfo& stage_info() {
        &field::lithospheric_weakness, &field::continental_fraction, &field::crust_thickness,
        &field::crust_density, &field::rock_type, &field::erodibility, &field::elevation}};
   return kInfo;
-}
-
-/// What exemplars are chosen and turned by.
-StageInfo guided_by_folds(StageInfo info) {
-  for (const FieldSpec* spec : std::initializer_list<const FieldSpec*>{
-           &field::orogeny_type, &field::orogeny_age, &field::fold_direction_east,
-           &field::fold_direction_north}) {
-    info.optional.push_back(spec);
-  }
-  return info;
 }
 
 class IsostasyStage final : public Stage {
