@@ -1,6 +1,5 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
-#include <malloc.h>
 
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
@@ -21,6 +20,7 @@
 #include "geo/io/config.hpp"
 #include "geo/io/manifest.hpp"
 #include "log.hpp"
+#include "memory.hpp"
 #include "signals.hpp"
 
 namespace {
@@ -34,14 +34,6 @@ std::string version_text() {
   }
   text += fmt::format("CLI11 {}", CLI11_VERSION);
   return text;
-}
-
-/// Rasters come and go by the hundred: what one leaves is kept for the next instead of being given
-/// back to the system, which would have to clear it again. Larger blocks still go back.
-void keep_freed_memory() {
-  constexpr int kMegabyte = 1 << 20;
-  mallopt(M_MMAP_THRESHOLD, 32 * kMegabyte);
-  mallopt(M_TRIM_THRESHOLD, 256 * kMegabyte);
 }
 
 /// Words that could have been meant where an unknown one stands.
@@ -131,7 +123,7 @@ void run_program(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  keep_freed_memory();
+  terrane::keep_freed_memory();
   terrane::keep_standard_streams();
   terrane::prepare_signals();
   try {

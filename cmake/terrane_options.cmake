@@ -1,9 +1,11 @@
 # Compiler settings shared by everything that is ours.
 # -ffp-contract=off: the same source gives the same bits whatever the optimiser would like to fuse.
 # -fno-math-errno: lets square roots become one instruction; results stay the same.
+# -fno-trapping-math: loops may choose between values, several at once; nobody looks at the flags that
+# the value not chosen raises, and results stay the same.
 add_library(terrane_options INTERFACE)
 target_compile_features(terrane_options INTERFACE cxx_std_20)
-target_compile_options(terrane_options INTERFACE -Wall -Wextra -ffp-contract=off -fno-math-errno)
+target_compile_options(terrane_options INTERFACE -Wall -Wextra -ffp-contract=off -fno-math-errno -fno-trapping-math)
 if(TERRANE_NATIVE)
   target_compile_options(terrane_options INTERFACE -march=native)
 elseif(CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")

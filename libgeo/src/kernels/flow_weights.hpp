@@ -42,9 +42,15 @@ class FlowWeights {
   [[nodiscard]] Weights weights(int row, Index cell, const Neighbours& cells,
                                 std::uint8_t receivers) const;
 
+  /// Receivers and weights of the cells from here eastwards that are best worked out together;
+  /// weights only where there are several receivers. Returns how many cells these are.
+  int share(int column, int row, std::uint8_t* receivers, Weights* weights) const;
+
  private:
   [[nodiscard]] Weights slope_weights(int row, Index cell, const Neighbours& cells,
                                       std::uint8_t receivers) const;
+  /// Times the length of contour towards each neighbour.
+  void face_contours(int row, Weights& weight) const;
   [[nodiscard]] Weights facet_weights(int row, Index cell, const Neighbours& cells) const;
 
   const Grid& grid_;

@@ -41,12 +41,9 @@ Shares shares_of_all(const Grid& grid, const FlowWeights& flow) {
                 std::make_unique_for_overwrite<Weights[]>(grid.size())};
 #pragma omp parallel for schedule(dynamic, 16) if (grid.size() > kWorthThreads)
   for (int j = 0; j < grid.ny(); ++j) {
-    for (int i = 0; i < grid.nx(); ++i) {
-      const Index cell = grid.cell(i, j);
-      const std::uint8_t to = flow.receivers(i, j);
-      shares.receivers[cell] = to;
-      if ((to & (to - 1)) == 0) continue;
-      shares.weights[cell] = flow.weights(j, cell, flow.neighbours(i, j), to);
+    const Index begin = grid.cell(0, j);
+    for (int i = 0; i < grid.nx();) {
+      i += flow.share(i, j, &shares.receivers[begin + i], &shares.weights[begin + i]);
     }
   }
   return shares;
@@ -57,17 +54,25 @@ Shares shares_of_all(const Grid& grid, const FlowWeights& flow) {
 std::vector<std::uint8_t> count_donors(const Grid& grid, const FlowWeights& weights,
                                        const std::vector<std::uint8_t>& receivers) {
   std::vector<std::uint8_t> donors(grid.size());
+  const std::array<Index, kDirections> offset = grid.offsets();
 #pragma omp parallel for schedule(static) if (grid.size() > kWorthThreads)
   for (int j = 0; j < grid.ny(); ++j) {
     std::array<int, kDirections> back{};
     for (int k = 0; k < kDirections; ++k) back[k] = grid.back_direction(j, k);
-    for (int i = 0; i < grid.nx(); ++i) {
+    std::uint8_t* const row = donors.data() + grid.cell(0, j);
+    const auto count_at = [&](int i) {
       const Neighbours cells = weights.neighbours(i, j);
-      int count = 0;
       for (int k = 0; k < kDirections; ++k) {
-        if (cells[k] != kNoCell) count += receivers[cells[k]] >> back[k] & 1;
+        if (cells[k] != kNoCell) row[i] += receivers[cells[k]] >> back[k] & 1;
       }
-      donors[grid.cell(i, j)] = static_cast<std::uint8_t>(count);
+    };
+    int begin = 0, end = grid.nx();
+    while (begin < end && !grid.is_interior(begin, j)) count_at(begin++);
+    while (end > begin && !grid.is_interior(end - 1, j)) count_at(--end);
+    if (begin == end) continue;
+    for (int k = 0; k < kDirections; ++k) {
+      const std::uint8_t* const beside = receivers.data() + grid.cell(0, j) + offset[k];
+      for (int i = begin; i < end; ++i) row[i] += beside[i] >> back[k] & 1;
     }
   }
   return donors;
@@ -85,8 +90,16 @@ void accumulate_flow(const Grid& grid, std::span<const float> surface_m,
   std::vector<std::uint8_t> waiting = count_donors(grid, weights, receivers);
   constexpr std::uint8_t kDone = 255;
   std::vector<Index> ready;
+  const auto give = [&](Index next, double value) {
+    values[next] += value;
+    if (--waiting[next] == 0 && receivers[next] != 0) ready.push_back(next);
+  };
   Index visited = 0;
   for (Index source = 0; source < grid.size(); ++source) {
+    if (receivers[source] == 0) {  // a root keeps what it gets
+      ++visited;
+      continue;
+    }
     if (waiting[source] != 0) continue;
     ready.push_back(source);
     while (!ready.empty()) {
@@ -95,13 +108,10 @@ void accumulate_flow(const Grid& grid, std::span<const float> surface_m,
       waiting[cell] = kDone;
       ++visited;
       const std::uint8_t to = receivers[cell];
-      if (to == 0) continue;
       const int row = grid.row(cell);
       const Neighbours cells = weights.neighbours(cell - row * grid.nx(), row);
       if (std::has_single_bit(to)) {
-        const Index next = cells[std::countr_zero(to)];
-        values[next] += values[cell];
-        if (--waiting[next] == 0) ready.push_back(next);
+        give(cells[std::countr_zero(to)], values[cell]);
         continue;
       }
       const Weights& weight = shares.weights[cell];
@@ -110,9 +120,7 @@ void accumulate_flow(const Grid& grid, std::span<const float> surface_m,
       const double per_weight = values[cell] / sum;
       for (unsigned rest = to; rest != 0; rest &= rest - 1) {
         const int k = std::countr_zero(rest);
-        const Index next = cells[k];
-        values[next] += per_weight * weight[k];
-        if (--waiting[next] == 0) ready.push_back(next);
+        give(cells[k], per_weight * weight[k]);
       }
     }
   }

@@ -58,6 +58,7 @@ Overlay::Overlay(const Grid& fine, const Grid& coarse)
       column_edge_(even_edges(fine.nx(), coarse.nx())),
       row_edge_(even_edges(fine.ny(), coarse.ny())) {
   if (fine.topology() != coarse.topology()) throw Bug("overlay: topologies differ");
+  overlay_columns();
 }
 
 Overlay::Overlay(const Grid& fine, const Grid& coarse_sphere, std::span<const double> row_edge_deg,
@@ -70,26 +71,32 @@ Overlay::Overlay(const Grid& fine, const Grid& coarse_sphere, std::span<const do
   for (const double edge : column_edge_deg) {
     column_edge_.push_back((edge + 180.0) / 360.0 * coarse_.nx());
   }
+  overlay_columns();
+}
+
+void Overlay::overlay_columns() {
+  const int coarse_nx = coarse_.nx();
+  const bool wraps = coarse_.topology() != Topology::plane;
+  for (int i = 0; i < fine_.nx(); ++i) {
+    const double from = column_edge_[i], to = column_edge_[i + 1];
+    for (int column = static_cast<int>(std::floor(from)); column < to; ++column) {
+      if (!wraps && column >= coarse_nx) break;
+      column_overlaps_.push_back({wraps ? wrapped(column, coarse_nx) : column, i,
+                                  std::min(to, column + 1.0) - std::max(from, double(column))});
+    }
+  }
 }
 
 template <class Visit>
 void Overlay::for_overlaps(int coarse_row, Visit&& visit) const {
-  const int coarse_nx = coarse_.nx();
-  const bool wraps = coarse_.topology() != Topology::plane;
   const auto after = std::upper_bound(row_edge_.begin(), row_edge_.end(), double(coarse_row));
   int j = std::max(0, static_cast<int>(after - row_edge_.begin()) - 1);
   for (; j < fine_.ny() && row_edge_[j] < coarse_row + 1.0; ++j) {
     const double share =
         std::min(row_edge_[j + 1], coarse_row + 1.0) - std::max(row_edge_[j], double(coarse_row));
     if (share <= 0.0) continue;
-    for (int i = 0; i < fine_.nx(); ++i) {
-      const double from = column_edge_[i], to = column_edge_[i + 1];
-      for (int column = static_cast<int>(std::floor(from)); column < to; ++column) {
-        if (!wraps && column >= coarse_nx) break;
-        const double overlap =
-            share * (std::min(to, column + 1.0) - std::max(from, double(column)));
-        visit(wraps ? wrapped(column, coarse_nx) : column, i, j, overlap);
-      }
+    for (const ColumnOverlap& columns : column_overlaps_) {
+      visit(columns.coarse, columns.fine, j, share * columns.width);
     }
   }
 }

@@ -44,10 +44,17 @@ class Overlay {
   /// under a coarse row.
   template <class Visit>
   void for_overlaps(int coarse_row, Visit&& visit) const;
+  void overlay_columns();
 
+  /// What a coarse column has of a fine one, in widths of the coarse.
+  struct ColumnOverlap {
+    int coarse, fine;
+    double width;
+  };
   const Grid& fine_;
   const Grid& coarse_;
   std::vector<double> column_edge_, row_edge_;  ///< in coarse cells from the coarse corner
+  std::vector<ColumnOverlap> column_overlaps_;
 };
 
 /// Uniform cubic B-spline through an overlay: twice differentiable, never beyond the range of the
