@@ -165,8 +165,8 @@ DepressionHierarchy build_depression_hierarchy(const Grid& grid, std::span<const
   return hierarchy;
 }
 
-Routing route_water(const Grid& grid, std::span<const float> elevation_m,
-                    std::span<const std::uint8_t> outlets, bool want_filled) {
+Routing route_unordered(const Grid& grid, std::span<const float> elevation_m,
+                        std::span<const std::uint8_t> outlets, bool want_filled) {
   Spills spills(grid, elevation_m, outlets);
   Routing routing;
   auto& receiver = routing.graph.receiver;
@@ -179,7 +179,13 @@ Routing route_water(const Grid& grid, std::span<const float> elevation_m,
     routing.filled_m.resize(grid.size());
     spills.fill(elevation_m, routing.filled_m);
   }
-  routing.graph.order = downstream_order(receiver);
+  return routing;
+}
+
+Routing route_water(const Grid& grid, std::span<const float> elevation_m,
+                    std::span<const std::uint8_t> outlets, bool want_filled) {
+  Routing routing = route_unordered(grid, elevation_m, outlets, want_filled);
+  routing.graph.order = downstream_order(routing.graph.receiver);
   return routing;
 }
 

@@ -1,8 +1,13 @@
 #include "geo/kernels/multiple_flow.hpp"
 
+#include <omp.h>
+
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <exception>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -78,16 +83,11 @@ std::vector<std::uint8_t> count_donors(const Grid& grid, const FlowWeights& weig
   return donors;
 }
 
-}  // namespace
-
-void accumulate_flow(const Grid& grid, std::span<const float> surface_m,
-                     std::span<const Index> receiver, const FlowPartition& partition,
-                     std::span<double> values) {
-  check(grid, surface_m.size(), receiver.size(), values.size(), partition);
-  const FlowWeights weights(grid, surface_m, receiver, partition);
-  const Shares shares = shares_of_all(grid, weights);
+/// Gives all that cells hold to those below, each when its last donor has given. One thread's work:
+/// sums are the same whatever the threads.
+void walk_down(const Grid& grid, const FlowWeights& weights, const Shares& shares,
+               std::vector<std::uint8_t>& waiting, std::span<double> values) {
   const std::vector<std::uint8_t>& receivers = shares.receivers;
-  std::vector<std::uint8_t> waiting = count_donors(grid, weights, receivers);
   constexpr std::uint8_t kDone = 255;
   std::vector<Index> ready;
   const auto give = [&](Index next, double value) {
@@ -125,6 +125,44 @@ void accumulate_flow(const Grid& grid, std::span<const float> surface_m,
     }
   }
   if (visited != grid.size()) throw Bug("multiple flow has a cycle: a receiver climbs the surface");
+}
+
+/// Runs two pieces of work at once, on two threads if there are as many; what either throws is
+/// thrown when both are done.
+template <class First, class Second>
+void run_side_by_side(First&& first, Second&& second) {
+  std::array<std::exception_ptr, 2> failure;
+  const auto guarded = [&](int piece, auto&& work) {
+    try {
+      work();
+    } catch (...) {
+      failure[piece] = std::current_exception();
+    }
+  };
+#pragma omp parallel sections num_threads(std::min(2, omp_get_max_threads()))
+  {
+#pragma omp section
+    guarded(0, first);
+#pragma omp section
+    guarded(1, second);
+  }
+  for (const auto& thrown : failure) {
+    if (thrown) std::rethrow_exception(thrown);
+  }
+}
+
+}  // namespace
+
+void accumulate_flow(const Grid& grid, std::span<const float> surface_m,
+                     std::span<const Index> receiver, const FlowPartition& partition,
+                     std::span<double> values, const std::function<void()>& meanwhile) {
+  check(grid, surface_m.size(), receiver.size(), values.size(), partition);
+  const FlowWeights weights(grid, surface_m, receiver, partition);
+  const Shares shares = shares_of_all(grid, weights);
+  std::vector<std::uint8_t> waiting = count_donors(grid, weights, shares.receivers);
+  const auto walk = [&] { walk_down(grid, weights, shares, waiting, values); };
+  if (meanwhile) return run_side_by_side(walk, meanwhile);
+  walk();
 }
 
 void specific_catchment_area(const Grid& grid, std::span<const float> surface_m,

@@ -54,6 +54,9 @@ struct Routing {
 /// Cost: linear, but for a radix sort of the passes.
 Routing route_water(const Grid& grid, std::span<const float> elevation_m,
                     std::span<const std::uint8_t> outlets, bool want_filled = false);
+/// The same receivers, and filled elevations, with the order left to be made (downstream_order).
+Routing route_unordered(const Grid& grid, std::span<const float> elevation_m,
+                        std::span<const std::uint8_t> outlets, bool want_filled = true);
 
 /// Raises every cell to the level at which its water can reach an outlet (Barnes et al. 2014).
 void fill_depressions(const Grid& grid, std::span<const float> elevation_m,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 
 #include "geo/core/grid.hpp"
@@ -34,11 +35,12 @@ struct FlowPartition {
 ///
 /// Cells are visited when the last donor has given: linear, no sort. Weights are computed before
 /// that, by all threads; 2 bytes per cell of memory and a stack, and 32 where water parts. Results
-/// do not depend on the number of threads. Throws InputError if shapes do not fit or the exponent
-/// is not positive, Bug if a receiver climbs.
+/// do not depend on the number of threads. The walk from donor to receiver is one thread's work;
+/// another runs `meanwhile`, if given, beside it. Throws InputError if shapes do not fit or the
+/// exponent is not positive, Bug if a receiver climbs.
 void accumulate_flow(const Grid& grid, std::span<const float> surface_m,
                      std::span<const Index> receiver, const FlowPartition& partition,
-                     std::span<double> values);
+                     std::span<double> values, const std::function<void()>& meanwhile = {});
 
 /// Specific catchment area, drainage area per length of contour, m: A (D·n) / cell area, where D =
 /// Σ w_k d_k is the mean displacement of the water that leaves the cell and n the direction of
