@@ -6,6 +6,7 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
+#include <array>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -132,6 +133,40 @@ TEST(StageFile, SameContentGivesTheSameBytes) {
   }
   EXPECT_TRUE(bytes_of(folder / "a.nc") == bytes_of(folder / "b.nc"));
   EXPECT_TRUE(bytes_of(folder / "a.vti") == bytes_of(folder / "b.vti"));
+}
+
+/// What a read of every variable leaves in memory that held `before`.
+std::vector<char> contents(const std::filesystem::path& path, char before) {
+  int file = -1, variables = 0;
+  EXPECT_EQ(nc_open(path.c_str(), NC_NOWRITE, &file), NC_NOERR);
+  EXPECT_EQ(nc_inq_nvars(file, &variables), NC_NOERR);
+  std::vector<char> all;
+  for (int variable = 0; variable < variables; ++variable) {
+    nc_type type = NC_NAT;
+    int count = 0;
+    std::array<int, NC_MAX_VAR_DIMS> dimensions{};
+    std::size_t size = 0;
+    nc_inq_var(file, variable, nullptr, &type, &count, dimensions.data(), nullptr);
+    nc_inq_type(file, type, nullptr, &size);
+    for (int k = 0; k < count; ++k) {
+      std::size_t length = 0;
+      nc_inq_dimlen(file, dimensions[k], &length);
+      size *= length;
+    }
+    std::vector<char> values(size, before);
+    EXPECT_EQ(nc_get_var(file, variable, values.data()), NC_NOERR);
+    all.insert(all.end(), values.begin(), values.end());
+  }
+  nc_close(file);
+  return all;
+}
+
+TEST(StageFile, NoVariableIsLeftWithoutValues) {
+  const TemporaryFolder folder;
+  for (const Grid& grid : all_topologies()) {
+    write_netcdf(folder / "stage.nc", sample_snapshot(grid), sample_provenance());
+    EXPECT_TRUE(contents(folder / "stage.nc", '\0') == contents(folder / "stage.nc", '\x5a'));
+  }
 }
 
 /// Lets no file of this process grow beyond a size, as a full disk would.

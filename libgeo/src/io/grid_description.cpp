@@ -176,6 +176,10 @@ void write_coordinates(const nc::File& file, const Grid& grid) {
   write_axis(file, row_names(grid), raster.rows);
   write_axis(file, column_names(grid), raster.columns);
   if (grid.is_geographic() && !grid.is_latitude_longitude()) write_plane_positions(file, grid);
+  if (const auto mapping = file.find_variable(kMapping)) {
+    constexpr int kNoMeaning = 0;  // its attributes tell; left out, every reader would find another
+    nc::check(nc_put_var_int(file.id(), *mapping, &kNoMeaning));
+  }
 }
 
 std::vector<double> cell_areas(const Grid& grid) {
