@@ -6,22 +6,15 @@
 
 #include "geo/core/random.hpp"
 #include "geo/kernels/sphere_tectonics.hpp"
+#include "support/sampled_sphere.hpp"
 
 namespace geo {
 namespace {
 
-constexpr double kKmPerDegree = 6370.0 * std::numbers::pi / 180.0;
-
-struct World {
-  explicit World(std::int32_t n) : samples(n), mesh(samples) {}
-  FibonacciSphere samples;
-  SphereMesh mesh;
-};
-
-double longitude_deg(const Vector3& at) {
-  return std::atan2(at[1], at[0]) * 180.0 / std::numbers::pi;
-}
-double latitude_deg(const Vector3& at) { return std::asin(at[2]) * 180.0 / std::numbers::pi; }
+using test::kKmPerDegree;
+using test::latitude_deg;
+using test::longitude_deg;
+using test::SampledSphere;
 
 /// Two plates that have parted along longitude 0, once one continent of 40 by 60 degrees, whose
 /// samples are each as thick and as high as chance has it.
@@ -82,7 +75,7 @@ class BrokenContinent : public testing::Test {
     }
   }
 
-  World world_;
+  SampledSphere world_;
   SphereTectonics model_;
   SphereCrust before_;
   double volume_km3_ = 0.0;
