@@ -5,6 +5,8 @@
 #include <numbers>
 
 #include "geo/core/random.hpp"
+#include "geo/kernels/sphere_boundaries.hpp"
+#include "geo/kernels/sphere_start.hpp"
 #include "geo/kernels/sphere_tectonics.hpp"
 #include "support/sampled_sphere.hpp"
 
@@ -145,6 +147,38 @@ TEST_F(BrokenContinent, SlopesWithoutTeeth) {
   EXPECT_LT(slope, -10.0);  // m per km
   EXPECT_GT(mean_m, -2500.0);
   EXPECT_LT(std::sqrt(left / std::ssize(points)), 270.0);
+}
+
+TEST(FirstContinents, EndInMarginsAsDeepAsTheirCrustIsThin) {
+  const SampledSphere world(60000);
+  SphereSettings settings;
+  settings.margin_km = 400.0;  // four samples
+  const SphereState state = start_sphere(world.mesh, {}, settings, 5);
+  const SphereCrust& crust = state.crust;
+  std::vector<std::int32_t> floor;
+  for (std::int32_t i = 0; i < crust.size(); ++i) {
+    if (crust.continental[i] == 0) floor.push_back(i);
+  }
+  const auto nearest = nearest_samples(world.mesh, floor, 1.0);
+  int edges = 0, whole = 0;
+  for (std::int32_t i = 0; i < crust.size(); ++i) {
+    if (crust.continental[i] == 0 || nearest[i] < 0) continue;
+    const double inland_km = 6370.0 * angle_between(world.samples.position(i),
+                                                    world.samples.position(floor[nearest[i]]));
+    // Airy about crust of 36 km at 350 m, under water that adds 45 %.
+    const double dry_m = 350.0 + (crust.thickness_m[i] - 36000.0) / 6.6;
+    ASSERT_NEAR(crust.elevation_m[i], dry_m < 0.0 ? 1.45 * dry_m : dry_m, 1.0);
+    if (inland_km < 110.0) {
+      EXPECT_LT(crust.thickness_m[i], 17000.0F);
+      EXPECT_GT(crust.thickness_m[i], 8000.0F);
+      ++edges;
+    } else if (inland_km > 460.0) {
+      EXPECT_GT(crust.elevation_m[i], 0.0F);
+      ++whole;
+    }
+  }
+  EXPECT_GT(edges, 500);
+  EXPECT_GT(whole, 1000);
 }
 
 }  // namespace

@@ -8,19 +8,12 @@
 namespace geo {
 namespace {
 
-constexpr double kOuter = 0.25;
-
-/// Share of its first thickness that stretched crust keeps at a share of the margin's width; the
-/// haste of 1 or more brings it sooner to the outer share.
-double kept(double s, double haste) {
-  return kOuter + (1.0 - kOuter) * std::pow(1.0 - s * s * (3.0 - 2.0 * s), haste);
-}
 /// The haste with which a margin takes a share of what it takes with haste 1.
 double haste_for(double share) {
   constexpr int kParts = 32;
   const auto mean_kept = [](double haste) {
     double sum = 0.0;
-    for (int k = 0; k < kParts; ++k) sum += kept((k + 0.5) / kParts, haste);
+    for (int k = 0; k < kParts; ++k) sum += stretched_share((k + 0.5) / kParts, haste);
     return sum / kParts;
   };
   const double wanted = share * mean_kept(1.0);
@@ -36,8 +29,6 @@ double tapered(double s) { return s < 1.0 ? 1.0 - s * s * (3.0 - 2.0 * s) : 0.0;
 
 /// Thinner crust is itself a margin, and does not break into another one.
 constexpr double kWhole_m = 20000.0;
-/// Height lost below water for each that a dry column loses.
-constexpr double kWaterLoad = 1.45;
 /// Rounds in which what each sample has from its nearest break is levelled with its neighbours.
 constexpr int kLevellings = 4;
 
@@ -195,8 +186,7 @@ class PassiveMargins {
           s_.floor_by_age ? crust_.elevation_m[at.sample] : 500.0 * s_.law.abyss_km;
       crust_.continental[at.sample] = 1;
       crust_.thickness_m[at.sample] = static_cast<float>(margin_m);
-      crust_.elevation_m[at.sample] =
-          static_cast<float>(std::max(floor_m, dry_m < 0.0 ? kWaterLoad * dry_m : dry_m));
+      crust_.elevation_m[at.sample] = static_cast<float>(std::max(floor_m, water_loaded(dry_m)));
       crust_.age_myr[at.sample] = 0.0F;
       crust_.orogeny_age_myr[at.sample] = crust_.orogeny_age_myr[at.edge];
       crust_.ridge[at.sample] = {};
@@ -235,7 +225,7 @@ class PassiveMargins {
         mesh_, stretched, [](std::int32_t, std::int32_t) { return true; }, off_shore_);
   }
   [[nodiscard]] double share_kept(const Place& at) const {
-    return kept(off_shore_[at.sample], haste_[number_[at.edge]]);
+    return stretched_share(off_shore_[at.sample], haste_[number_[at.edge]]);
   }
   [[nodiscard]] std::vector<double> wanted_m() const {
     std::vector<double> wanted(edge_.size(), 0.0);
