@@ -8,30 +8,23 @@
 
 #include "geo/kernels/sphere_start.hpp"
 #include "geo/kernels/sphere_tectonics.hpp"
+#include "support/sampled_sphere.hpp"
 
 namespace geo {
 namespace {
 
-constexpr double kRadius_km = 6370.0;
-constexpr double kKmPerDegree = kRadius_km * std::numbers::pi / 180.0;
-
-struct World {
-  explicit World(std::int32_t n) : samples(n), mesh(samples) {}
-  FibonacciSphere samples;
-  SphereMesh mesh;
-};
-
-double longitude_deg(const Vector3& at) {
-  return std::atan2(at[1], at[0]) * 180.0 / std::numbers::pi;
-}
-double latitude_deg(const Vector3& at) { return std::asin(at[2]) * 180.0 / std::numbers::pi; }
+using test::kKmPerDegree;
+using test::kRadius_km;
+using test::latitude_deg;
+using test::longitude_deg;
+using test::SampledSphere;
 
 /// Plates between meridians, each with its speed eastwards and the age of its floor.
 struct Slice {
   double from_deg, eastward_mm_yr;
   float age_myr;
 };
-SphereState slices(const World& world, const std::vector<Slice>& plates) {
+SphereState slices(const SampledSphere& world, const std::vector<Slice>& plates) {
   SphereState state;
   state.crust.resize(world.mesh.size());
   for (const Slice& slice : plates) {
@@ -54,7 +47,7 @@ SphereState slices(const World& world, const std::vector<Slice>& plates) {
   return state;
 }
 
-void add_land(const World& world, SphereState& state,
+void add_land(const SampledSphere& world, SphereState& state,
               const std::function<bool(double, double)>& holds) {
   for (std::int32_t i = 0; i < world.mesh.size(); ++i) {
     const Vector3& at = world.samples.position(i);
@@ -88,7 +81,7 @@ int hidden_of(const SphereTectonics& model, int plate, bool land) {
 const std::vector<Slice> kMeeting{{-180.0, 50.0, 40.0F}, {0.0, -50.0, 80.0F}};
 
 TEST(Driftworld, ThePlateWithMoreContinentStaysUpWhateverTheAgeOfItsFloor) {
-  const World world(20000);
+  const SampledSphere world(20000);
   // A continent in the middle of the east, whose floor is the older one; an island of the west
   // where the two meet.
   SphereState state = slices(world, kMeeting);
@@ -116,7 +109,7 @@ TEST(Driftworld, ThePlateWithMoreContinentStaysUpWhateverTheAgeOfItsFloor) {
 }
 
 TEST(Driftworld, AScoreIsAHundredForEachSampleOfContinentLessOneForEachOfFloor) {
-  const World world(5000);
+  const SampledSphere world(5000);
   SphereState state = slices(world, kMeeting);
   add_land(world, state, [](double lat, double lon) { return lat > 30.0 && lon > 0.0; });
   const SphereTectonics model(world.mesh, quiet(), state, 1);
@@ -130,7 +123,7 @@ TEST(Driftworld, AScoreIsAHundredForEachSampleOfContinentLessOneForEachOfFloor) 
 }
 
 TEST(Driftworld, WhatGoesBelowFloorIsBookedAsLost) {
-  const World world(20000);
+  const SampledSphere world(20000);
   SphereState state = slices(world, kMeeting);
   add_land(world, state, [](double lat, double lon) {
     return (std::abs(lat) < 30.0 && lon > 70.0 && lon < 110.0) ||
@@ -150,7 +143,7 @@ TEST(Driftworld, WhatGoesBelowFloorIsBookedAsLost) {
 }
 
 TEST(Driftworld, PlatesBecomeOneAsSoonAsTheirContinentsTouch) {
-  const World world(30000);
+  const SampledSphere world(30000);
   SphereState state = slices(world, kMeeting);
   // 500 km apart: at 100 mm/yr they touch after 5 Myr. Most of both plates is ocean.
   const double half_gap_deg = 250.0 / kKmPerDegree;
@@ -175,7 +168,7 @@ TEST(Driftworld, PlatesBecomeOneAsSoonAsTheirContinentsTouch) {
 }
 
 TEST(Driftworld, UpliftsOfAllPlatesThatGoBelowAddUp) {
-  const World world(40000);
+  const SampledSphere world(40000);
   // The middle plate, 1800 km wide, is the youngest; both neighbours go below it.
   SphereState state =
       slices(world, {{-180.0, 90.0, 90.0F}, {-8.0, 0.0, 10.0F}, {8.0, -70.0, 80.0F}});
@@ -213,7 +206,7 @@ TEST(Driftworld, UpliftsOfAllPlatesThatGoBelowAddUp) {
 }
 
 TEST(Driftworld, SedimentPilesOnAllDeepFloor) {
-  const World world(5000);
+  const SampledSphere world(5000);
   SphereState state = slices(world, {{-180.0, 0.0, 50.0F}, {0.0, 0.0, 50.0F}});
   state.crust.elevation_m[7] = -3500.0F;
   state.crust.elevation_m[8] = -4100.0F;
@@ -231,7 +224,7 @@ TEST(Driftworld, SedimentPilesOnAllDeepFloor) {
 }
 
 TEST(Driftworld, OnlyTheLargestPlateRiftsAndIntoTwo) {
-  const World world(8000);
+  const SampledSphere world(8000);
   const SphereState state = slices(
       world, {{-180.0, 0.0, 50.0F}, {-60.0, 0.0, 50.0F}, {-10.0, 0.0, 50.0F}, {140.0, 0.0, 50.0F}});
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
@@ -247,7 +240,7 @@ TEST(Driftworld, OnlyTheLargestPlateRiftsAndIntoTwo) {
 }
 
 TEST(Driftworld, AllItsRulesTogetherGiveTheSameBitsOnAnyNumberOfThreads) {
-  const World world(8000);
+  const SampledSphere world(8000);
   SphereSettings settings;
   settings.driftworld_uplift = settings.rank_by_score = settings.merge_plates = true;
   settings.add_uplifts = settings.fill_abyss = settings.rift_largest = true;

@@ -9,9 +9,12 @@
 
 #include "geo/kernels/sphere_start.hpp"
 #include "geo/kernels/sphere_tectonics.hpp"
+#include "support/sampled_sphere.hpp"
 
 namespace geo {
 namespace {
+
+using test::SampledSphere;
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kRadius_m = 6.37e6;
@@ -31,17 +34,11 @@ TEST(PlateForces, AreThoseWorkedOutByHand) {
   EXPECT_DOUBLE_EQ(basal_drag_pa_s_m(), 5e14);
 }
 
-struct World {
-  explicit World(std::int32_t n) : samples(n), mesh(samples) {}
-  FibonacciSphere samples;
-  SphereMesh mesh;
-};
-
 double longitude(const Vector3& at) { return std::atan2(at[1], at[0]); }
 
 /// Two hemispheres of ocean that part at longitude 0 and meet at 180, where the older one, plate 1
 /// in the east, goes down.
-SphereState hemispheres(const World& world, double relative_mm_yr) {
+SphereState hemispheres(const SampledSphere& world, double relative_mm_yr) {
   SphereState state;
   state.crust.resize(world.mesh.size());
   for (const double sign : {-1.0, 1.0}) {
@@ -68,7 +65,7 @@ SphereSettings by_forces() {
   return settings;
 }
 
-void make_continental(const World& world, SphereState& state, std::int16_t plate) {
+void make_continental(const SampledSphere& world, SphereState& state, std::int16_t plate) {
   for (std::int32_t i = 0; i < world.mesh.size(); ++i) {
     if (state.crust.plate[i] != plate) continue;
     state.crust.continental[i] = 1;
@@ -81,7 +78,7 @@ void make_continental(const World& world, SphereState& state, std::int16_t plate
 double drag_of_hemisphere_n_m_s() { return 5e14 * std::pow(kRadius_m, 4) * 4.0 * kPi / 3.0; }
 
 TEST(SphereForces, AStraightTrenchFromPoleToPoleTurnsAHemisphereByItsPullTimesTwiceTheRadius) {
-  const World world(60000);
+  const SampledSphere world(60000);
   SphereTectonics model(world.mesh, by_forces(), hemispheres(world, 100.0), 1);
   for (int k = 0; k < 3; ++k) model.advance();
   const auto torques = model.torques();
@@ -103,7 +100,7 @@ TEST(SphereForces, AStraightTrenchFromPoleToPoleTurnsAHemisphereByItsPullTimesTw
 }
 
 TEST(SphereForces, EndAtTheSpeedOfPullOverDrag) {
-  const World world(60000);
+  const SampledSphere world(60000);
   SphereSettings settings = by_forces();
   settings.force.slab_share = 0.02;
   settings.force.response_myr = 1.0;
@@ -118,7 +115,7 @@ TEST(SphereForces, EndAtTheSpeedOfPullOverDrag) {
 }
 
 TEST(SphereForces, DragAloneBringsPlatesToRest) {
-  const World world(8000);
+  const SampledSphere world(8000);
   SphereSettings settings = by_forces();
   SphereState state = hemispheres(world, 80.0);
   state.plates[0].axis = {0.0, 0.0, 1.0};  // both turn as one: nothing meets, nothing parts
@@ -134,7 +131,7 @@ TEST(SphereForces, DragAloneBringsPlatesToRest) {
 }
 
 TEST(SphereForces, ContinentsDragMore) {
-  const World world(8000);
+  const SampledSphere world(8000);
   SphereState state = hemispheres(world, 10.0);
   make_continental(world, state, 1);
   SphereSettings settings = by_forces();
@@ -148,7 +145,7 @@ TEST(SphereForces, ContinentsDragMore) {
 }
 
 TEST(SphereForces, ASutureResistsBothContinentsAlike) {
-  const World world(60000);
+  const SampledSphere world(60000);
   SphereState state = hemispheres(world, 100.0);
   make_continental(world, state, 0);
   make_continental(world, state, 1);
@@ -168,7 +165,7 @@ TEST(SphereForces, ASutureResistsBothContinentsAlike) {
 TEST(SphereForces, AContinentalMarginIsPushedByTheFloorBesideIt) {
   // The eastern half of plate 1 is a continent; its western half grows older eastwards from the
   // ridge at longitude 0 up to the margin at longitude 90, where it is 100 Myr old.
-  const World world(60000);
+  const SampledSphere world(60000);
   SphereState state = hemispheres(world, 0.0);
   for (std::int32_t i = 0; i < world.mesh.size(); ++i) {
     const double east = longitude(world.samples.position(i));
@@ -185,7 +182,7 @@ TEST(SphereForces, AContinentalMarginIsPushedByTheFloorBesideIt) {
 }
 
 TEST(SphereForces, LeaveNoNetRotation) {
-  const World world(8000);
+  const SampledSphere world(8000);
   SphereSettings settings;
   settings.by_forces = true;
   SphereTectonics model(world.mesh, settings, start_sphere(world.mesh, {}, settings, 3), 3);
@@ -205,7 +202,7 @@ TEST(SphereForces, LeaveNoNetRotation) {
 }
 
 TEST(SphereForces, MovePlatesWithSlabsFasterThanContinentsAtTheSpeedsOfTheEarth) {
-  const World world(12000);
+  const SampledSphere world(12000);
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     SphereSettings settings;
@@ -255,7 +252,7 @@ TEST(SphereForces, MovePlatesWithSlabsFasterThanContinentsAtTheSpeedsOfTheEarth)
 }
 
 TEST(SphereForces, GiveTheSameBitsOnAnyNumberOfThreads) {
-  const World world(8000);
+  const SampledSphere world(8000);
   SphereSettings settings;
   settings.by_forces = true;
   settings.rift_per_myr = 0.02;

@@ -6,19 +6,14 @@
 #include <numbers>
 
 #include "geo/kernels/sphere_tectonics.hpp"
+#include "support/sampled_sphere.hpp"
 
 namespace geo {
 namespace {
 
-double longitude_deg(const Vector3& at) {
-  return std::atan2(at[1], at[0]) * 180.0 / std::numbers::pi;
-}
-double latitude_deg(const Vector3& at) { return std::asin(at[2]) * 180.0 / std::numbers::pi; }
-
-struct World {
-  FibonacciSphere samples{20000};
-  SphereMesh mesh{samples};
-};
+using test::latitude_deg;
+using test::longitude_deg;
+using test::SampledSphere;
 
 SphereSettings settings() {
   SphereSettings s;
@@ -33,7 +28,7 @@ SphereSettings settings() {
 
 /// Two hemispheres at rest. In the middle of the eastern one a continent of 40 by 40 degrees; floor
 /// east of it is old.
-SphereState beginning(const World& world, float old_myr) {
+SphereState beginning(const SampledSphere& world, float old_myr) {
   SphereState state;
   state.crust.resize(world.mesh.size());
   state.add_plate({});
@@ -52,7 +47,7 @@ SphereState beginning(const World& world, float old_myr) {
 }
 
 TEST(Foundering, OldFloorBreaksOffAlongItsMarginAndGoesBelowTheContinent) {
-  const World world;
+  const SampledSphere world(20000);
   SphereTectonics model(world.mesh, settings(), beginning(world, 130.0F), 1);
   model.advance();
   EXPECT_EQ(model.budget().founderings, 1);
@@ -88,7 +83,7 @@ TEST(Foundering, OldFloorBreaksOffAlongItsMarginAndGoesBelowTheContinent) {
 }
 
 TEST(Foundering, NeedsOldFloorARateAndAPlateThatIsFree) {
-  const World world;
+  const SampledSphere world(20000);
   const auto founderings = [&](const SphereSettings& s, float old_myr, bool is_held) {
     SphereState state = beginning(world, old_myr);
     state.plates[1].is_held = is_held;
@@ -105,7 +100,7 @@ TEST(Foundering, NeedsOldFloorARateAndAPlateThatIsFree) {
 }
 
 TEST(Foundering, IsAsLikelyAsItsMarginIsLong) {
-  const World world;
+  const SampledSphere world(20000);
   SphereSettings s = settings();
   // 40 degrees of margin are 4400 km: 0.44 per step of 2 Myr.
   s.founder_per_myr = 0.05;

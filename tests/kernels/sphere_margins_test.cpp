@@ -5,23 +5,18 @@
 #include <numbers>
 
 #include "geo/core/random.hpp"
+#include "geo/kernels/sphere_boundaries.hpp"
+#include "geo/kernels/sphere_start.hpp"
 #include "geo/kernels/sphere_tectonics.hpp"
+#include "support/sampled_sphere.hpp"
 
 namespace geo {
 namespace {
 
-constexpr double kKmPerDegree = 6370.0 * std::numbers::pi / 180.0;
-
-struct World {
-  explicit World(std::int32_t n) : samples(n), mesh(samples) {}
-  FibonacciSphere samples;
-  SphereMesh mesh;
-};
-
-double longitude_deg(const Vector3& at) {
-  return std::atan2(at[1], at[0]) * 180.0 / std::numbers::pi;
-}
-double latitude_deg(const Vector3& at) { return std::asin(at[2]) * 180.0 / std::numbers::pi; }
+using test::kKmPerDegree;
+using test::latitude_deg;
+using test::longitude_deg;
+using test::SampledSphere;
 
 /// Two plates that have parted along longitude 0, once one continent of 40 by 60 degrees, whose
 /// samples are each as thick and as high as chance has it.
@@ -82,7 +77,7 @@ class BrokenContinent : public testing::Test {
     }
   }
 
-  World world_;
+  SampledSphere world_;
   SphereTectonics model_;
   SphereCrust before_;
   double volume_km3_ = 0.0;
@@ -152,6 +147,38 @@ TEST_F(BrokenContinent, SlopesWithoutTeeth) {
   EXPECT_LT(slope, -10.0);  // m per km
   EXPECT_GT(mean_m, -2500.0);
   EXPECT_LT(std::sqrt(left / std::ssize(points)), 270.0);
+}
+
+TEST(FirstContinents, EndInMarginsAsDeepAsTheirCrustIsThin) {
+  const SampledSphere world(60000);
+  SphereSettings settings;
+  settings.margin_km = 400.0;  // four samples
+  const SphereState state = start_sphere(world.mesh, {}, settings, 5);
+  const SphereCrust& crust = state.crust;
+  std::vector<std::int32_t> floor;
+  for (std::int32_t i = 0; i < crust.size(); ++i) {
+    if (crust.continental[i] == 0) floor.push_back(i);
+  }
+  const auto nearest = nearest_samples(world.mesh, floor, 1.0);
+  int edges = 0, whole = 0;
+  for (std::int32_t i = 0; i < crust.size(); ++i) {
+    if (crust.continental[i] == 0 || nearest[i] < 0) continue;
+    const double inland_km = 6370.0 * angle_between(world.samples.position(i),
+                                                    world.samples.position(floor[nearest[i]]));
+    // Airy about crust of 36 km at 350 m, under water that adds 45 %.
+    const double dry_m = 350.0 + (crust.thickness_m[i] - 36000.0) / 6.6;
+    ASSERT_NEAR(crust.elevation_m[i], dry_m < 0.0 ? 1.45 * dry_m : dry_m, 1.0);
+    if (inland_km < 110.0) {
+      EXPECT_LT(crust.thickness_m[i], 17000.0F);
+      EXPECT_GT(crust.thickness_m[i], 8000.0F);
+      ++edges;
+    } else if (inland_km > 460.0) {
+      EXPECT_GT(crust.elevation_m[i], 0.0F);
+      ++whole;
+    }
+  }
+  EXPECT_GT(edges, 500);
+  EXPECT_GT(whole, 1000);
 }
 
 }  // namespace

@@ -11,30 +11,23 @@
 #include "geo/kernels/great_circle_line.hpp"
 #include "geo/kernels/ocean_depth.hpp"
 #include "geo/kernels/sphere_start.hpp"
+#include "support/sampled_sphere.hpp"
 
 namespace geo {
 namespace {
 
-constexpr double kKmPerDegree = 6370.0 * std::numbers::pi / 180.0;
+using test::kKmPerDegree;
+using test::latitude_deg;
+using test::longitude_deg;
+using test::SampledSphere;
 
 Vector3 place(double latitude_deg, double longitude_deg) {
   const double phi = latitude_deg * std::numbers::pi / 180.0;
   const double lambda = longitude_deg * std::numbers::pi / 180.0;
   return {std::cos(phi) * std::cos(lambda), std::cos(phi) * std::sin(lambda), std::sin(phi)};
 }
-double longitude_deg(const Vector3& at) {
-  return std::atan2(at[1], at[0]) * 180.0 / std::numbers::pi;
-}
-double latitude_deg(const Vector3& at) { return std::asin(at[2]) * 180.0 / std::numbers::pi; }
-
-struct World {
-  explicit World(std::int32_t n) : samples(n), mesh(samples) {}
-  FibonacciSphere samples;
-  SphereMesh mesh;
-};
-
 /// Two plates that part or meet along longitude 0 and half-way round, all ocean of age 50 Myr.
-SphereState hemispheres(const World& world, double relative_mm_yr) {
+SphereState hemispheres(const SampledSphere& world, double relative_mm_yr) {
   SphereState state;
   state.crust.resize(world.mesh.size());
   for (const double sign : {-0.5, 0.5}) {
@@ -61,7 +54,7 @@ SphereSettings quiet() {
 }
 
 TEST(SphereTectonics, OpensAnOceanWithItsRidgeInTheMiddleAndAgesToItsSides) {
-  const World world(30000);
+  const SampledSphere world(30000);
   SphereSettings settings = quiet();
   settings.floor_by_age = true;
   // Part at longitude 0 and meet at 180: 100 mm/yr for 20 Myr opens 2000 km at the equator.
@@ -90,7 +83,7 @@ TEST(SphereTectonics, OpensAnOceanWithItsRidgeInTheMiddleAndAgesToItsSides) {
 }
 
 TEST(SphereTectonics, OpensWhatTheRelativeMotionSweeps) {
-  const World world(30000);
+  const SampledSphere world(30000);
   SphereTectonics model(world.mesh, quiet(), hemispheres(world, 100.0), 1);
   for (int k = 0; k < 10; ++k) model.advance();
   model.resample();
@@ -104,7 +97,7 @@ TEST(SphereTectonics, OpensWhatTheRelativeMotionSweeps) {
 }
 
 TEST(SphereTectonics, OlderFloorGoesDown) {
-  const World world(20000);
+  const SampledSphere world(20000);
   SphereTectonics model(world.mesh, quiet(), hemispheres(world, 100.0), 1);
   for (int k = 0; k < 5; ++k) model.advance();
   int below = 0, above = 0;
@@ -121,7 +114,7 @@ TEST(SphereTectonics, OlderFloorGoesDown) {
 }
 
 TEST(SphereTectonics, RaisesTheOverridingPlateByItsLaw) {
-  const World world(30000);
+  const SampledSphere world(30000);
   SphereSettings settings = quiet();
   settings.law.damping_mm_yr = 0.0;
   settings.accretion_width_km = 0.0;
@@ -144,7 +137,7 @@ TEST(SphereTectonics, RaisesTheOverridingPlateByItsLaw) {
 }
 
 /// A continent on each side, so placed that they meet at longitude 180.
-SphereState two_continents(const World& world, double gap_km, double relative_mm_yr) {
+SphereState two_continents(const SampledSphere& world, double gap_km, double relative_mm_yr) {
   SphereState state = hemispheres(world, relative_mm_yr);
   for (std::int32_t i = 0; i < world.mesh.size(); ++i) {
     const Vector3& at = world.samples.position(i);
@@ -162,7 +155,7 @@ SphereState two_continents(const World& world, double gap_km, double relative_mm
 }
 
 TEST(SphereTectonics, ContinentsCollideWhenThreeHundredKilometresHaveGoneUnder) {
-  const World world(30000);
+  const SampledSphere world(30000);
   // 500 km apart, 100 mm/yr: they touch after 5 Myr and collide after 8, at a step of 2 Myr and
   // samples 140 km apart.
   SphereTectonics model(world.mesh, quiet(), two_continents(world, 500.0, 100.0), 1);
@@ -189,7 +182,7 @@ TEST(SphereTectonics, ContinentsCollideWhenThreeHundredKilometresHaveGoneUnder) 
 
 TEST(SphereTectonics, ATerraneThatTwoPlatesReachInOneStepGoesWithTheSecond) {
   // Continents round the equator on three plates; those of the outer ones come from both sides.
-  const World world(20000);
+  const SampledSphere world(20000);
   SphereState state;
   state.crust.resize(world.mesh.size());
   for (const double eastward_mm_yr : {80.0, 0.0, -80.0}) {
@@ -221,7 +214,7 @@ TEST(SphereTectonics, ATerraneThatTwoPlatesReachInOneStepGoesWithTheSecond) {
 }
 
 TEST(SphereTectonics, CollisionsKeepTheVolumeOfContinents) {
-  const World world(30000);
+  const SampledSphere world(30000);
   SphereSettings settings = quiet();
   settings.law.erosion_mm_yr = 0.0;
   settings.law.uplift_mm_yr = 0.0;
@@ -241,7 +234,7 @@ TEST(SphereTectonics, CollisionsKeepTheVolumeOfContinents) {
 }
 
 TEST(SphereTectonics, RiftsSplitAPlateIntoPartsThatPart) {
-  const World world(20000);
+  const SampledSphere world(20000);
   SphereTectonics model(world.mesh, quiet(), hemispheres(world, 0.0), 1);
   const std::vector<Vector3> places{place(0.0, 60.0), place(0.0, 120.0)};
   model.rift(1, places, 40.0);
@@ -261,7 +254,7 @@ TEST(SphereTectonics, RiftsSplitAPlateIntoPartsThatPart) {
 }
 
 TEST(SphereTectonics, SlabPullBringsAPlateToItsFront) {
-  const World world(20000);
+  const SampledSphere world(20000);
   SphereSettings settings = quiet();
   settings.slab_pull = 0.02;
   // Both plates turn about the axis; plate 1 goes down at longitude 180, north and south alike, so
@@ -273,7 +266,7 @@ TEST(SphereTectonics, SlabPullBringsAPlateToItsFront) {
 }
 
 /// A plume below plate 1, which has gone 1200 km east of it in 24 Myr.
-SphereTectonics chain_of_volcanoes(const World& world, std::uint64_t seed) {
+SphereTectonics chain_of_volcanoes(const SampledSphere& world, std::uint64_t seed) {
   SphereSettings settings = quiet();
   settings.law.damping_mm_yr = 0.0;
   settings.least_steps = 60;
@@ -287,7 +280,7 @@ SphereTectonics chain_of_volcanoes(const World& world, std::uint64_t seed) {
 }
 
 TEST(SphereTectonics, APlumeLeavesAChainOfSeparateVolcanoes) {
-  const World world(400000);  // 36 km apart
+  const SampledSphere world(400000);  // 36 km apart
   const SphereTectonics model = chain_of_volcanoes(world, 1);
   const SphereCrust& crust = model.state().crust;
   const Matrix3 frame = model.state().plates[1].turn.matrix();
@@ -325,7 +318,7 @@ TEST(SphereTectonics, APlumeLeavesAChainOfSeparateVolcanoes) {
 }
 
 TEST(SphereTectonics, IslandsSinkWithTheirFloorWearDownAndSwellsDecay) {
-  const World world(2000);
+  const SampledSphere world(2000);
   SphereSettings settings = quiet();
   settings.floor_by_age = true;
   settings.least_steps = 60;
@@ -356,7 +349,7 @@ TEST(SphereTectonics, IslandsSinkWithTheirFloorWearDownAndSwellsDecay) {
 }
 
 TEST(SphereTectonics, RiftsAlongALineToBothSidesOfIt) {
-  const World world(20000);
+  const SampledSphere world(20000);
   SphereTectonics model(world.mesh, quiet(), hemispheres(world, 0.0), 1);
   // Northwards along 90 E, then north-east from 30 N.
   const std::vector<Vector3> line{place(-30.0, 90.0), place(30.0, 90.0), place(50.0, 120.0)};
@@ -392,7 +385,7 @@ TEST(SphereTectonics, RiftsAlongALineToBothSidesOfIt) {
 }
 
 TEST(SphereTectonics, ALineCutsThreeAndFourFragments) {
-  const World world(20000);
+  const SampledSphere world(20000);
   const std::vector<Vector3> line{place(-30.0, 90.0), place(30.0, 90.0)};
   for (const int fragments : {3, 4}) {
     SphereTectonics model(world.mesh, quiet(), hemispheres(world, 0.0), 1);
@@ -409,7 +402,7 @@ TEST(SphereTectonics, ALineCutsThreeAndFourFragments) {
 }
 
 TEST(SphereTectonics, ChangesTheCrustOfARegionWhereverItsPlatesAre) {
-  const World world(20000);
+  const SampledSphere world(20000);
   SphereTectonics model(world.mesh, quiet(), hemispheres(world, 60.0), 1);
   for (int k = 0; k < 3; ++k) model.advance();
   const auto within = [](const Vector3& at) {
@@ -430,7 +423,7 @@ TEST(SphereTectonics, ChangesTheCrustOfARegionWhereverItsPlatesAre) {
 }
 
 TEST(SphereTectonics, BendsTheCoastsOfChangedCrustAndKeepsTheirArea) {
-  const World world(40000);
+  const SampledSphere world(40000);
   SphereTectonics model(world.mesh, quiet(), hemispheres(world, 60.0), 1);
   const Vector3 middle = place(10.0, 60.0);
   constexpr double kRadius = 0.25, kWarp_km = 150.0;
@@ -452,7 +445,7 @@ TEST(SphereTectonics, BendsTheCoastsOfChangedCrustAndKeepsTheirArea) {
 }
 
 TEST(SphereTectonics, TakesTheNetRotationAway) {
-  const World world(5000);
+  const SampledSphere world(5000);
   SphereSettings settings;
   settings.rift_per_myr = 0.0;
   settings.slab_pull = 0.0;
@@ -474,14 +467,14 @@ TEST(SphereTectonics, TakesTheNetRotationAway) {
 }
 
 /// Plates of a seed, all of them ocean.
-SphereState bare_plates(const World& world, const SphereSettings& settings) {
+SphereState bare_plates(const SampledSphere& world, const SphereSettings& settings) {
   SphereStart start;
   start.continental_share = 0.0;
   return start_sphere(world.mesh, start, settings, 3);
 }
 
 TEST(SphereTectonics, AMotionThatIsGivenHoldsAndNoOtherPlateFeelsIt) {
-  const World world(5000);
+  const SampledSphere world(5000);
   SphereSettings settings;
   settings.rift_per_myr = 0.0;
   settings.slab_pull = 0.0;
@@ -502,7 +495,7 @@ TEST(SphereTectonics, AMotionThatIsGivenHoldsAndNoOtherPlateFeelsIt) {
 }
 
 TEST(SphereTectonics, AMotionThatIsGivenHoldsAgainstSlabPullAndFrame) {
-  const World world(5000);
+  const SampledSphere world(5000);
   SphereSettings settings;
   settings.rift_per_myr = 0.0;
   settings.slab_pull = 0.02;
@@ -525,7 +518,7 @@ TEST(SphereTectonics, AMotionThatIsGivenHoldsAgainstSlabPullAndFrame) {
 }
 
 TEST(SphereTectonics, BothHalvesOfAPlateThatIsHeldAreHeld) {
-  const World world(5000);
+  const SampledSphere world(5000);
   SphereSettings settings;
   settings.rift_per_myr = 0.0;
   SphereTectonics model(world.mesh, settings, bare_plates(world, settings), 3);
@@ -541,7 +534,7 @@ TEST(SphereTectonics, BothHalvesOfAPlateThatIsHeldAreHeld) {
 }
 
 TEST(SphereTectonics, WhatIsDoneBetweenStepsIsInTheBooksOfTheNext) {
-  const World world(5000);
+  const SampledSphere world(5000);
   SphereTectonics model(world.mesh, quiet(), hemispheres(world, 0.0), 1);
   model.advance();
   model.begin_step();
@@ -575,7 +568,7 @@ bool same_bits(const SphereState& a, const SphereState& b) {
 }
 
 TEST(SphereTectonics, GivesTheSameBitsOnAnyNumberOfThreads) {
-  const World world(12000);
+  const SampledSphere world(12000);
   SphereSettings settings;
   settings.rift_per_myr = 0.02;
   const int threads = omp_get_max_threads();
@@ -592,7 +585,7 @@ TEST(SphereTectonics, GivesTheSameBitsOnAnyNumberOfThreads) {
 }
 
 TEST(SphereTectonics, IslandArcsStandOneToFourHundredKilometresBehindTheirTrench) {
-  const World world(60000);
+  const SampledSphere world(60000);
   SphereSettings settings = quiet();
   settings.floor_by_age = true;
   settings.arc_reach_km = 600.0;
@@ -622,7 +615,7 @@ TEST(SphereTectonics, IslandArcsStandOneToFourHundredKilometresBehindTheirTrench
 }
 
 TEST(SphereTectonics, CordillerasRiseBehindTheTrenchesOfAWholePlanet) {
-  const World world(40000);
+  const SampledSphere world(40000);
   SphereSettings settings;
   settings.floor_by_age = true;
   settings.law.erosion_mm_yr = 0.24;
@@ -668,7 +661,7 @@ TEST(SphereTectonics, CordillerasRiseBehindTheTrenchesOfAWholePlanet) {
 }
 
 TEST(SphereTectonics, PlanetsOfManySeedsStayWhole) {
-  const World world(8000);
+  const SampledSphere world(8000);
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     SphereSettings settings;

@@ -13,19 +13,16 @@
 #include "geo/core/random.hpp"
 #include "geo/kernels/sphere_start.hpp"
 #include "geo/kernels/sphere_tectonics.hpp"
+#include "support/sampled_sphere.hpp"
 
 namespace geo {
 namespace {
 
+using test::SampledSphere;
+
 constexpr double kRadius_m = 6.371e6;
 
-struct World {
-  explicit World(std::int32_t n) : samples(n), mesh(samples) {}
-  FibonacciSphere samples;
-  SphereMesh mesh;
-};
-
-SurfaceGraph whole_sphere(const World& world) {
+SurfaceGraph whole_sphere(const SampledSphere& world) {
   SurfaceGraph graph;
   const std::int32_t n = world.mesh.size();
   graph.is_there.assign(n, 1);
@@ -60,7 +57,8 @@ SurfaceGraph row_of(std::int32_t n) {
 }
 
 /// A rough continent of a radius about the north pole, sea around.
-std::vector<float> rough_continent(const World& world, double radius_rad, std::uint64_t seed) {
+std::vector<float> rough_continent(const SampledSphere& world, double radius_rad,
+                                   std::uint64_t seed) {
   const RandomStream random(seed, "test");
   std::vector<float> z(world.mesh.size());
   for (std::int32_t i = 0; i < world.mesh.size(); ++i) {
@@ -72,7 +70,7 @@ std::vector<float> rough_continent(const World& world, double radius_rad, std::u
 }
 
 TEST(SurfaceRivers, DrainAllLandToTheSeaWithoutCycles) {
-  const World world(20000);
+  const SampledSphere world(20000);
   const SurfaceGraph graph = whole_sphere(world);
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -127,7 +125,7 @@ TEST(SurfaceRivers, FillLakesToTheirSillAndNoFarther) {
 }
 
 TEST(SurfaceRivers, SteadySlopesFallWithTheRootOfTheAreaThatTheyDrain) {
-  const World world(20000);
+  const SampledSphere world(20000);
   const SurfaceGraph graph = whole_sphere(world);
   auto z = rough_continent(world, 0.4, 2);
   std::vector<std::int8_t> is_rock(z.size());
@@ -167,7 +165,7 @@ TEST(SurfaceRivers, SteadySlopesFallWithTheRootOfTheAreaThatTheyDrain) {
 }
 
 TEST(SurfaceRivers, LoseNothing) {
-  const World world(20000);
+  const SampledSphere world(20000);
   const SurfaceGraph graph = whole_sphere(world);
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     auto z = rough_continent(world, 0.6, seed);
@@ -229,7 +227,7 @@ TEST(SurfaceRivers, EnclosedLandKeepsNoTower) {
 
 /// A continent from 20 W to 20 E that slopes from a coast range in the west to the east, on one
 /// plate or cut at the zero meridian, both of which turn alike.
-SphereState slope(const World& world, int plates) {
+SphereState slope(const SampledSphere& world, int plates) {
   SphereState state;
   state.crust.resize(world.mesh.size());
   for (int p = 0; p < plates; ++p) {
@@ -253,7 +251,7 @@ SphereState slope(const World& world, int plates) {
 }
 
 TEST(SphereRivers, DoNotFeelAPlateBoundaryAtRest) {
-  const World world(20000);
+  const SampledSphere world(20000);
   SphereSettings settings;
   settings.rift_per_myr = 0.0;
   settings.no_net_rotation = false;
@@ -285,7 +283,7 @@ SphereSettings with_rivers() {
 }
 
 TEST(SphereRivers, KeepTheBooksOfContinents) {
-  const World world(12000);
+  const SampledSphere world(12000);
   SphereTectonics model(world.mesh, with_rivers(), start_sphere(world.mesh, {}, with_rivers(), 4),
                         4);
   model.advance();
@@ -308,7 +306,7 @@ TEST(SphereRivers, KeepTheBooksOfContinents) {
 }
 
 TEST(SphereRivers, GiveTheSameBitsOnAnyNumberOfThreads) {
-  const World world(8000);
+  const SampledSphere world(8000);
   const int threads = omp_get_max_threads();
   std::vector<std::vector<float>> ends;
   for (const int number : {1, 2, 4}) {

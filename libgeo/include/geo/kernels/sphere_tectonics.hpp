@@ -32,6 +32,7 @@ struct SphereSettings {
   PlateForces force;
   double penetration_km = 300.0;      ///< of continents, before they collide
   double surge_km = 4.5;              ///< most that one collision lifts
+  double thickest_km = 75.0;          ///< of continents: thicker roots spread; 0: no limit
   double oceanic_km = 7.0;            ///< thickness of new crust
   double arc_km = 25.0;               ///< thickness of an island arc when it emerges
   double ridge_falloff = 0.05;        ///< sigma of the ridge's profile, in radii
@@ -96,7 +97,7 @@ struct SphereBudget {
   double swallowed_km3 = 0.0;   ///< taken by collisions from below and given back as mountains
   double changed_km3 = 0.0;     ///< made or taken by change_crust
   double erupted_km3 = 0.0;     ///< that plumes laid on ocean floor
-  double lost_km3 = 0.0;        ///< gone below oceanic crust or beyond the highest summit
+  double lost_km3 = 0.0;        ///< gone below oceanic crust, or from roots that found no room
   double resampling_km3 = 0.0;  ///< what interpolation added or took
 };
 
@@ -226,6 +227,7 @@ class SphereTectonics {
   void collide(std::int32_t sample);
   void surge(int upper, std::span<const std::int32_t> terrane, const Vector3& centroid,
              double area_km2, double speed_mm_yr);
+  void spread_roots();
   void rift_by_chance();
   [[nodiscard]] int largest_plate() const;
   void part(int plate, std::span<const std::int8_t> fragment, std::span<const Vector3> away,

@@ -109,6 +109,19 @@ struct TectonicConstants {
   return share * mean_km + (1.0 - share) * profile_km;
 }
 
+/// Share of its first thickness that a passive margin's crust keeps at a share s of its width, from
+/// whole to stretched fourfold; the haste of 1 or more brings it sooner to that.
+[[nodiscard]] inline double stretched_share(double s, double haste = 1.0) {
+  constexpr double kOuter = 0.25;
+  return kOuter + (1.0 - kOuter) * std::pow(1.0 - s * s * (3.0 - 2.0 * s), haste);
+}
+/// Height of a column whose dry height is given: water loads what lies below the sea,
+/// rho_m / (rho_m - rho_w).
+[[nodiscard]] inline double water_loaded(double dry) {
+  constexpr double kLoad = 1.45;
+  return dry < 0.0 ? kLoad * dry : dry;
+}
+
 /// P of 4.4: lambda e^-lambda, with lambda = lambda_0 f(x) A / A_0.
 [[nodiscard]] inline double rift_probability(double rate, double weight, double area_ratio) {
   const double lambda = rate * weight * area_ratio;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "geo/kernels/sphere_boundaries.hpp"
 #include "geo/kernels/sphere_tectonics.hpp"
@@ -7,19 +8,12 @@
 namespace geo {
 namespace {
 
-constexpr double kOuter = 0.25;
-
-/// Share of its first thickness that stretched crust keeps at a share of the margin's width; the
-/// haste of 1 or more brings it sooner to the outer share.
-double kept(double s, double haste) {
-  return kOuter + (1.0 - kOuter) * std::pow(1.0 - s * s * (3.0 - 2.0 * s), haste);
-}
 /// The haste with which a margin takes a share of what it takes with haste 1.
 double haste_for(double share) {
   constexpr int kParts = 32;
   const auto mean_kept = [](double haste) {
     double sum = 0.0;
-    for (int k = 0; k < kParts; ++k) sum += kept((k + 0.5) / kParts, haste);
+    for (int k = 0; k < kParts; ++k) sum += stretched_share((k + 0.5) / kParts, haste);
     return sum / kParts;
   };
   const double wanted = share * mean_kept(1.0);
@@ -35,8 +29,6 @@ double tapered(double s) { return s < 1.0 ? 1.0 - s * s * (3.0 - 2.0 * s) : 0.0;
 
 /// Thinner crust is itself a margin, and does not break into another one.
 constexpr double kWhole_m = 20000.0;
-/// Height lost below water for each that a dry column loses.
-constexpr double kWaterLoad = 1.45;
 /// Rounds in which what each sample has from its nearest break is levelled with its neighbours.
 constexpr int kLevellings = 4;
 
@@ -85,8 +77,6 @@ class Breaks {
     }
   }
   [[nodiscard]] std::int32_t size() const { return static_cast<std::int32_t>(sample_.size()); }
-  [[nodiscard]] std::int32_t sample(std::int32_t k) const { return sample_[k]; }
-  [[nodiscard]] const std::vector<std::int32_t>& samples() const { return sample_; }
 
   /// sum_m K(k, m) values_m: K is symmetric, so that sum_k w_k sums(v / sums(w))_k = sum_m v_m.
   [[nodiscard]] std::vector<double> sums(const std::vector<double>& values) const {
@@ -119,6 +109,162 @@ class Breaks {
   std::vector<Link> link_;
 };
 
+/// The margins that grow in the gaps of one resampling, and the inland that they take their crust
+/// from. Breaks are numbered; what is known of each is in vectors by that number.
+class PassiveMargins {
+ public:
+  PassiveMargins(const SphereMesh& mesh, const SphereSettings& settings, SphereCrust& crust,
+                 std::span<const std::int16_t> owner)
+      : mesh_(mesh), s_(settings), crust_(crust), owner_(owner), number_(mesh.size(), -1) {}
+
+  /// Margins of gaps whose nearest sample is a whole continent's: their samples.
+  void find(std::span<const std::int32_t> gaps, std::span<const std::int32_t> nearest) {
+    for (std::size_t k = 0; k < gaps.size(); ++k) {
+      const std::int32_t edge = nearest[k];
+      if (crust_.continental[edge] == 0 || distance_km(gaps[k], edge) > s_.margin_km) continue;
+      margin_.push_back({gaps[k], edge});
+      if (number_[edge] >= 0) continue;
+      number_[edge] = static_cast<std::int32_t>(edge_.size());
+      edge_.push_back(edge);
+    }
+    near_.emplace(mesh_, owner_, edge_, s_.margin_km / s_.radius_km);
+    far_.emplace(mesh_, owner_, edge_, s_.margin_source_km / s_.radius_km);
+    haste_.assign(edge_.size(), 1.0);
+    read_breaks();
+    std::erase_if(margin_, [&](const Place& at) { return thick_m_[number_[at.edge]] < kWhole_m; });
+    measure_off_shore(gaps, nearest);
+  }
+  [[nodiscard]] bool empty() const { return margin_.empty(); }
+
+  /// Thins the inland towards the breaks by what the margins want, at most by the share that it may
+  /// give.
+  void thin_inland() {
+    const auto inland = nearest_samples(mesh_, edge_, s_.margin_source_km / s_.radius_km);
+    const std::vector<std::int32_t> giver = givers(inland);
+    std::vector<double> thinning(mesh_.size(), 0.0), has_m(edge_.size(), 0.0);
+    for (const std::int32_t i : giver) {
+      thinning[i] = tapered(distance_km(i, edge_[inland[i]]) / s_.margin_source_km);
+      has_m[inland[i]] += thinning[i] * crust_.thickness_m[i];
+    }
+    const std::vector<double> wanted_around = far_->sums(wanted_m()),
+                              has_around = far_->sums(has_m);
+    for (const std::int32_t i : giver) {
+      const std::int32_t e = inland[i];
+      if (thinning[i] <= 0.0) continue;
+      thinning[i] *= std::min(s_.margin_thinning, wanted_around[e] / has_around[e]);
+    }
+    level(
+        mesh_, giver,
+        [&](std::int32_t i, std::int32_t j) {
+          return inland[j] >= 0 && owner_[j] == owner_[i] && crust_.continental[j] != 0;
+        },
+        thinning);
+    given_m_.assign(edge_.size(), 0.0);
+    for (const std::int32_t i : giver) {
+      const double lost_m = thinning[i] * crust_.thickness_m[i];
+      const float thinner_m = crust_.thickness_m[i] - static_cast<float>(lost_m);
+      given_m_[inland[i]] += static_cast<double>(crust_.thickness_m[i]) - thinner_m;
+      crust_.thickness_m[i] = thinner_m;
+      crust_.elevation_m[i] -= static_cast<float>(lost_m / s_.rebound);
+    }
+  }
+
+  /// Lays the margins down: they go on from the thinner inland, and thin so fast that they take
+  /// what the breaks around were given. Returns the number of samples.
+  std::size_t lay() {
+    read_breaks();
+    std::vector<double> met = share_met();
+#pragma omp parallel for schedule(static)
+    for (std::size_t e = 0; e < haste_.size(); ++e) haste_[e] = haste_for(met[e]);
+    met = share_met();
+    for (const Place& at : margin_) {
+      const std::int32_t e = number_[at.edge];
+      const double margin_m = thick_m_[e] * share_kept(at) * met[e];
+      const double dry_m = high_m_[e] - (thick_m_[e] - margin_m) / s_.rebound;
+      // Never deeper than the floor that would lie there.
+      const double floor_m =
+          s_.floor_by_age ? crust_.elevation_m[at.sample] : 500.0 * s_.law.abyss_km;
+      crust_.continental[at.sample] = 1;
+      crust_.thickness_m[at.sample] = static_cast<float>(margin_m);
+      crust_.elevation_m[at.sample] = static_cast<float>(std::max(floor_m, water_loaded(dry_m)));
+      crust_.age_myr[at.sample] = 0.0F;
+      crust_.orogeny_age_myr[at.sample] = crust_.orogeny_age_myr[at.edge];
+      crust_.ridge[at.sample] = {};
+    }
+    return margin_.size();
+  }
+
+ private:
+  struct Place {
+    std::int32_t sample, edge;  // in the gap, and where the continent has broken
+  };
+  [[nodiscard]] double distance_km(std::int32_t a, std::int32_t b) const {
+    return s_.radius_km * angle_between(mesh_.samples().position(a), mesh_.samples().position(b));
+  }
+  /// Thickness and height at the breaks, means along them.
+  void read_breaks() {
+    thick_m_.resize(edge_.size());
+    high_m_.resize(edge_.size());
+    for (std::size_t e = 0; e < edge_.size(); ++e) {
+      thick_m_[e] = crust_.thickness_m[edge_[e]];
+      high_m_[e] = crust_.elevation_m[edge_[e]];
+    }
+    thick_m_ = near_->means(thick_m_);
+    high_m_ = near_->means(high_m_);
+  }
+  /// Shares of the margin's width. The shore of samples is jagged; distances to it need not be.
+  void measure_off_shore(std::span<const std::int32_t> gaps,
+                         std::span<const std::int32_t> nearest) {
+    off_shore_.assign(mesh_.size(), 0.0);
+    for (std::size_t k = 0; k < gaps.size(); ++k) {
+      off_shore_[gaps[k]] = std::min(1.0, distance_km(gaps[k], nearest[k]) / s_.margin_km);
+    }
+    std::vector<std::int32_t> stretched;
+    for (const Place& at : margin_) stretched.push_back(at.sample);
+    level(
+        mesh_, stretched, [](std::int32_t, std::int32_t) { return true; }, off_shore_);
+  }
+  [[nodiscard]] double share_kept(const Place& at) const {
+    return stretched_share(off_shore_[at.sample], haste_[number_[at.edge]]);
+  }
+  [[nodiscard]] std::vector<double> wanted_m() const {
+    std::vector<double> wanted(edge_.size(), 0.0);
+    for (const Place& at : margin_) {
+      wanted[number_[at.edge]] += thick_m_[number_[at.edge]] * share_kept(at);
+    }
+    return wanted;
+  }
+  /// What breaks around were given over what their margins want.
+  [[nodiscard]] std::vector<double> share_met() const {
+    const std::vector<double> wanted_there = far_->sums(wanted_m());
+    std::vector<double> share(edge_.size(), 0.0);
+    for (std::size_t e = 0; e < edge_.size(); ++e) {
+      if (wanted_there[e] > 0.0) share[e] = given_m_[e] / wanted_there[e];
+    }
+    return far_->sums(share);
+  }
+  /// Whole crust of the plates that have broken, by the nearest break of each sample.
+  [[nodiscard]] std::vector<std::int32_t> givers(std::span<const std::int32_t> inland) const {
+    std::vector<std::int32_t> giver;
+    for (std::int32_t i = 0; i < mesh_.size(); ++i) {
+      if (inland[i] < 0 || owner_[i] < 0 || owner_[i] != owner_[edge_[inland[i]]]) continue;
+      if (crust_.continental[i] == 0 || crust_.thickness_m[i] < kWhole_m) continue;
+      giver.push_back(i);
+    }
+    return giver;
+  }
+
+  const SphereMesh& mesh_;
+  const SphereSettings& s_;
+  SphereCrust& crust_;
+  std::span<const std::int16_t> owner_;
+  std::vector<std::int32_t> number_, edge_;  // of the break at a sample, and the other way round
+  std::vector<Place> margin_;
+  std::optional<Breaks> near_, far_;
+  std::vector<double> thick_m_, high_m_, haste_, given_m_;  // of each break
+  std::vector<double> off_shore_;                           // of each sample
+};
+
 }  // namespace
 
 /// Passive margins: where a continent has broken, the nearest part of the gap is its own crust,
@@ -128,119 +274,12 @@ class Breaks {
 void SphereTectonics::stretch_margins(std::span<const std::int32_t> gaps,
                                       std::span<const std::int32_t> nearest, SphereCrust& now,
                                       std::span<const std::int16_t> owner) {
-  const SphereSettings& s = settings_;
-  if (s.margin_km <= 0.0 || s.margin_thinning <= 0.0) return;
-  std::vector<std::int32_t> number(mesh_->size(), -1), source, margin;
-  for (std::size_t k = 0; k < gaps.size(); ++k) {
-    const std::int32_t edge = nearest[k];
-    if (now.continental[edge] == 0 || distance_km(gaps[k], edge) > s.margin_km) continue;
-    margin.push_back(static_cast<std::int32_t>(k));
-    if (number[edge] >= 0) continue;
-    number[edge] = static_cast<std::int32_t>(source.size());
-    source.push_back(edge);
-  }
-  if (margin.empty()) return;
-  const Breaks near(*mesh_, owner, source, s.margin_km / s.radius_km);
-  const Breaks far(*mesh_, owner, source, s.margin_source_km / s.radius_km);
-  const std::int32_t breaks = near.size();
-  std::vector<double> thick_m(breaks), z_m(breaks);
-  const auto read_breaks = [&] {
-    for (std::int32_t e = 0; e < breaks; ++e) {
-      thick_m[e] = now.thickness_m[source[e]];
-      z_m[e] = now.elevation_m[source[e]];
-    }
-    thick_m = near.means(thick_m);
-    z_m = near.means(z_m);
-  };
-  read_breaks();
-  std::vector<std::uint8_t> is_whole(breaks);
-  for (std::int32_t e = 0; e < breaks; ++e) is_whole[e] = thick_m[e] >= kWhole_m ? 1 : 0;
-  std::erase_if(margin, [&](std::int32_t k) { return is_whole[number[nearest[k]]] == 0; });
-  // The shore of samples is jagged; distances to it need not be.
-  std::vector<double> off_shore(mesh_->size(), 0.0);
-  for (std::size_t k = 0; k < gaps.size(); ++k) {
-    off_shore[gaps[k]] = std::min(1.0, distance_km(gaps[k], nearest[k]) / s.margin_km);
-  }
-  std::vector<std::int32_t> stretched;
-  for (const std::int32_t k : margin) stretched.push_back(gaps[k]);
-  level(
-      *mesh_, stretched, [](std::int32_t, std::int32_t) { return true; }, off_shore);
-  std::vector<double> haste(breaks, 1.0);
-  const auto share_kept = [&](std::int32_t k) {
-    return kept(off_shore[gaps[k]], haste[number[nearest[k]]]);
-  };
-  const auto wanted_m = [&] {
-    std::vector<double> wanted(breaks, 0.0);
-    for (const std::int32_t k : margin) {
-      wanted[number[nearest[k]]] += thick_m[number[nearest[k]]] * share_kept(k);
-    }
-    return wanted;
-  };
-
-  // Inland, each sample by its nearest break.
-  const auto inland = nearest_samples(*mesh_, source, s.margin_source_km / s.radius_km);
-  std::vector<std::int32_t> giver;
-  std::vector<double> thinning(mesh_->size(), 0.0), has_m(breaks, 0.0);
-  for (std::int32_t i = 0; i < mesh_->size(); ++i) {
-    if (inland[i] < 0 || owner[i] < 0 || now.continental[i] == 0 || now.thickness_m[i] < kWhole_m ||
-        owner[i] != owner[source[inland[i]]]) {
-      continue;
-    }
-    giver.push_back(i);
-    thinning[i] = tapered(distance_km(i, source[inland[i]]) / s.margin_source_km);
-    has_m[inland[i]] += thinning[i] * now.thickness_m[i];
-  }
-  const std::vector<double> wanted_around = far.sums(wanted_m()), has_around = far.sums(has_m);
-  for (const std::int32_t i : giver) {
-    const std::int32_t e = inland[i];
-    if (thinning[i] <= 0.0) continue;
-    thinning[i] *= std::min(s.margin_thinning, wanted_around[e] / has_around[e]);
-  }
-  level(
-      *mesh_, giver,
-      [&](std::int32_t i, std::int32_t j) {
-        return inland[j] >= 0 && owner[j] == owner[i] && now.continental[j] != 0;
-      },
-      thinning);
-  std::vector<double> given_m(breaks, 0.0);
-  for (const std::int32_t i : giver) {
-    const double lost_m = thinning[i] * now.thickness_m[i];
-    const float thinner_m = now.thickness_m[i] - static_cast<float>(lost_m);
-    given_m[inland[i]] += static_cast<double>(now.thickness_m[i]) - thinner_m;
-    now.thickness_m[i] = thinner_m;
-    now.elevation_m[i] -= static_cast<float>(lost_m / s.rebound);
-  }
-
-  // The margin goes on from the thinner crust, and thins so fast that it takes what the breaks
-  // around were given.
-  read_breaks();
-  const auto share_met = [&] {
-    const std::vector<double> wanted_there = far.sums(wanted_m());
-    std::vector<double> share(breaks, 0.0);
-    for (std::int32_t e = 0; e < breaks; ++e) {
-      if (wanted_there[e] > 0.0) share[e] = given_m[e] / wanted_there[e];
-    }
-    return far.sums(share);
-  };
-  std::vector<double> met = share_met();
-#pragma omp parallel for schedule(static)
-  for (std::int32_t e = 0; e < breaks; ++e) haste[e] = haste_for(met[e]);
-  met = share_met();
-  for (const std::int32_t k : margin) {
-    const std::int32_t i = gaps[k], edge = nearest[k], e = number[edge];
-    const double margin_m = thick_m[e] * share_kept(k) * met[e];
-    const double dry_m = z_m[e] - (thick_m[e] - margin_m) / s.rebound;
-    now.continental[i] = 1;
-    now.thickness_m[i] = static_cast<float>(margin_m);
-    // Never deeper than the floor that would lie there.
-    const double floor_m = s.floor_by_age ? now.elevation_m[i] : 500.0 * s.law.abyss_km;
-    now.elevation_m[i] =
-        static_cast<float>(std::max(floor_m, dry_m < 0.0 ? kWaterLoad * dry_m : dry_m));
-    now.age_myr[i] = 0.0F;
-    now.orogeny_age_myr[i] = now.orogeny_age_myr[edge];
-    now.ridge[i] = {};
-    budget_.stretched_km2 += sample_km2();
-  }
+  if (settings_.margin_km <= 0.0 || settings_.margin_thinning <= 0.0) return;
+  PassiveMargins margins(*mesh_, settings_, now, owner);
+  margins.find(gaps, nearest);
+  if (margins.empty()) return;
+  margins.thin_inland();
+  budget_.stretched_km2 += sample_km2() * static_cast<double>(margins.lay());
 }
 
 }  // namespace geo

@@ -155,9 +155,12 @@ void SphereTectonics::resample() {
   std::fill(front_of_.begin(), front_of_.end(), -1);
   fronts_.clear();
   contacts_.clear();
-  measure_volume();
+  const double lost_before_km3 = budget_.lost_km3;
   budget_.lost_km3 += sunk_km3;
-  budget_.resampling_km3 = budget_.continental_km3 - volume_before_km3 + sunk_km3;
+  spread_roots();
+  measure_volume();
+  budget_.resampling_km3 =
+      budget_.continental_km3 - volume_before_km3 + budget_.lost_km3 - lost_before_km3;
   budget_.ocean_change_km2 = oceanic(state_.crust) - ocean_before_km2;
   budget_.ocean_error_km2 = budget_.created_km2 - budget_.consumed_km2 - budget_.ocean_change_km2;
   budget_.resampled = true;

@@ -139,6 +139,28 @@ class Beginning {
     }
   }
 
+  /// Share of its thickness that crust of a continent keeps: the first edges are passive margins,
+  /// as wide as those that breaks make.
+  [[nodiscard]] std::vector<double> shares_kept_at_edges() const {
+    std::vector<double> kept(mesh_.size(), 1.0);
+    if (settings_.margin_km <= 0.0) return kept;
+    std::vector<std::int32_t> floor;
+    for (std::int32_t i = 0; i < mesh_.size(); ++i) {
+      if (state_.crust.continental[i] == 0) floor.push_back(i);
+    }
+    const auto nearest = nearest_samples(mesh_, floor, settings_.margin_km / settings_.radius_km);
+    const double half_km = 0.5 * mesh_.samples().spacing() * settings_.radius_km;
+    for (std::int32_t i = 0; i < mesh_.size(); ++i) {
+      if (state_.crust.continental[i] == 0 || nearest[i] < 0) continue;
+      const double inland_km =
+          settings_.radius_km * angle_between(mesh_.samples().position(i),
+                                              mesh_.samples().position(floor[nearest[i]])) -
+          half_km;
+      kept[i] = stretched_share(1.0 - std::clamp(inland_km / settings_.margin_km, 0.0, 1.0));
+    }
+    return kept;
+  }
+
   /// Low, worn continents; floor that ages away from the borders of its plate.
   void draw_relief() {
     if (!start_.elevation_m.empty()) return take_relief();
@@ -147,14 +169,17 @@ class Beginning {
     const Noise swell(seed_, "plates.first_relief");
     const auto relief =
         fbm_at(swell, mesh_.samples().positions(), settings_.radius_km / 1800.0, 5, 0.5);
+    const std::vector<double> kept = shares_kept_at_edges();
     constexpr double kHalfRate_mm_yr = 35.0, kLow_m = 350.0, kSwell_m = 900.0;
 #pragma omp parallel for schedule(static)
     for (std::int32_t i = 0; i < mesh_.size(); ++i) {
       if (crust.continental[i] != 0) {
         const double lift_m = std::max(10.0, kLow_m + kSwell_m * relief[i]);
-        crust.elevation_m[i] = static_cast<float>(lift_m);
-        crust.thickness_m[i] =
-            static_cast<float>(1e3 * start_.continental_km + settings_.rebound * (lift_m - kLow_m));
+        const double whole_m = 1e3 * start_.continental_km + settings_.rebound * (lift_m - kLow_m);
+        const double lost_m = (1.0 - kept[i]) * whole_m;
+        crust.elevation_m[i] =
+            static_cast<float>(water_loaded(lift_m - lost_m / settings_.rebound));
+        crust.thickness_m[i] = static_cast<float>(whole_m - lost_m);
         crust.orogeny_age_myr[i] = 1000.0F;
         continue;
       }

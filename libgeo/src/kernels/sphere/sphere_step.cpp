@@ -227,6 +227,7 @@ void SphereTectonics::advance() {
   ++state_.steps;
   budget_.time_myr = state_.time_myr;
   collide();
+  spread_roots();
   rift_by_chance();
   founder_by_chance();
   if (is_due()) {

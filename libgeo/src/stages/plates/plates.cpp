@@ -170,6 +170,10 @@ std::vector<Parameter> PlatesParameters::declarations() {
            "sphere: height of a collision's surge per area of the terrane", "cortial2019"),
       real("plates.surge_km", sphere.surge_km, "km", 0.0, 20.0,
            "sphere: most that one collision lifts", "christensen1995"),
+      real("plates.thickest_km", sphere.thickest_km, "km", 0.0, 200.0,
+           "sphere: thickest continental crust, whose deep part flows aside where there would be "
+           "more; 0 sets no limit",
+           "clark2000"),
       choice("plates.ocean_floor", ocean_floor, {"damping", "age"},
              "sphere: sea floor that sinks by damping, or as deep as its age", "stein1992"),
       real("plates.ridge_falloff", sphere.ridge_falloff, "1", 0.001, 1.0,

@@ -12,9 +12,10 @@
 namespace geo {
 namespace {
 
-/// Stretched crust is less of a continent the thinner it is.
+/// Stretched crust is less of a continent the thinner it is below that of the shelf's edge, which
+/// is stretched by a sixth.
 double continental_share(const SphereCrust& crust, std::int32_t sample) {
-  constexpr double kOceanic_m = 8e3, kContinental_m = 22e3;
+  constexpr double kOceanic_m = 8e3, kContinental_m = 31e3;
   if (crust.continental[sample] == 0) return 0.0;
   return std::clamp((crust.thickness_m[sample] - kOceanic_m) / (kContinental_m - kOceanic_m), 0.1,
                     1.0);
