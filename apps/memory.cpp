@@ -13,7 +13,8 @@ namespace terrane {
 
 void keep_freed_memory() {
   mallopt(M_MMAP_MAX, 0);
-  mallopt(M_TRIM_THRESHOLD, 2047 << 20);
+  constexpr int kKeptAtTheEnd = 2047 << 20;
+  mallopt(M_TRIM_THRESHOLD, kKeptAtTheEnd);
 }
 
 namespace {

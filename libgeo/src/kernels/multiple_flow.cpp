@@ -1,7 +1,5 @@
 #include "geo/kernels/multiple_flow.hpp"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -139,7 +137,7 @@ void run_side_by_side(First&& first, Second&& second) {
       failure[piece] = std::current_exception();
     }
   };
-#pragma omp parallel sections num_threads(std::min(2, omp_get_max_threads()))
+#pragma omp parallel sections
   {
 #pragma omp section
     guarded(0, first);
