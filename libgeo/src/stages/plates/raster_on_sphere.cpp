@@ -268,7 +268,8 @@ void lay_on_sphere(const PlatesParameters& parameters, const RasterTectonics& mo
                          context.seed);
   // Small pieces that charts and grid cut off join their neighbours.
   planet.finish();
-  SphereOnGrid(parameters, planet, io, context).draw(io);
+  constexpr double kWhole_m = 22e3;  // its plains are low and their crust thin
+  SphereOnGrid(parameters, planet, io, context, kWhole_m).draw(io);
 }
 
 }  // namespace geo

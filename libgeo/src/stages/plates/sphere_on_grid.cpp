@@ -12,13 +12,10 @@
 namespace geo {
 namespace {
 
-/// Stretched crust is less of a continent the thinner it is below that of the shelf's edge, which
-/// is stretched by a sixth.
-double continental_share(const SphereCrust& crust, std::int32_t sample) {
-  constexpr double kOceanic_m = 8e3, kContinental_m = 31e3;
+double continental_share(const SphereCrust& crust, std::int32_t sample, double whole_m) {
+  constexpr double kOceanic_m = 8e3;
   if (crust.continental[sample] == 0) return 0.0;
-  return std::clamp((crust.thickness_m[sample] - kOceanic_m) / (kContinental_m - kOceanic_m), 0.1,
-                    1.0);
+  return std::clamp((crust.thickness_m[sample] - kOceanic_m) / (whole_m - kOceanic_m), 0.1, 1.0);
 }
 
 }  // namespace
@@ -92,12 +89,13 @@ class SphereOnGrid::Bends {
 };
 
 SphereOnGrid::SphereOnGrid(const PlatesParameters& parameters, const SphereTectonics& model,
-                           StageIo& io, const Context& context)
+                           StageIo& io, const Context& context, double whole_m)
     : p_(parameters),
       model_(model),
       mesh_(model.mesh()),
       grid_(io.grid()),
       radius_km_(1e-3 * io.grid().figure().radius_m),
+      whole_m_(whole_m),
       seed_(context.seed) {
   const SphereCrust& crust = model.state().crust;
   boundaries_ = find_sphere_boundaries(mesh_, crust.plate, model.rotations(), p_.growth.speed_cm_yr,
@@ -172,7 +170,7 @@ void SphereOnGrid::draw_crust(const Cell& at, Index cell, const Vector3& unit,
   for (int k = 0; k < 3; ++k) {
     const std::int32_t i = at.place.corner[k];
     const double weight = at.place.weight[k];
-    fraction += weight * continental_share(crust, i);
+    fraction += weight * continental_share(crust, i, whole_m_);
     elevation += weight * crust.elevation_m[i];
     thickness += weight * crust.thickness_m[i];
     for (int c = 0; c < 3; ++c) {

@@ -12,8 +12,12 @@ namespace geo {
 /// resampled.
 class SphereOnGrid {
  public:
+  /// Crust stretched by a sixth: that at the edge of a shelf.
+  static constexpr double kShelfEdge_m = 31e3;
+
+  /// Crust is less of a continent the thinner it is below `whole_m`.
   SphereOnGrid(const PlatesParameters& parameters, const SphereTectonics& model, StageIo& io,
-               const Context& context);
+               const Context& context, double whole_m = kShelfEdge_m);
   void draw(StageIo& io) const;
   [[nodiscard]] std::span<const SphereBoundary> boundaries() const { return boundaries_; }
 
@@ -32,7 +36,7 @@ class SphereOnGrid {
   const SphereTectonics& model_;
   const SphereMesh& mesh_;
   const Grid& grid_;
-  double radius_km_;
+  double radius_km_, whole_m_;
   std::uint64_t seed_;
   std::vector<SphereBoundary> boundaries_;
   std::vector<std::int32_t> nearest_boundary_;  // of each sample, -1 far from any
