@@ -16,6 +16,7 @@ namespace geo {
 namespace {
 
 constexpr int kLanes = TridiagonalBlock::kLanes;  // rows or columns solved side by side
+constexpr int kPanel = 2 * kLanes;                // columns read side by side: a line of the cache
 constexpr int kBand = 64;                         // columns that exchange side by side
 constexpr double kGamma = 1.0 - 1.0 / std::numbers::sqrt2;
 // Exchange per step with one neighbour below which forward Euler does what backward Euler does:
@@ -43,7 +44,8 @@ class SplitDiffusion {
     {
 #pragma omp for schedule(static) nowait
       for (std::size_t r = 0; r < weak.size(); ++r) exchange_along_row(weak[r], strength);
-      TridiagonalBlock system(nx, periodic);
+      const bool uniform = periodic && !has_marks();
+      TridiagonalBlock system(nx, periodic, uniform ? Couplings::lanes : Couplings::all);
       std::vector<double> value(std::size_t(nx) * kLanes), stage(value.size());
 #pragma omp for schedule(static)
       for (int first = 0; first < count; first += kLanes) {
@@ -66,28 +68,35 @@ class SplitDiffusion {
   }
 
   void solve_columns(double dt_yr) {
-    const int nx = grid_.nx(), ny = grid_.ny(), blocks = (nx + kLanes - 1) / kLanes;
+    const int nx = grid_.nx(), ny = grid_.ny(), panels = (nx + kPanel - 1) / kPanel;
     const bool periodic = grid_.topology() == Topology::torus;
     const double strength = stage_strength(dt_yr);
     if (is_weak_along_columns(strength)) return exchange_along_columns(strength);
 #pragma omp parallel if (worth_threads())
     {
-      TridiagonalBlock system(ny, periodic);
-      std::vector<double> value(std::size_t(ny) * kLanes), stage(value.size());
+      const bool alike = !periodic && !has_marks();
+      TridiagonalBlock system(ny, periodic, alike ? Couplings::unknowns : Couplings::all);
+      const std::size_t block = std::size_t(ny) * kLanes;
+      std::vector<double> values(kPanel / kLanes * block), stage(block);
+      const auto value = [&](int k) { return &values[k / kLanes * block + k % kLanes]; };
       // Without marked cells all columns are one and the same system.
       if (!has_marks()) couple_columns(system, 0, strength);
 #pragma omp for schedule(static)
-      for (int b = 0; b < blocks; ++b) {
-        const int column = b * kLanes, width = std::min(kLanes, nx - column);
-        if (has_marks()) couple_columns(system, column, strength);
+      for (int p = 0; p < panels; ++p) {
+        const int column = p * kPanel, width = std::min(kPanel, nx - column);
         for (int j = 0; j < ny; ++j) {
           const Real* from = &field_[std::size_t(j) * nx + column];
-          for (int k = 0; k < width; ++k) value[j * kLanes + k] = from[k];
+          for (int k = 0; k < width; ++k) value(k)[std::size_t(j) * kLanes] = from[k];
         }
-        step(system, value, stage);
+        for (int k = 0; k < width; k += kLanes) {
+          if (has_marks()) couple_columns(system, column + k, strength);
+          step(system, {value(k), block}, stage);
+        }
         for (int j = 0; j < ny; ++j) {
           Real* to = &field_[std::size_t(j) * nx + column];
-          for (int k = 0; k < width; ++k) to[k] = static_cast<Real>(value[j * kLanes + k]);
+          for (int k = 0; k < width; ++k) {
+            to[k] = static_cast<Real>(value(k)[std::size_t(j) * kLanes]);
+          }
         }
       }
     }
@@ -189,7 +198,8 @@ class SplitDiffusion {
     const bool periodic = grid_.topology() != Topology::plane;
     double coupling[kLanes];
     for (int k = 0; k < kLanes; ++k) coupling[k] = coupling_east(row[k], strength);
-    for (int i = 0; i < nx; ++i) {
+    const bool uniform = periodic && !has_marks();
+    for (int i = 0; i < (uniform ? 1 : nx); ++i) {
       const int west = i > 0 ? i - 1 : nx - 1, east = i < nx - 1 ? i + 1 : 0;
       double* lower = system.lower(i);
       double* upper = system.upper(i);
@@ -212,12 +222,13 @@ class SplitDiffusion {
   void couple_columns(TridiagonalBlock& system, int first_column, double strength) const {
     const int nx = grid_.nx(), ny = grid_.ny();
     const bool periodic = grid_.topology() == Topology::torus;
+    const int lanes = periodic || has_marks() ? kLanes : 1;
     for (int j = 0; j < ny; ++j) {
       const int south = j > 0 ? j - 1 : ny - 1, north = j < ny - 1 ? j + 1 : 0;
       const auto [down, up] = couplings_north(j, strength);
       double* lower = system.lower(j);
       double* upper = system.upper(j);
-      for (int k = 0; k < kLanes; ++k) {
+      for (int k = 0; k < lanes; ++k) {
         lower[k] = down;
         upper[k] = up;
       }
@@ -231,13 +242,13 @@ class SplitDiffusion {
       }
     }
     if (!periodic) {
-      std::fill_n(system.lower(0), kLanes, 0.0);
-      std::fill_n(system.upper(ny - 1), kLanes, 0.0);
+      std::fill_n(system.lower(0), lanes, 0.0);
+      std::fill_n(system.upper(ny - 1), lanes, 0.0);
     }
     system.factorise();
   }
 
-  void step(const TridiagonalBlock& system, std::vector<double>& value,
+  void step(const TridiagonalBlock& system, std::span<double> value,
             std::vector<double>& stage) const {
     system.solve(value.data());
     if (options_.scheme == DiffusionScheme::positive) return;

@@ -5,7 +5,7 @@
 
 #include "geo/core/error.hpp"
 #include "geo/kernels/catmull_rom.hpp"
-#include "geo/kernels/noise.hpp"
+#include "geo/kernels/noise_row.hpp"
 
 namespace geo {
 
@@ -103,11 +103,15 @@ void unit_detail(const Grid& fine, const DetailLaw& law, std::uint64_t seed,
   constexpr double kDeviation = 0.29;  // of gradient noise
   const double scale = squares > 0.0 ? sum / (kDeviation * std::sqrt(squares)) : 0.0;
   const double frequency = fine.figure().radius_m / law.wavelength_m;
-#pragma omp parallel for schedule(static)
-  for (int j = 0; j < fine.ny(); ++j) {
-    for (int i = 0; i < fine.nx(); ++i) {
-      detail[fine.cell(i, j)] = static_cast<float>(
-          scale * noise.fbm(fine.unit_vector(i, j), frequency, law.octaves, law.gain));
+#pragma omp parallel
+  {
+    NoiseRow row(fine);
+#pragma omp for schedule(static)
+    for (int j = 0; j < fine.ny(); ++j) {
+      const auto line = detail.subspan(fine.cell(0, j), fine.nx());
+      row.choose_all(j);
+      row.fbm(noise, frequency, law.octaves, law.gain, line);
+      for (float& value : line) value = static_cast<float>(scale * value);
     }
   }
 }
