@@ -20,33 +20,37 @@ constexpr double kLevel_m = 1.0;
 void SphereTectonics::spread_roots() {
   if (settings_.thickest_km <= 0.0) return;
   SphereCrust& crust = state_.crust;
+  const std::int32_t n = crust.size();
   const double most_m = 1e3 * settings_.thickest_km;
-  const auto holds = [&](std::int32_t i) {
-    return crust.plate[i] >= 0 && crust.continental[i] != 0 && hidden_[i] == 0;
-  };
-  std::vector<std::int32_t> thick;
-  for (std::int32_t i = 0; i < crust.size(); ++i) {
-    if (holds(i) && crust.thickness_m[i] > most_m) thick.push_back(i);
+  std::vector<std::int32_t> reached;  // by what flows, in the order in which it comes
+  std::vector<std::int16_t> land_of(n);
+  std::vector<std::uint8_t> is_reached(n, 0);
+  std::vector<double> gain_m(n, 0.0), change_m(n, 0.0), excess_m(n, 0.0);
+#pragma omp parallel for schedule(static)
+  for (std::int32_t i = 0; i < n; ++i) {
+    const bool holds = crust.plate[i] >= 0 && crust.continental[i] != 0 && hidden_[i] == 0;
+    land_of[i] = static_cast<std::int16_t>(holds ? crust.plate[i] : -1);
+    is_reached[i] = holds && crust.thickness_m[i] > most_m ? 1 : 0;
   }
-  if (thick.empty()) return;
-  std::vector<double> gain_m(crust.size(), 0.0), change_m(crust.size(), 0.0);
-  const auto excess_m = [&](std::int32_t i) {
-    return std::max(0.0, crust.thickness_m[i] + gain_m[i] - most_m);
+  const auto put_excess = [&](std::int32_t i) {
+    excess_m[i] = std::max(0.0, crust.thickness_m[i] + gain_m[i] - most_m);
   };
-  std::vector<std::uint8_t> is_reached(crust.size(), 0);
-  std::vector<std::int32_t> reached(thick);
-  for (const std::int32_t i : thick) is_reached[i] = 1;
+  for (std::int32_t i = 0; i < n; ++i) {
+    if (is_reached[i] == 0) continue;
+    reached.push_back(i);
+    put_excess(i);
+  }
   for (int round = 0; round < kRounds; ++round) {
     double largest_m = 0.0;
     const std::size_t sources = reached.size();
     for (std::size_t k = 0; k < sources; ++k) {
       const std::int32_t i = reached[k];
-      const double from_m = excess_m(i);
+      const double from_m = excess_m[i];
       largest_m = std::max(largest_m, from_m);
       if (from_m <= 0.0) continue;
       for (const std::int32_t j : mesh_->neighbours(i)) {
-        if (!holds(j) || crust.plate[j] != crust.plate[i]) continue;
-        const double flow_m = kFlow * std::max(0.0, from_m - excess_m(j));
+        if (land_of[j] != land_of[i]) continue;
+        const double flow_m = kFlow * std::max(0.0, from_m - excess_m[j]);
         change_m[i] -= flow_m;
         change_m[j] += flow_m;
         if (is_reached[j] != 0) continue;
@@ -58,12 +62,12 @@ void SphereTectonics::spread_roots() {
     for (const std::int32_t i : reached) {
       gain_m[i] += change_m[i];
       change_m[i] = 0.0;
+      put_excess(i);
     }
   }
   for (const std::int32_t i : reached) {
-    const double sunk_m = excess_m(i);
-    gain_m[i] -= sunk_m;
-    budget_.lost_km3 += 1e-3 * sample_km2() * sunk_m;
+    gain_m[i] -= excess_m[i];
+    budget_.lost_km3 += 1e-3 * sample_km2() * excess_m[i];
     crust.thickness_m[i] += static_cast<float>(gain_m[i]);
     crust.elevation_m[i] += static_cast<float>(gain_m[i] / settings_.rebound);
   }
