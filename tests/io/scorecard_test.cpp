@@ -35,9 +35,6 @@ State whole_planet(int nx = 480) {
   fill(field::crust_thickness, [&](Index c) { return land(c) ? 60e3 - 4e4 * east(c) : 7e3; });
   fill(field::crust_age, [&](Index c) { return 100.0 * east(c) - 60.0; });
   fill(field::plate_id, [&](Index c) { return east(c) < 1.0 ? 0 : 1; });
-  fill(field::boundary_type, [&](Index c) {
-    return std::abs(east(c) - 1.0) < 0.03 ? 2 : std::min(east(c), 2.0 - east(c)) < 0.03 ? 1 : 0;
-  });
   fill(field::plate_velocity_east, [&](Index c) { return east(c) < 1.0 ? -30.0 : 30.0; });
   fill(field::temperature, [&](Index c) {
     const double latitude = grid.latitude_deg(grid.row(c)) / 90.0;

@@ -12,9 +12,8 @@ constexpr double kThousandKm = 1e6;  // m
 void measure_boundary_lengths(const State& state, Figures& figures) {
   const auto boundaries = measure_boundaries(
       state.grid(),
-      {state.read(field::plate_id), state.read(field::boundary_type),
-       state.read(field::continental_fraction), state.read(field::plate_velocity_east),
-       state.read(field::plate_velocity_north)});
+      {state.read(field::plate_id), state.read(field::continental_fraction),
+       state.read(field::plate_velocity_east), state.read(field::plate_velocity_north)});
   const auto length = [&](BoundaryKind kind) {
     return boundaries.length_m[static_cast<int>(kind)] / kThousandKm;
   };
@@ -45,8 +44,7 @@ void measure_plates(const State& state, Figures& figures) {
   figures["plate_speed"] =
       speed_without_net_rotation(state.grid(), state.read(field::plate_velocity_east),
                                  state.read(field::plate_velocity_north));
-  if (state.has(field::plate_id) && state.has(field::boundary_type) &&
-      state.has(field::continental_fraction)) {
+  if (state.has(field::plate_id) && state.has(field::continental_fraction)) {
     measure_boundary_lengths(state, figures);
   }
 }

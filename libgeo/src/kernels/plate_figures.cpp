@@ -14,8 +14,10 @@ namespace geo {
 namespace {
 
 constexpr int kColumns = 720;
-constexpr int kTypes = 3;  // convergent, divergent, transform
 constexpr int kReach = 4;  // cells across the neighbourhood of a corner
+/// Plates slide past each other where their relative motion is within 25 degrees of the boundary:
+/// Bird (2003) takes 20 degrees on steps of 45 km, of which a neighbourhood averages several.
+constexpr double kSlide = 0.4663;
 
 void check_shape(const Grid& grid, std::size_t size, const char* what) {
   if (size != static_cast<std::size_t>(grid.size())) {
@@ -29,7 +31,6 @@ struct Patch {
   std::int16_t plate = -1;
   float east = 0.0F, north = 0.0F;
   double continent = 0.0;
-  std::array<std::int32_t, kTypes> types{};
 };
 
 class Patches {
@@ -50,8 +51,6 @@ class Patches {
         Patch& patch = patches_[to];
         patch.continent += fields.continental_fraction[from];
         ++cells[to];
-        const int type = fields.boundary_type[from];
-        if (type >= 1 && type <= kTypes) ++patch.types[type - 1];
       }
     }
     for (int row = 0; row < grid_.ny(); ++row) {
@@ -129,7 +128,6 @@ class Corner {
         side.north += patch.north;
         side.continent += patch.continent;
         ++side.cells;
-        for (int t = 0; t < kTypes; ++t) types_[t] += patch.types[t];
       }
     }
     area_m2_ = east_m * north_m;
@@ -143,25 +141,30 @@ class Corner {
     for (int s = 0; s < count_; ++s) sum += sides_[s].steepness();
     return 0.5 * sum * area_m2_;
   }
-  [[nodiscard]] double opening_mm_yr() const {
+  /// Relative motion of the two plates that share most of the neighbourhood.
+  struct Motion {
+    double opening_mm_yr = 0.0, shear_mm_yr = 0.0;
+  };
+  [[nodiscard]] Motion motion() const {
     const Side &a = sides_[0], &b = sides_[1];
     const double steepness = a.steepness();
-    if (steepness == 0.0) return 0.0;
+    if (steepness == 0.0) return {};
     const double east = a.east / a.cells - b.east / b.cells;
     const double north = a.north / a.cells - b.north / b.cells;
-    return (east * a.gradient_east + north * a.gradient_north) / steepness;
+    return {(east * a.gradient_east + north * a.gradient_north) / steepness,
+            std::abs(east * a.gradient_north - north * a.gradient_east) / steepness};
   }
-  [[nodiscard]] bool has_type() const { return types_ != std::array<std::int64_t, kTypes>{}; }
-  [[nodiscard]] BoundaryKind kind() const {
-    const bool continents = sides_[0].is_continent() && sides_[1].is_continent();
-    switch (std::max_element(types_.begin(), types_.end()) - types_.begin()) {
-      case 0:
-        return continents ? BoundaryKind::collision : BoundaryKind::subduction;
-      case 1:
-        return continents ? BoundaryKind::continental_rift : BoundaryKind::ocean_ridge;
-      default:
-        return continents ? BoundaryKind::continental_transform : BoundaryKind::ocean_transform;
+  [[nodiscard]] BoundaryKind kind(const Motion& motion) const {
+    const Side &a = sides_[0], &b = sides_[1];
+    const bool is_land = a.continent / a.cells + b.continent / b.cells >= 1.0;
+    if (std::abs(motion.opening_mm_yr) < kSlide * motion.shear_mm_yr) {
+      return is_land ? BoundaryKind::continental_transform : BoundaryKind::ocean_transform;
     }
+    if (motion.opening_mm_yr > 0.0) {
+      return is_land ? BoundaryKind::continental_rift : BoundaryKind::ocean_ridge;
+    }
+    const bool continents_meet = a.is_continent() && b.is_continent();
+    return continents_meet ? BoundaryKind::collision : BoundaryKind::subduction;
   }
 
  private:
@@ -175,19 +178,17 @@ class Corner {
 
   std::array<Side, kReach * kReach> sides_{};
   int count_ = 0;
-  std::array<std::int64_t, kTypes> types_{};
   double area_m2_ = 0.0;
 };
 
 }  // namespace
 
 double BoundaryFigures::total_m() const {
-  return std::accumulate(length_m.begin(), length_m.end(), untyped_m);
+  return std::accumulate(length_m.begin(), length_m.end(), at_rest_m);
 }
 
 BoundaryFigures measure_boundaries(const Grid& grid, const PlateFields& plates) {
   check_shape(grid, plates.plate_id.size(), "plate_id");
-  check_shape(grid, plates.boundary_type.size(), "boundary_type");
   check_shape(grid, plates.continental_fraction.size(), "continental_fraction");
   check_shape(grid, plates.velocity_east_mm_yr.size(), "plate_velocity_east");
   check_shape(grid, plates.velocity_north_mm_yr.size(), "plate_velocity_north");
@@ -198,13 +199,14 @@ BoundaryFigures measure_boundaries(const Grid& grid, const PlateFields& plates) 
       if (Corner::lies_within_a_plate(patches, column, row)) continue;
       const Corner corner(patches, column, row);
       const double length = corner.length_m();
-      if (!corner.has_type()) {
-        figures.untyped_m += length;
+      const Corner::Motion motion = corner.motion();
+      if (motion.opening_mm_yr == 0.0 && motion.shear_mm_yr == 0.0) {
+        figures.at_rest_m += length;
         continue;
       }
-      const int kind = static_cast<int>(corner.kind());
+      const int kind = static_cast<int>(corner.kind(motion));
       figures.length_m[kind] += length;
-      figures.opening_mm_yr[kind] += length * corner.opening_mm_yr();
+      figures.opening_mm_yr[kind] += length * motion.opening_mm_yr;
     }
   }
   for (int kind = 0; kind < kBoundaryKinds; ++kind) {
