@@ -63,12 +63,24 @@ TEST_F(Scenario, AnIslandIsDrivenIntoAContinentAndASupercontinentBreaks) {
   }
   ASSERT_GE(collisions.size(), 2U);
   EXPECT_NEAR(collisions.front().time_myr, 77.0, 20.0);
-  EXPECT_NEAR(collisions.front().area_km2, 5e5, 2e5);
+  EXPECT_NEAR(collisions.front().area_km2, 7.9e5, 2e5);
   const auto large = std::find_if(collisions.begin(), collisions.end(),
                                   [](const Happening& one) { return one.area_km2 > 3e6; });
   ASSERT_NE(large, collisions.end());
   EXPECT_NEAR(large->time_myr, 191.0, 20.0);
   EXPECT_TRUE(broke);
+}
+
+TEST_F(Scenario, TheIslandCollidesOnAFinerLatticeToo) {
+  run("island-and-supercontinent.toml",
+      {"--set", "plates.samples=100000", "--set", "plates.time_myr=100"});
+  const auto all = happenings(out_);
+  const auto collision = std::find_if(all.begin(), all.end(), [](const Happening& one) {
+    return one.kind == "continental-collision";
+  });
+  ASSERT_NE(collision, all.end());
+  EXPECT_NEAR(collision->time_myr, 77.0, 20.0);
+  EXPECT_NEAR(collision->area_km2, 7.9e5, 2e5);
 }
 
 /// Today's Earth, 80 million years on. Needs the Earth's relief, which Debian installs.
