@@ -5,6 +5,7 @@
 #include <complex>
 #include <numbers>
 #include <string>
+#include <unsupported/Eigen/FFT>
 #include <vector>
 
 #include "geo/core/error.hpp"
@@ -14,59 +15,6 @@ namespace {
 
 using Complex = std::complex<double>;
 constexpr double kPi = std::numbers::pi;
-
-/// Fourier sums of one length: radix 2 where that divides, straight sums of the odd rest.
-class Fourier {
- public:
-  explicit Fourier(int length) : length_(length), root_(length), scratch_(length) {
-    for (int k = 0; k < length; ++k) root_[k] = std::polar(1.0, -2.0 * kPi * k / length);
-  }
-  /// values[k] becomes sum of values[i] exp(-2 pi i k / length); conjugate the sign for `back`.
-  void transform(std::vector<Complex>& values, bool back) {
-    if (back) conjugate(values);
-    split(values.data(), scratch_.data(), length_, 1);
-    if (back) conjugate(values);
-  }
-
- private:
-  static void conjugate(std::vector<Complex>& values) {
-    for (Complex& v : values) v = std::conj(v);
-  }
-  // Decimation in time; `stride` is length_ / n, the step through the table of roots.
-  void split(Complex* x, Complex* scratch, int n, int stride) {
-    if (n == 1) return;
-    if (n % 2 == 1) {
-      for (int k = 0; k < n; ++k) {
-        Complex sum = 0.0;
-        for (int i = 0; i < n; ++i) {
-          sum += x[i] * root_[static_cast<std::int64_t>(i) * k % n * stride];
-        }
-        scratch[k] = sum;
-      }
-      std::copy_n(scratch, n, x);
-      return;
-    }
-    const int half = n / 2;
-    for (int i = 0; i < half; ++i) {
-      scratch[i] = x[2 * i];
-      scratch[half + i] = x[2 * i + 1];
-    }
-    split(scratch, x, half, 2 * stride);
-    split(scratch + half, x + half, half, 2 * stride);
-    for (int k = 0; k < half; ++k) {
-      const Complex odd = multiply(root_[static_cast<std::size_t>(k) * stride], scratch[half + k]);
-      x[k] = scratch[k] + odd;
-      x[half + k] = scratch[k] - odd;
-    }
-  }
-  // std::complex's own product also looks after infinities, at several times the price.
-  static Complex multiply(const Complex& a, const Complex& b) {
-    return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
-  }
-
-  int length_;
-  std::vector<Complex> root_, scratch_;
-};
 
 /// Weights of Fejér's first rule at the mid-points of ny equal steps of colatitude; they sum to 2.
 std::vector<double> fejer_weights(int ny) {
@@ -183,13 +131,15 @@ void filter_degrees_in(const Grid& grid, std::span<Real> field, std::span<const 
   std::vector<Complex> spectrum(static_cast<std::size_t>(orders) * ny);
 #pragma omp parallel
   {
-    Fourier fourier(nx);
-    std::vector<Complex> row(nx);
+    Eigen::FFT<double> fourier;
+    fourier.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+    std::vector<double> row(nx);
+    std::vector<Complex> waves(nx / 2 + 1);
 #pragma omp for schedule(static)
     for (int j = 0; j < ny; ++j) {
       for (int i = 0; i < nx; ++i) row[i] = field[grid.cell(i, j)];
-      fourier.transform(row, false);
-      for (int m = 0; m < orders; ++m) spectrum[static_cast<std::size_t>(m) * ny + j] = row[m];
+      fourier.fwd(waves.data(), row.data(), nx);
+      for (int m = 0; m < orders; ++m) spectrum[static_cast<std::size_t>(m) * ny + j] = waves[m];
     }
 #pragma omp for schedule(dynamic, 1)
     for (int m = 0; m < orders; ++m) {
@@ -198,14 +148,10 @@ void filter_degrees_in(const Grid& grid, std::span<Real> field, std::span<const 
     }
 #pragma omp for schedule(static)
     for (int j = 0; j < ny; ++j) {
-      std::fill(row.begin(), row.end(), Complex{});
-      for (int m = 0; m < orders; ++m) {
-        const Complex value = spectrum[static_cast<std::size_t>(m) * ny + j] / (1.0 * nx);
-        row[m] = value;
-        if (m > 0) row[nx - m] = std::conj(value);
-      }
-      fourier.transform(row, true);
-      for (int i = 0; i < nx; ++i) field[grid.cell(i, j)] = static_cast<Real>(row[i].real());
+      std::fill(waves.begin(), waves.end(), Complex{});
+      for (int m = 0; m < orders; ++m) waves[m] = spectrum[static_cast<std::size_t>(m) * ny + j];
+      fourier.inv(row.data(), waves.data(), nx);
+      for (int i = 0; i < nx; ++i) field[grid.cell(i, j)] = static_cast<Real>(row[i]);
     }
   }
 }
