@@ -24,22 +24,22 @@ void SphereTectonics::spread_roots() {
   const double most_m = 1e3 * settings_.thickest_km;
   std::vector<std::int32_t> reached;  // by what flows, in the order in which it comes
   std::vector<std::int16_t> land_of(n);
-  std::vector<std::uint8_t> is_reached(n, 0);
-  std::vector<double> gain_m(n, 0.0), change_m(n, 0.0), excess_m(n, 0.0);
+  std::vector<std::uint8_t> is_reached(n);
 #pragma omp parallel for schedule(static)
   for (std::int32_t i = 0; i < n; ++i) {
     const bool holds = crust.plate[i] >= 0 && crust.continental[i] != 0 && hidden_[i] == 0;
     land_of[i] = static_cast<std::int16_t>(holds ? crust.plate[i] : -1);
     is_reached[i] = holds && crust.thickness_m[i] > most_m ? 1 : 0;
   }
+  for (std::int32_t i = 0; i < n; ++i) {
+    if (is_reached[i] != 0) reached.push_back(i);
+  }
+  if (reached.empty()) return;
+  std::vector<double> gain_m(n, 0.0), change_m(n, 0.0), excess_m(n, 0.0);
   const auto put_excess = [&](std::int32_t i) {
     excess_m[i] = std::max(0.0, crust.thickness_m[i] + gain_m[i] - most_m);
   };
-  for (std::int32_t i = 0; i < n; ++i) {
-    if (is_reached[i] == 0) continue;
-    reached.push_back(i);
-    put_excess(i);
-  }
+  for (const std::int32_t i : reached) put_excess(i);
   for (int round = 0; round < kRounds; ++round) {
     double largest_m = 0.0;
     const std::size_t sources = reached.size();
