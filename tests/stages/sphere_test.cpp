@@ -170,6 +170,23 @@ TEST(DriftedPlates, GoOnFromAnyFrameWithForcesAndRivers) {
   EXPECT_TRUE(same_values(whole, rest));
 }
 
+TEST(DriftedPlates, GoOnFromAnyFrameWhileRiftsOpenAndContinentsSlow) {
+  PlatesParameters p = with_frames();
+  p.sphere.rift_per_myr = 0.02;
+  p.sphere.rift_onset_myr = 50.0;
+  State without(std::make_shared<Grid>(Grid::sphere(32, 16)));
+  (void)frames_of(p, without, nullptr);
+  p.sphere.suture_drag = 300.0;
+  State whole(std::make_shared<Grid>(Grid::sphere(32, 16)));
+  const auto frames = frames_of(p, whole, nullptr);
+  EXPECT_FALSE(same_values(whole, without));
+  for (const std::size_t k : {1U, 2U, 3U, 4U}) {
+    State rest(std::make_shared<Grid>(Grid::sphere(32, 16)));
+    (void)frames_of(p, rest, std::make_shared<const Checkpoint>(frames[k].checkpoint));
+    EXPECT_TRUE(same_values(whole, rest)) << k;
+  }
+}
+
 TEST(DriftedPlates, AreTheSameWithAndWithoutFrames) {
   State with(std::make_shared<Grid>(Grid::sphere(32, 16)));
   (void)frames_of(with_frames(), with, nullptr);

@@ -30,6 +30,17 @@ using Matrix3 = std::array<Vector3, 3>;
   return product;
 }
 
+/// frame m frame^T for a symmetric m: a tensor carried along by a rotation.
+[[nodiscard]] inline Matrix3 carried(const Matrix3& frame, const Matrix3& m) {
+  Matrix3 out;
+  for (int c = 0; c < 3; ++c) {
+    Vector3 axis{};
+    axis[c] = 1.0;
+    out[c] = times(frame, times(m, back(frame, axis)));
+  }
+  return out;
+}
+
 /// A rotation as a unit quaternion: scalar and vector part.
 struct Quaternion {
   double w = 1.0;

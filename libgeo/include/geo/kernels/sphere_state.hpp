@@ -38,6 +38,9 @@ struct SpherePlate {
   std::int16_t carrier = -1;
   double born_myr = 0.0;
   bool is_held = false;  ///< its motion was given: neither slab pull nor the frame changes it
+  Vector3 quickening{};  ///< by which its rotation grows since a rift, rad/Myr2
+  double quickens_until_myr = 0.0;
+  Vector3 yielding{};  ///< by which continents it has run into change its rotation, rad/Myr
 };
 
 /// What is remembered of two plates, the one of lower number first.

@@ -31,6 +31,7 @@ struct SphereSettings {
   bool by_forces = false;            ///< motion balances forces, in place of that
   PlateForces force;
   double penetration_km = 300.0;      ///< of continents, before they collide
+  double suture_drag = 0.0;           ///< between them, over that below a plate
   double surge_km = 4.5;              ///< most that one collision lifts
   double thickest_km = 75.0;          ///< of continents: thicker roots spread; 0: no limit
   double oceanic_km = 7.0;            ///< thickness of new crust
@@ -45,6 +46,7 @@ struct SphereSettings {
   double rift_per_myr = 0.004;        ///< lambda_0
   double rift_smallest = 0.5;         ///< smaller plates, in mean areas, do not rift
   double rift_speed_mm_yr = 30.0;     ///< at which fragments part
+  double rift_onset_myr = 0.0;        ///< in which they come to it
   double rift_warp_km = 400.0;        ///< of their borders
   double founder_per_myr = 0.01;      ///< rate at which 1000 km of old passive margin founder
   double founder_age_myr = 120.0;     ///< from which floor at a passive margin is old
@@ -222,6 +224,9 @@ class SphereTectonics {
   void grow_volcano(int plate, const Vector3& place, double volume_km3);
   void run_rivers();
   void pull_slabs();
+  void quicken(SpherePlate& fragment, const Vector3& gained) const;
+  void quicken_rifts();
+  void yield_to_continents();
   void balance_forces();
   void collide();
   void collide(std::int32_t sample);
@@ -235,6 +240,7 @@ class SphereTectonics {
   [[nodiscard]] std::vector<std::int32_t> old_margins() const;
   void founder_by_chance();
   void founder(std::int32_t start);
+  [[nodiscard]] Vector3 driven_rotation(int plate) const;
   [[nodiscard]] Vector3 net_rotation() const;
   void fill_gaps(SphereCrust& now, std::vector<std::int16_t>& owner);
   void stretch_margins(std::span<const std::int32_t> gaps, std::span<const std::int32_t> nearest,

@@ -69,7 +69,8 @@ void SphereTectonics::collide(std::int32_t sample) {
   Vector3 sum{};
   for (const std::int32_t i : terrane) sum = add(sum, samples.position(i));
   const Vector3 centroid = times(frame_[lower], normalised(sum));
-  const Vector3 relative = add(rotation_[lower], rotation_[upper], -1.0);
+  // Of what drives them: their continents have slowed each other by now.
+  const Vector3 relative = add(driven_rotation(lower), driven_rotation(upper), -1.0);
   const double speed_mm_yr = settings_.radius_km * length(cross(relative, centroid));
   surge(upper, terrane, centroid, area_km2, speed_mm_yr);
 

@@ -13,17 +13,6 @@ Vector3 solved(const Matrix3& m, const Vector3& right) {
   return scaled(Vector3{dot(a, right), dot(b, right), dot(c, right)}, 1.0 / dot(m[0], a));
 }
 
-/// frame m frame^T for a symmetric m.
-Matrix3 carried(const Matrix3& frame, const Matrix3& m) {
-  Matrix3 out{};
-  for (int c = 0; c < 3; ++c) {
-    Vector3 axis{};
-    axis[c] = 1.0;
-    out[c] = times(frame, times(m, back(frame, axis)));
-  }
-  return out;
-}
-
 /// A rotation that is nowhere faster than a speed. Spin about the plate's own centre, which moves
 /// it least, gives way first.
 Vector3 limited(const Vector3& rotation, const Vector3& centre, double most) {

@@ -119,7 +119,11 @@ void SphereTectonics::part(int plate, std::span<const std::int8_t> fragment,
   for (std::size_t k = 0; k < away.size(); ++k) {
     SpherePlate part = whole;
     part.born_myr = state_.time_myr;
-    const Vector3 rotation = add(drift, away[k], speed_mm_yr / settings_.radius_km);
+    const Vector3 gained = scaled(away[k], speed_mm_yr / settings_.radius_km);
+    const bool is_gradual =
+        kind == SphereEvent::Kind::rift && settings_.rift_onset_myr > 0.0 && !settings_.by_forces;
+    if (is_gradual) quicken(part, gained);
+    const Vector3 rotation = is_gradual ? drift : add(drift, gained);
     part.speed_rad_myr =
         std::min(length(rotation), settings_.law.speed_mm_yr / settings_.radius_km);
     if (part.speed_rad_myr > 0.0) part.axis = normalised(rotation);

@@ -78,8 +78,13 @@ void SphereTectonics::set_frames() {
   for (std::size_t p = 0; p < state_.plates.size(); ++p) {
     const SpherePlate& root = state_.plates[state_.root(static_cast<int>(p))];
     frame_[p] = state_.plates[p].turn.matrix();
-    rotation_[p] = scaled(root.axis, root.speed_rad_myr);
+    rotation_[p] = add(driven_rotation(static_cast<int>(p)), root.yielding);
   }
+}
+
+Vector3 SphereTectonics::driven_rotation(int plate) const {
+  const SpherePlate& root = state_.plates[state_.root(plate)];
+  return scaled(root.axis, root.speed_rad_myr);
 }
 
 double SphereTectonics::sample_km2() const {
@@ -102,11 +107,8 @@ Vector3 SphereTectonics::net_rotation() const {
     if (!state_.plates[p].alive || is_held) continue;
     const Matrix3& own = partition_.cap(static_cast<int>(p)).inertia;
     momentum = add(momentum, times(frame_[p], times(own, back(frame_[p], rotation_[p]))));
-    for (int c = 0; c < 3; ++c) {
-      Vector3 axis{};
-      axis[c] = 1.0;
-      inertia[c] = add(inertia[c], times(frame_[p], times(own, back(frame_[p], axis))));
-    }
+    const Matrix3 whole = carried(frame_[p], own);
+    for (int c = 0; c < 3; ++c) inertia[c] = add(inertia[c], whole[c]);
   }
   // The tensor is symmetric: its rows are its columns.
   const Vector3 first = cross(inertia[1], inertia[2]);
@@ -222,6 +224,8 @@ void SphereTectonics::advance() {
     balance_forces();
   } else {
     pull_slabs();
+    quicken_rifts();
+    yield_to_continents();
   }
   state_.time_myr += settings_.law.step_myr;
   ++state_.steps;

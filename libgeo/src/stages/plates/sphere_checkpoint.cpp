@@ -27,6 +27,7 @@ Directions directions(const std::vector<float>& values) {
 }
 
 constexpr std::size_t kNumbers = 9;         // of a plate: turn, axis, speed, birth
+constexpr std::size_t kChangeNumbers = 7;   // of a plate: quickening, its end, yielding
 constexpr std::size_t kVolcanoNumbers = 6;  // of a plume: number, volcanoes, place, volume
 
 }  // namespace
@@ -45,18 +46,23 @@ Checkpoint checkpoint_of(const SphereState& state) {
   to["orogeny_age_myr"] = crust.orogeny_age_myr;
   to["ridge"] = flat(crust.ridge);
   to["fold"] = flat(crust.fold);
-  std::vector<double> numbers;
+  std::vector<double> numbers, changes;
   std::vector<std::int8_t> alive, held;
   std::vector<std::int16_t> carrier;
   for (const SpherePlate& plate : state.plates) {
     numbers.insert(numbers.end(),
                    {plate.turn.w, plate.turn.v[0], plate.turn.v[1], plate.turn.v[2], plate.axis[0],
                     plate.axis[1], plate.axis[2], plate.speed_rad_myr, plate.born_myr});
+    const Vector3 &quickening = plate.quickening, &yielding = plate.yielding;
+    changes.insert(changes.end(),
+                   {quickening[0], quickening[1], quickening[2], plate.quickens_until_myr,
+                    yielding[0], yielding[1], yielding[2]});
     alive.push_back(plate.alive ? 1 : 0);
     held.push_back(plate.is_held ? 1 : 0);
     carrier.push_back(plate.carrier);
   }
   to["plate_numbers"] = numbers;
+  to["plate_changes"] = changes;
   to["plate_alive"] = alive;
   to["plate_held"] = held;
   to["plate_carrier"] = carrier;
@@ -147,6 +153,16 @@ SphereState state_of(const Checkpoint& from) {
     if (held.size() != plates || kept.size() != 3) refuse();
     for (std::size_t p = 0; p < plates; ++p) state.plates[p].is_held = held[p] != 0;
     state.kept_rotation_rad_myr = {kept[0], kept[1], kept[2]};
+  }
+  if (from.arrays.contains("plate_changes")) {
+    const auto& changes = from.get<double>("plate_changes");
+    if (changes.size() != kChangeNumbers * plates) refuse();
+    for (std::size_t p = 0; p < plates; ++p) {
+      const double* at = changes.data() + kChangeNumbers * p;
+      state.plates[p].quickening = {at[0], at[1], at[2]};
+      state.plates[p].quickens_until_myr = at[3];
+      state.plates[p].yielding = {at[4], at[5], at[6]};
+    }
   }
   if (from.arrays.contains("plumes")) {
     const auto& plumes = from.get<double>("plumes");
