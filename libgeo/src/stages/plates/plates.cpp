@@ -167,7 +167,7 @@ std::vector<Parameter> PlatesParameters::declarations() {
       real("plates.suture_drag", sphere.suture_drag, "1", 0.0, 1e6,
            "sphere: drag between continents of which one has gone below the other, over that of "
            "the mantle below a plate; 0: they do not slow each other",
-           "design"),
+           "copley2010"),
       real("plates.collision_distance_km", sphere.law.collision_distance_km, "km", 0.0, 20000.0,
            "sphere: farthest reach of a collision", "cortial2019"),
       real("plates.collision_coefficient_km", sphere.law.collision_per_km, "km-1", 0.0, 1.0,
