@@ -1,5 +1,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
+#include <vector>
 
 #include "geo/kernels/sphere_tectonics.hpp"
 
@@ -18,6 +19,58 @@ void add_lever(Matrix3& sum, const Vector3& r, double scale) {
     for (int d = 0; d < 3; ++d) sum[c][d] += scale * ((c == d ? 1.0 : 0.0) - r[c] * r[d]);
   }
 }
+
+/// Torques on plates that are linked by what acts between two of them: linear in the changes of
+/// their rotations, three unknowns each. Plates that are not free do not change.
+class LinkedPlates {
+ public:
+  explicit LinkedPlates(const std::vector<std::uint8_t>& is_free) : place_(is_free.size(), -1) {
+    int free = 0;
+    for (std::size_t p = 0; p < is_free.size(); ++p) {
+      if (is_free[p] != 0) place_[p] = 3 * free++;
+    }
+    drag_ = Eigen::MatrixXd::Zero(3 * free, 3 * free);
+    torque_ = Eigen::VectorXd::Zero(3 * free);
+  }
+  /// Drag on a plate where its rotation changes.
+  void hold_back(int plate, const Matrix3& drag) {
+    if (const int at = place_[plate]; at >= 0) drag_.block<3, 3>(at, at) += eigen(drag);
+  }
+  /// Drag between two plates, where the second moves by `relative` beside the first so far.
+  void link(std::size_t first, std::size_t second, const Matrix3& drag, const Vector3& relative) {
+    const Eigen::Matrix3d rub = eigen(drag);
+    const Vector3 now = times(drag, relative);
+    const Eigen::Vector3d torque = Eigen::Map<const Eigen::Vector3d>(now.data());
+    const int a = place_[first], b = place_[second];
+    if (a >= 0) {
+      drag_.block<3, 3>(a, a) += rub;
+      torque_.segment<3>(a) += torque;
+    }
+    if (b >= 0) {
+      drag_.block<3, 3>(b, b) += rub;
+      torque_.segment<3>(b) -= torque;
+    }
+    if (a >= 0 && b >= 0) {
+      drag_.block<3, 3>(a, b) -= rub;
+      drag_.block<3, 3>(b, a) -= rub;
+    }
+  }
+  /// The change of rotation of each plate with which no torque is left.
+  [[nodiscard]] std::vector<Vector3> balance() const {
+    std::vector<Vector3> changes(place_.size(), Vector3{});
+    if (torque_.size() == 0) return changes;
+    const Eigen::VectorXd change = drag_.ldlt().solve(torque_);
+    for (std::size_t p = 0; p < place_.size(); ++p) {
+      for (int c = 0; c < 3 && place_[p] >= 0; ++c) changes[p][c] = change[place_[p] + c];
+    }
+    return changes;
+  }
+
+ private:
+  std::vector<int> place_;  // of a plate in the system, or -1
+  Eigen::MatrixXd drag_;
+  Eigen::VectorXd torque_;
+};
 
 }  // namespace
 
@@ -53,7 +106,7 @@ void SphereTectonics::yield_to_continents() {
   const std::size_t plates = state_.plates.size();
   const SphereCrust& crust = state_.crust;
   std::vector<Matrix3> overlap(plates * plates, Matrix3{});
-  std::vector<std::uint8_t> rubs(plates, 0);
+  std::vector<std::uint8_t> rubs(plates, 0), yields(plates, 0);
   for (const std::int32_t i : contacts_) {
     const std::int32_t above = partner_[i];
     if (hidden_[i] == 0 || crust.continental[i] == 0 || crust.continental[above] == 0) continue;
@@ -63,49 +116,23 @@ void SphereTectonics::yield_to_continents() {
               settings_.suture_drag);
     rubs[lower] = rubs[upper] = 1;
   }
-  // Of the plates that rub those that are not held are free to yield.
-  std::vector<int> place(plates, -1);
-  int free = 0;
-  for (std::size_t p = 0; p < plates; ++p) {
-    if (rubs[p] != 0 && !state_.plates[p].is_held) place[p] = 3 * free++;
-  }
-  if (free == 0) return;
-  Eigen::MatrixXd drag = Eigen::MatrixXd::Zero(3 * free, 3 * free);
-  Eigen::VectorXd left = Eigen::VectorXd::Zero(3 * free);
+  // Of the plates that rub those that are not held yield.
+  for (std::size_t p = 0; p < plates; ++p)
+    yields[p] = rubs[p] != 0 && !state_.plates[p].is_held ? 1 : 0;
+  LinkedPlates linked(yields);
   for (std::size_t p = 0; p < plates; ++p) {
     if (!state_.plates[p].alive) continue;
-    const int at = place[state_.root(static_cast<int>(p))];
-    if (at < 0) continue;
-    drag.block<3, 3>(at, at) +=
-        eigen(carried(frame_[p], partition_.cap(static_cast<int>(p)).inertia));
+    const int own = static_cast<int>(p);
+    linked.hold_back(state_.root(own), carried(frame_[p], partition_.cap(own).inertia));
   }
   for (std::size_t a = 0; a < plates; ++a) {
     for (std::size_t b = a + 1; b < plates; ++b) {
       if (rubs[a] == 0 || rubs[b] == 0) continue;
-      const Eigen::Matrix3d rub = eigen(overlap[a * plates + b]);
-      const Vector3 relative =
-          times(overlap[a * plates + b], add(rotation_[b], rotation_[a], -1.0));
-      const Eigen::Vector3d torque = Eigen::Map<const Eigen::Vector3d>(relative.data());
-      const int first = place[a], second = place[b];
-      if (first >= 0) {
-        drag.block<3, 3>(first, first) += rub;
-        left.segment<3>(first) += torque;
-      }
-      if (second >= 0) {
-        drag.block<3, 3>(second, second) += rub;
-        left.segment<3>(second) -= torque;
-      }
-      if (first >= 0 && second >= 0) {
-        drag.block<3, 3>(first, second) -= rub;
-        drag.block<3, 3>(second, first) -= rub;
-      }
+      linked.link(a, b, overlap[a * plates + b], add(rotation_[b], rotation_[a], -1.0));
     }
   }
-  const Eigen::VectorXd change = drag.ldlt().solve(left);
-  for (std::size_t p = 0; p < plates; ++p) {
-    if (place[p] < 0) continue;
-    for (int c = 0; c < 3; ++c) state_.plates[p].yielding[c] = change[place[p] + c];
-  }
+  const std::vector<Vector3> changes = linked.balance();
+  for (std::size_t p = 0; p < plates; ++p) state_.plates[p].yielding = changes[p];
   set_frames();
 }
 
