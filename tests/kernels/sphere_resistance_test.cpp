@@ -108,6 +108,16 @@ TEST(ContinentsThatMeet, GoOnAsTheyAreDrivenWithoutDragOrWhereTheyAreHeld) {
   EXPECT_LT(meeting(100.0, false), 0.9 * kSpeed_mm_yr);
 }
 
+TEST(ContinentsThatMeet, ObeyAMotionThatIsGivenFromItsFirstStep) {
+  const SampledSphere world(20000);
+  SphereSettings s = settings();
+  s.suture_drag = 100.0;
+  SphereTectonics model(world.mesh, s, two_continents(world), 1);
+  for (int k = 0; k < 8; ++k) model.advance();
+  model.set_motion(1, {0.0, 0.0, 1.0}, 0.01);
+  EXPECT_DOUBLE_EQ(model.rotations()[1][2], 0.01);
+}
+
 /// One plate, which is all there is.
 SphereState one_plate(const SampledSphere& world) {
   SphereState state;
@@ -121,13 +131,14 @@ SphereState one_plate(const SampledSphere& world) {
   return state;
 }
 
+const std::vector<Vector3> kSides{{0.0, 1.0, 0.0}, {0.0, -1.0, 0.0}};
+
 TEST(Rifts, ComeToTheirSpeedSteadilyOverTheirOnset) {
   const SampledSphere world(12000);
   SphereSettings s = settings();
   s.rift_onset_myr = 20.0;
   SphereTectonics model(world.mesh, s, one_plate(world), 1);
-  const std::vector<Vector3> places{{0.0, 1.0, 0.0}, {0.0, -1.0, 0.0}};
-  model.rift(0, places, 30.0);
+  model.rift(0, kSides, 30.0);
   ASSERT_EQ(model.state().plates.size(), 2U);
   for (int k = 1; k <= 15; ++k) {
     model.advance();
@@ -143,8 +154,7 @@ TEST(Rifts, BreakAgainWithoutLosingWhatTheyHadStillToGain) {
   SphereSettings s = settings();
   s.rift_onset_myr = 20.0;
   SphereTectonics model(world.mesh, s, one_plate(world), 1);
-  const std::vector<Vector3> places{{0.0, 1.0, 0.0}, {0.0, -1.0, 0.0}};
-  model.rift(0, places, 30.0);
+  model.rift(0, kSides, 30.0);
   for (int k = 0; k < 5; ++k) model.advance();
   const std::vector<Vector3> again{normalised({0.5, 1.0, 0.0}), normalised({-0.5, 1.0, 0.0})};
   model.rift(0, again, 0.0);
@@ -154,11 +164,22 @@ TEST(Rifts, BreakAgainWithoutLosingWhatTheyHadStillToGain) {
   }
 }
 
+TEST(Rifts, ComeToTheirSpeedWhereStepsDoNotFitTheOnset) {
+  const SampledSphere world(12000);
+  SphereSettings s = settings();
+  s.rift_onset_myr = 5.0;
+  SphereTectonics model(world.mesh, s, one_plate(world), 1);
+  model.rift(0, kSides, 30.0);
+  for (int k = 0; k < 4; ++k) model.advance();
+  for (const SpherePlate& plate : model.state().plates) {
+    EXPECT_NEAR(kRadius_km * plate.speed_rad_myr, 30.0, 1e-6);
+  }
+}
+
 TEST(Rifts, OpenAtOnceWithoutAnOnset) {
   const SampledSphere world(12000);
   SphereTectonics model(world.mesh, settings(), one_plate(world), 1);
-  const std::vector<Vector3> places{{0.0, 1.0, 0.0}, {0.0, -1.0, 0.0}};
-  model.rift(0, places, 30.0);
+  model.rift(0, kSides, 30.0);
   for (const SpherePlate& plate : model.state().plates) {
     EXPECT_NEAR(kRadius_km * plate.speed_rad_myr, 30.0, 1e-9);
   }

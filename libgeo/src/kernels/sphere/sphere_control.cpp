@@ -20,6 +20,7 @@ void SphereTectonics::set_motion(int plate, const Vector3& axis, double speed_ra
   state_.plates[plate].axis = normalised(axis);
   state_.plates[plate].speed_rad_myr = speed_rad_myr;
   state_.plates[plate].quickens_until_myr = state_.time_myr;
+  state_.plates[plate].yielding = {};
   set_frames();
   if (!settings_.hold_motions) return;
   state_.plates[plate].is_held = true;

@@ -87,8 +87,10 @@ void SphereTectonics::quicken(SpherePlate& fragment, const Vector3& gained) cons
 void SphereTectonics::quicken_rifts() {
   for (SpherePlate& plate : state_.plates) {
     if (!plate.alive || plate.is_held || state_.time_myr >= plate.quickens_until_myr) continue;
+    const double for_myr =
+        std::min(settings_.law.step_myr, plate.quickens_until_myr - state_.time_myr);
     const Vector3 rotation =
-        add(scaled(plate.axis, plate.speed_rad_myr), plate.quickening, settings_.law.step_myr);
+        add(scaled(plate.axis, plate.speed_rad_myr), plate.quickening, for_myr);
     plate.speed_rad_myr =
         std::min(length(rotation), settings_.law.speed_mm_yr / settings_.radius_km);
     if (plate.speed_rad_myr > 0.0) plate.axis = normalised(rotation);
@@ -102,7 +104,7 @@ void SphereTectonics::quicken_rifts() {
 void SphereTectonics::yield_to_continents() {
   for (SpherePlate& plate : state_.plates) plate.yielding = {};
   set_frames();
-  if (settings_.suture_drag <= 0.0) return;
+  if (settings_.suture_drag <= 0.0 || settings_.by_forces) return;
   const std::size_t plates = state_.plates.size();
   const SphereCrust& crust = state_.crust;
   std::vector<Matrix3> overlap(plates * plates, Matrix3{});

@@ -225,8 +225,8 @@ void SphereTectonics::advance() {
   } else {
     pull_slabs();
     quicken_rifts();
-    yield_to_continents();
   }
+  yield_to_continents();
   state_.time_myr += settings_.law.step_myr;
   ++state_.steps;
   budget_.time_myr = state_.time_myr;
