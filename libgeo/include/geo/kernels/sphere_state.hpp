@@ -38,9 +38,7 @@ struct SpherePlate {
   std::int16_t carrier = -1;
   double born_myr = 0.0;
   bool is_held = false;  ///< its motion was given: neither slab pull nor the frame changes it
-  Vector3 quickening{};  ///< by which its rotation grows since a rift, rad/Myr2
-  double quickens_until_myr = 0.0;
-  Vector3 yielding{};  ///< by which continents it has run into change its rotation, rad/Myr
+  Vector3 yielding{};  ///< by which plates that it meets or parts from change its rotation, rad/Myr
 };
 
 /// What is remembered of two plates, the one of lower number first.
@@ -48,6 +46,7 @@ struct PlatePair {
   std::int8_t ocean_top = -1;      ///< which one's ocean floor stays up: 0 first, 1 second
   std::int8_t continent_top = -1;  ///< the same of their continents
   float last_contact_myr = -1e9F;
+  float parted_myr = -1e9F;  ///< when a rift made them
 };
 
 /// A plume of the mantle, below the plates and at rest.

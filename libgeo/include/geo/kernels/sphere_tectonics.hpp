@@ -224,10 +224,18 @@ class SphereTectonics {
   void grow_volcano(int plate, const Vector3& place, double volume_km3);
   void run_rivers();
   void pull_slabs();
-  void quicken(SpherePlate& fragment, const Vector3& gained) const;
-  void quicken_rifts();
-  void yield_to_continents();
-  void balance_forces();
+  [[nodiscard]] Matrix3 drag_below(int plate) const;
+  [[nodiscard]] std::vector<Matrix3> drag_below() const;
+  [[nodiscard]] std::vector<Matrix3> balance_forces();
+  /// What holds two plates together: a drag on how they move beside each other, in units of that
+  /// below one sample.
+  struct Link {
+    int first, second;
+    Matrix3 drag;
+  };
+  [[nodiscard]] std::vector<Link> links_of_rifts(const std::vector<Matrix3>& drag) const;
+  [[nodiscard]] std::vector<Link> links_of_continents() const;
+  void yield(const std::vector<Matrix3>& drag);
   void collide();
   void collide(std::int32_t sample);
   void surge(int upper, std::span<const std::int32_t> terrane, const Vector3& centroid,

@@ -69,7 +69,7 @@ void SphereTectonics::decide_pairs() {
     for (std::size_t b = a + 1; b < plates; ++b) {
       if (touching[a * plates + b] == 0) continue;
       PlatePair& pair = state_.pair(static_cast<int>(a), static_cast<int>(b));
-      if (now - pair.last_contact_myr > kForgotten_myr) pair = {};
+      if (now - pair.last_contact_myr > kForgotten_myr) pair = {.parted_myr = pair.parted_myr};
       pair.last_contact_myr = now;
       const Ages& met = ages[a * plates + b];
       if (pair.ocean_top < 0 && met.count > 0) pair.ocean_top = met.own <= met.other ? 0 : 1;

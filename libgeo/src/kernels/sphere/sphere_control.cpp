@@ -19,7 +19,6 @@ int SphereTectonics::plate_at(const Vector3& place) const {
 void SphereTectonics::set_motion(int plate, const Vector3& axis, double speed_rad_myr) {
   state_.plates[plate].axis = normalised(axis);
   state_.plates[plate].speed_rad_myr = speed_rad_myr;
-  state_.plates[plate].quickens_until_myr = state_.time_myr;
   state_.plates[plate].yielding = {};
   set_frames();
   if (!settings_.hold_motions) return;

@@ -158,7 +158,7 @@ std::vector<SphereTectonics::Torques> SphereTectonics::torques() const {
   for (std::size_t p = 0; p < state_.plates.size(); ++p) {
     if (!state_.plates[p].alive) continue;
     Torques& root = of_root[state_.root(static_cast<int>(p))];
-    const Matrix3 whole = carried(frame_[p], partition_.cap(static_cast<int>(p)).inertia);
+    const Matrix3 whole = drag_below(static_cast<int>(p));
     for (int c = 0; c < 3; ++c) root.drag_n_m_s[c] = add(root.drag_n_m_s[c], whole[c], drag);
   }
   const double lever_m2 = radius_m * radius_m;
@@ -176,7 +176,9 @@ std::vector<SphereTectonics::Torques> SphereTectonics::torques() const {
   return of_root;
 }
 
-void SphereTectonics::balance_forces() {
+/// Lets motion follow the forces. Returns what holds each plate back, in units of what holds one
+/// sample of sea floor.
+std::vector<Matrix3> SphereTectonics::balance_forces() {
   const std::vector<Torques> of_plate = torques();
   const double share = -std::expm1(-settings_.law.step_myr / settings_.force.response_myr);
   const double most = settings_.law.speed_mm_yr / settings_.radius_km;
@@ -192,6 +194,15 @@ void SphereTectonics::balance_forces() {
     if (plate.speed_rad_myr > 0.0) plate.axis = normalised(next);
   }
   set_frames();
+  const double radius_m = 1e3 * settings_.radius_km;
+  const double sample =
+      basal_drag_pa_s_m(settings_.force) * 1e6 * sample_km2() * radius_m * radius_m;
+  std::vector<Matrix3> drag;
+  for (const Torques& torques : of_plate) {
+    Matrix3& own = drag.emplace_back(torques.drag_n_m_s);
+    for (Vector3& row : own) row = scaled(row, 1.0 / sample);
+  }
+  return drag;
 }
 
 }  // namespace geo

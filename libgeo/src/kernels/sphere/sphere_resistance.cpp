@@ -1,5 +1,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
+#include <numbers>
 #include <vector>
 
 #include "geo/kernels/sphere_tectonics.hpp"
@@ -13,12 +14,7 @@ Eigen::Matrix3d eigen(const Matrix3& m) {
   return out;
 }
 
-/// Adds `scale` (1 - r r^T): times a rotation, r x (rotation x r).
-void add_lever(Matrix3& sum, const Vector3& r, double scale) {
-  for (int c = 0; c < 3; ++c) {
-    for (int d = 0; d < 3; ++d) sum[c][d] += scale * ((c == d ? 1.0 : 0.0) - r[c] * r[d]);
-  }
-}
+Eigen::Vector3d eigen(const Vector3& v) { return Eigen::Map<const Eigen::Vector3d>(v.data()); }
 
 /// Torques on plates that are linked by what acts between two of them: linear in the changes of
 /// their rotations, three unknowns each. Plates that are not free do not change.
@@ -33,26 +29,24 @@ class LinkedPlates {
     torque_ = Eigen::VectorXd::Zero(3 * free);
   }
   /// Drag on a plate where its rotation changes.
-  void hold_back(int plate, const Matrix3& drag) {
-    if (const int at = place_[plate]; at >= 0) drag_.block<3, 3>(at, at) += eigen(drag);
+  void hold_back(int plate, const Eigen::Matrix3d& drag) {
+    if (const int at = place_[plate]; at >= 0) drag_.block<3, 3>(at, at) += drag;
   }
   /// Drag between two plates, where the second moves by `relative` beside the first so far.
-  void link(std::size_t first, std::size_t second, const Matrix3& drag, const Vector3& relative) {
-    const Eigen::Matrix3d rub = eigen(drag);
-    const Vector3 now = times(drag, relative);
-    const Eigen::Vector3d torque = Eigen::Map<const Eigen::Vector3d>(now.data());
+  void link(int first, int second, const Eigen::Matrix3d& drag, const Eigen::Vector3d& relative) {
+    const Eigen::Vector3d torque = drag * relative;
     const int a = place_[first], b = place_[second];
     if (a >= 0) {
-      drag_.block<3, 3>(a, a) += rub;
+      drag_.block<3, 3>(a, a) += drag;
       torque_.segment<3>(a) += torque;
     }
     if (b >= 0) {
-      drag_.block<3, 3>(b, b) += rub;
+      drag_.block<3, 3>(b, b) += drag;
       torque_.segment<3>(b) -= torque;
     }
     if (a >= 0 && b >= 0) {
-      drag_.block<3, 3>(a, b) -= rub;
-      drag_.block<3, 3>(b, a) -= rub;
+      drag_.block<3, 3>(a, b) -= drag;
+      drag_.block<3, 3>(b, a) -= drag;
     }
   }
   /// The change of rotation of each plate with which no torque is left.
@@ -74,67 +68,108 @@ class LinkedPlates {
 
 }  // namespace
 
-/// Lets a fragment gain a rotation over the onset, beside what it has still to gain from a rift
-/// before.
-void SphereTectonics::quicken(SpherePlate& fragment, const Vector3& gained) const {
-  const double rest_myr = std::max(0.0, fragment.quickens_until_myr - state_.time_myr);
-  const Vector3 whole = add(gained, fragment.quickening, rest_myr);
-  fragment.quickening = scaled(whole, 1.0 / settings_.rift_onset_myr);
-  fragment.quickens_until_myr = state_.time_myr + settings_.rift_onset_myr;
+/// The sum of 1 - r r^T over a plate's samples. As each covers some ground, also a plate of one
+/// resists a spin about itself: by s / 2 pi about the middle of a disc of s steradians.
+Matrix3 SphereTectonics::drag_below(int plate) const {
+  const auto& cap = partition_.cap(plate);
+  Matrix3 drag = carried(frame_[plate], cap.inertia);
+  const double spin = cap.samples * mesh_->samples().area_sr() / (2.0 * std::numbers::pi);
+  for (int c = 0; c < 3; ++c) drag[c][c] += spin;
+  return drag;
 }
 
-/// Fragments of a rifted plate come to their speed at a steady rate.
-void SphereTectonics::quicken_rifts() {
-  for (SpherePlate& plate : state_.plates) {
-    if (!plate.alive || plate.is_held || state_.time_myr >= plate.quickens_until_myr) continue;
-    const double for_myr =
-        std::min(settings_.law.step_myr, plate.quickens_until_myr - state_.time_myr);
-    const Vector3 rotation =
-        add(scaled(plate.axis, plate.speed_rad_myr), plate.quickening, for_myr);
-    plate.speed_rad_myr =
-        std::min(length(rotation), settings_.law.speed_mm_yr / settings_.radius_km);
-    if (plate.speed_rad_myr > 0.0) plate.axis = normalised(rotation);
+/// What holds each plate back with all that it carries.
+std::vector<Matrix3> SphereTectonics::drag_below() const {
+  std::vector<Matrix3> drag(state_.plates.size(), Matrix3{});
+  for (std::size_t p = 0; p < drag.size(); ++p) {
+    if (!state_.plates[p].alive) continue;
+    const Matrix3 own = drag_below(static_cast<int>(p));
+    Matrix3& sum = drag[state_.root(static_cast<int>(p))];
+    for (int c = 0; c < 3; ++c) sum[c] = add(sum[c], own[c]);
   }
-  set_frames();
+  return drag;
 }
 
-/// Continents of which one has gone below the other rub. On every plate the drag of the mantle on
-/// what it moves beside the motion that drives it, int (1 - r r^T) (W - w) dA, and k times the same
-/// of the motion of the one continent over the other, where they overlap, come to nothing.
-void SphereTectonics::yield_to_continents() {
-  for (SpherePlate& plate : state_.plates) plate.yielding = {};
-  set_frames();
-  if (settings_.suture_drag <= 0.0 || settings_.by_forces) return;
-  const std::size_t plates = state_.plates.size();
+/// Lithosphere that has begun to part is whole at first: fragments leave each other at a share
+/// s = t / onset of what drives them apart. A drag of (1 - s) / s (A^-1 + B^-1)^-1 between plates
+/// that A and B hold back does that to any motion.
+std::vector<SphereTectonics::Link> SphereTectonics::links_of_rifts(
+    const std::vector<Matrix3>& drag) const {
+  std::vector<Link> links;
+  for (int a = 0; a < std::ssize(drag); ++a) {
+    for (int b = a + 1; b < std::ssize(drag); ++b) {
+      const int first = state_.root(a), second = state_.root(b);
+      if (!state_.plates[a].alive || !state_.plates[b].alive || first == second) continue;
+      const double since_myr =
+          state_.time_myr + settings_.law.step_myr - state_.pair(a, b).parted_myr;
+      if (since_myr >= settings_.rift_onset_myr) continue;
+      const double share = since_myr / settings_.rift_onset_myr;
+      const Eigen::Matrix3d below = eigen(drag[first]), beside = eigen(drag[second]);
+      const Eigen::Matrix3d both = below * (below + beside).inverse() * beside;
+      Matrix3 rub;
+      for (int c = 0; c < 3; ++c) {
+        for (int d = 0; d < 3; ++d) {
+          rub[c][d] = (1.0 - share) / share * 0.5 * (both(c, d) + both(d, c));
+        }
+      }
+      links.push_back({first, second, rub});
+    }
+  }
+  return links;
+}
+
+/// Continents of which one has gone below the other rub: k times the drag of the mantle, as far as
+/// they overlap.
+std::vector<SphereTectonics::Link> SphereTectonics::links_of_continents() const {
   const SphereCrust& crust = state_.crust;
+  const std::size_t plates = state_.plates.size();
   std::vector<Matrix3> overlap(plates * plates, Matrix3{});
-  std::vector<std::uint8_t> rubs(plates, 0), yields(plates, 0);
+  std::vector<std::uint8_t> rubs(plates * plates, 0);
   for (const std::int32_t i : contacts_) {
     const std::int32_t above = partner_[i];
     if (hidden_[i] == 0 || crust.continental[i] == 0 || crust.continental[above] == 0) continue;
     const int lower = state_.root(crust.plate[i]), upper = state_.root(crust.plate[above]);
     const Vector3 r = times(frame_[crust.plate[i]], mesh_->samples().position(i));
-    add_lever(overlap[std::min(lower, upper) * plates + std::max(lower, upper)], r,
-              settings_.suture_drag);
-    rubs[lower] = rubs[upper] = 1;
-  }
-  // Of the plates that rub those that are not held yield.
-  for (std::size_t p = 0; p < plates; ++p)
-    yields[p] = rubs[p] != 0 && !state_.plates[p].is_held ? 1 : 0;
-  LinkedPlates linked(yields);
-  for (std::size_t p = 0; p < plates; ++p) {
-    if (!state_.plates[p].alive) continue;
-    const int own = static_cast<int>(p);
-    linked.hold_back(state_.root(own), carried(frame_[p], partition_.cap(own).inertia));
-  }
-  for (std::size_t a = 0; a < plates; ++a) {
-    for (std::size_t b = a + 1; b < plates; ++b) {
-      if (rubs[a] == 0 || rubs[b] == 0) continue;
-      linked.link(a, b, overlap[a * plates + b], add(rotation_[b], rotation_[a], -1.0));
+    const std::size_t at = std::min(lower, upper) * plates + std::max(lower, upper);
+    rubs[at] = 1;
+    for (int c = 0; c < 3; ++c) {
+      for (int d = 0; d < 3; ++d) {
+        overlap[at][c][d] += settings_.suture_drag * ((c == d ? 1.0 : 0.0) - r[c] * r[d]);
+      }
     }
   }
+  std::vector<Link> links;
+  for (std::size_t at = 0; at < rubs.size(); ++at) {
+    if (rubs[at] != 0) {
+      links.push_back({static_cast<int>(at / plates), static_cast<int>(at % plates), overlap[at]});
+    }
+  }
+  return links;
+}
+
+/// Plates that are linked yield. On each the drag of the mantle on what it moves beside the motion
+/// that drives it and that of its links on how it moves beside other plates come to nothing.
+void SphereTectonics::yield(const std::vector<Matrix3>& drag) {
+  for (SpherePlate& plate : state_.plates) plate.yielding = {};
+  set_frames();
+  std::vector<Link> links;
+  if (settings_.rift_onset_myr > 0.0) links = links_of_rifts(drag);
+  if (settings_.suture_drag > 0.0) {
+    const std::vector<Link> more = links_of_continents();
+    links.insert(links.end(), more.begin(), more.end());
+  }
+  std::vector<std::uint8_t> yields(state_.plates.size(), 0);
+  for (const Link& link : links) {
+    for (const int p : {link.first, link.second}) yields[p] = state_.plates[p].is_held ? 0 : 1;
+  }
+  LinkedPlates linked(yields);
+  for (int p = 0; p < std::ssize(drag); ++p) linked.hold_back(p, eigen(drag[p]));
+  for (const Link& link : links) {
+    linked.link(link.first, link.second, eigen(link.drag),
+                eigen(add(rotation_[link.second], rotation_[link.first], -1.0)));
+  }
   const std::vector<Vector3> changes = linked.balance();
-  for (std::size_t p = 0; p < plates; ++p) state_.plates[p].yielding = changes[p];
+  for (std::size_t p = 0; p < changes.size(); ++p) state_.plates[p].yielding = changes[p];
   set_frames();
 }
 

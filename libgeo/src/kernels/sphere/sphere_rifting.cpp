@@ -116,17 +116,19 @@ void SphereTectonics::part(int plate, std::span<const std::int8_t> fragment,
   const double area_km2 = sample_km2() * cap.samples;
   const SpherePlate whole = state_.plates[plate];
   const Vector3 drift = scaled(whole.axis, whole.speed_rad_myr);
+  std::vector<int> numbers;
   for (std::size_t k = 0; k < away.size(); ++k) {
     SpherePlate part = whole;
     part.born_myr = state_.time_myr;
     const Vector3 gained = scaled(away[k], speed_mm_yr / settings_.radius_km);
-    const bool is_gradual =
-        kind == SphereEvent::Kind::rift && settings_.rift_onset_myr > 0.0 && !settings_.by_forces;
-    if (is_gradual) quicken(part, gained);
-    const Vector3 rotation = is_gradual ? drift : add(drift, gained);
+    const Vector3 rotation = add(drift, gained);
     part.speed_rad_myr =
         std::min(length(rotation), settings_.law.speed_mm_yr / settings_.radius_km);
     if (part.speed_rad_myr > 0.0) part.axis = normalised(rotation);
+    const bool is_gradual = kind == SphereEvent::Kind::rift && settings_.rift_onset_myr > 0.0;
+    if (is_gradual && !whole.is_held) {  // at first they move as the whole did
+      part.yielding = add(add(whole.yielding, drift), part.axis, -part.speed_rad_myr);
+    }
     int number = plate;
     if (k == 0) {
       state_.plates[plate] = part;
@@ -136,6 +138,12 @@ void SphereTectonics::part(int plate, std::span<const std::int8_t> fragment,
     for (std::int32_t i = 0; i < mesh_->size(); ++i) {
       if (fragment[i] == static_cast<std::int8_t>(k)) of[i] = static_cast<std::int16_t>(number);
     }
+    if (kind == SphereEvent::Kind::rift) {
+      for (const int other : numbers) {
+        state_.pair(number, other).parted_myr = static_cast<float>(state_.time_myr);
+      }
+    }
+    numbers.push_back(number);
   }
   events_.push_back({kind, state_.time_myr, plate, -1, centre, area_km2});
   repartition();

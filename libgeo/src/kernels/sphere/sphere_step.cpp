@@ -220,13 +220,8 @@ void SphereTectonics::advance() {
   raise();
   erupt();
   if (settings_.by_rivers) run_rivers();
-  if (settings_.by_forces) {
-    balance_forces();
-  } else {
-    pull_slabs();
-    quicken_rifts();
-  }
-  yield_to_continents();
+  if (!settings_.by_forces) pull_slabs();
+  yield(settings_.by_forces ? balance_forces() : drag_below());
   state_.time_myr += settings_.law.step_myr;
   ++state_.steps;
   budget_.time_myr = state_.time_myr;

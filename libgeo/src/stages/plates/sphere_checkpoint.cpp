@@ -27,7 +27,6 @@ Directions directions(const std::vector<float>& values) {
 }
 
 constexpr std::size_t kNumbers = 9;         // of a plate: turn, axis, speed, birth
-constexpr std::size_t kChangeNumbers = 7;   // of a plate: quickening, its end, yielding
 constexpr std::size_t kVolcanoNumbers = 6;  // of a plume: number, volcanoes, place, volume
 
 }  // namespace
@@ -46,36 +45,35 @@ Checkpoint checkpoint_of(const SphereState& state) {
   to["orogeny_age_myr"] = crust.orogeny_age_myr;
   to["ridge"] = flat(crust.ridge);
   to["fold"] = flat(crust.fold);
-  std::vector<double> numbers, changes;
+  std::vector<double> numbers, yielding;
   std::vector<std::int8_t> alive, held;
   std::vector<std::int16_t> carrier;
   for (const SpherePlate& plate : state.plates) {
     numbers.insert(numbers.end(),
                    {plate.turn.w, plate.turn.v[0], plate.turn.v[1], plate.turn.v[2], plate.axis[0],
                     plate.axis[1], plate.axis[2], plate.speed_rad_myr, plate.born_myr});
-    const Vector3 &quickening = plate.quickening, &yielding = plate.yielding;
-    changes.insert(changes.end(),
-                   {quickening[0], quickening[1], quickening[2], plate.quickens_until_myr,
-                    yielding[0], yielding[1], yielding[2]});
+    yielding.insert(yielding.end(), plate.yielding.begin(), plate.yielding.end());
     alive.push_back(plate.alive ? 1 : 0);
     held.push_back(plate.is_held ? 1 : 0);
     carrier.push_back(plate.carrier);
   }
   to["plate_numbers"] = numbers;
-  to["plate_changes"] = changes;
+  to["plate_yielding"] = yielding;
   to["plate_alive"] = alive;
   to["plate_held"] = held;
   to["plate_carrier"] = carrier;
   std::vector<std::int8_t> ocean, continent;
-  std::vector<float> contact;
+  std::vector<float> contact, parted;
   for (const PlatePair& pair : state.pairs) {
     ocean.push_back(pair.ocean_top);
     continent.push_back(pair.continent_top);
     contact.push_back(pair.last_contact_myr);
+    parted.push_back(pair.parted_myr);
   }
   to["pair_ocean_top"] = ocean;
   to["pair_continent_top"] = continent;
   to["pair_last_contact_myr"] = contact;
+  to["pair_parted_myr"] = parted;
   std::vector<double> plumes;
   for (const SpherePlume& plume : state.plumes) {
     plumes.insert(plumes.end(),
@@ -154,15 +152,15 @@ SphereState state_of(const Checkpoint& from) {
     for (std::size_t p = 0; p < plates; ++p) state.plates[p].is_held = held[p] != 0;
     state.kept_rotation_rad_myr = {kept[0], kept[1], kept[2]};
   }
-  if (from.arrays.contains("plate_changes")) {
-    const auto& changes = from.get<double>("plate_changes");
-    if (changes.size() != kChangeNumbers * plates) refuse();
+  if (from.arrays.contains("plate_yielding")) {
+    const auto& yielding = from.get<double>("plate_yielding");
+    const auto& parted = from.get<float>("pair_parted_myr");
+    if (yielding.size() != 3 * plates || parted.size() != state.pairs.size()) refuse();
     for (std::size_t p = 0; p < plates; ++p) {
-      const double* at = changes.data() + kChangeNumbers * p;
-      state.plates[p].quickening = {at[0], at[1], at[2]};
-      state.plates[p].quickens_until_myr = at[3];
-      state.plates[p].yielding = {at[4], at[5], at[6]};
+      const double* at = yielding.data() + 3 * p;
+      state.plates[p].yielding = {at[0], at[1], at[2]};
     }
+    for (std::size_t k = 0; k < parted.size(); ++k) state.pairs[k].parted_myr = parted[k];
   }
   if (from.arrays.contains("plumes")) {
     const auto& plumes = from.get<double>("plumes");
