@@ -28,6 +28,9 @@ TEST(PlateForces, AreThoseWorkedOutByHand) {
   EXPECT_NEAR(slab_pull_n_m(100.0, k), 4.8017e13, 1e10);
   EXPECT_NEAR(slab_pull_n_m(25.0, k), 2.4008e13, 1e10);
   EXPECT_EQ(slab_pull_n_m(0.0, k), 0.0);
+  k.suction_share = 0.25;
+  EXPECT_NEAR(slab_suction_n_m(100.0, k), 1.2004e13, 1e10);
+  EXPECT_EQ(slab_suction_n_m(100.0), 0.0);
   // 9.81 x 128.7 x (1 + 257.4 / (pi x 2270)) x 3.15576e9 = 4.128e12.
   EXPECT_NEAR(ridge_push_n_m(100.0), 4.1280e12, 1e9);
   EXPECT_NEAR(ridge_push_n_m(50.0), 2.0640e12, 1e9);
@@ -96,6 +99,23 @@ TEST(SphereForces, AStraightTrenchFromPoleToPoleTurnsAHemisphereByItsPullTimesTw
     EXPECT_NEAR(torques[plate].drag_n_m_s[2][2], drag_of_hemisphere_n_m_s(),
                 1e-3 * drag_of_hemisphere_n_m_s());
     EXPECT_NEAR(torques[plate].drag_n_m_s[0][1], 0.0, 1e-3 * drag_of_hemisphere_n_m_s());
+  }
+}
+
+TEST(SphereForces, ASlabDrawsThePlateAboveToItsTrench) {
+  const SampledSphere world(60000);
+  SphereSettings settings = by_forces();
+  settings.force.suction_share = 0.1;
+  SphereTectonics model(world.mesh, settings, hemispheres(world, 100.0), 1);
+  for (int k = 0; k < 3; ++k) model.advance();
+  for (const bool fresh : {false, true}) {  // before and after new samples along the trench
+    if (fresh) model.resample();
+    const auto torques = model.torques();
+    const double lever_m2 = 2.0 * kRadius_m * kRadius_m;
+    const double pull = lever_m2 * (slab_pull_n_m(66.0, settings.force) + ridge_push_n_m(66.0));
+    const double drawn = lever_m2 * (slab_suction_n_m(66.0, settings.force) + ridge_push_n_m(56.0));
+    EXPECT_NEAR(torques[1].driving_n_m[2], pull, 0.03 * pull);
+    EXPECT_NEAR(torques[0].driving_n_m[2], -drawn, 0.03 * drawn);
   }
 }
 

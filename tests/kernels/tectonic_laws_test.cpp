@@ -118,6 +118,22 @@ TEST(TectonicLaws, ReliefWearsDown) {
   EXPECT_DOUBLE_EQ(accretion_km(), 0.6);
 }
 
+TEST(TectonicLaws, CrustThatThickensRisesMoreBelowTheSea) {
+  EXPECT_DOUBLE_EQ(water_loaded(-1000.0), -1450.0);
+  EXPECT_DOUBLE_EQ(dry_height(-1450.0), -1000.0);
+  EXPECT_DOUBLE_EQ(dry_height(700.0), 700.0);
+  EXPECT_DOUBLE_EQ(height_after(500.0, 3300.0, 6.6), 1000.0);
+  EXPECT_DOUBLE_EQ(height_after(-2900.0, 3300.0, 6.6), -2175.0);  // dry -2000 and -1500
+  EXPECT_DOUBLE_EQ(height_after(-1450.0, 9900.0, 6.6), 500.0);    // dry -1000 and 500
+}
+
+TEST(TectonicLaws, NeckedMarginsAreThinSooner) {
+  EXPECT_DOUBLE_EQ(stretched_share(0.0, 2.0), 1.0);
+  EXPECT_DOUBLE_EQ(stretched_share(1.0, 2.0), 0.25);
+  EXPECT_DOUBLE_EQ(stretched_share(0.5), 0.625);
+  EXPECT_DOUBLE_EQ(stretched_share(0.5, 2.0), 0.4375);  // 1/4 + 3/4 (1/2)^2
+}
+
 TEST(Quaternion, TurnsLikeItsRotationVector) {
   const Vector3 r = normalised({0.3, -0.5, 0.8}), rotation{0.4, 1.1, -0.2};
   expect_near(times(Quaternion::about(rotation).matrix(), r), rotated(r, rotation));

@@ -62,6 +62,23 @@ TEST(DriftedPlates, HaveContinentsAboveAndOceansBelow) {
   EXPECT_LT(wrong, 0.005);
 }
 
+TEST(DriftedPlates, CountStretchedMarginsAsContinents) {
+  PlatesParameters parameters = quick();
+  parameters.erosion = "land";
+  parameters.sphere.margin_km = 400.0;
+  const State state = drifted(192, 4, parameters).state;
+  const auto fraction = state.read(field::continental_fraction);
+  const auto thickness = state.read(field::crust_thickness), age = state.read(field::crust_age);
+  const double thin = share_where(state, [&](Index c) {
+    return thickness[c] > 9500.0F && thickness[c] < 20000.0F && fraction[c] >= 0.5F;
+  });
+  EXPECT_GT(thin, 0.02);
+  // No land's age, of a thousand Myr, among that of the floor.
+  const double mixed =
+      share_where(state, [&](Index c) { return fraction[c] < 0.45F && age[c] > 400.0F; });
+  EXPECT_LT(mixed, 1e-4);
+}
+
 TEST(DriftedPlates, FloorIsYoungWherePlatesPartAndOldAwayFromThere) {
   const State& state = one_planet().state;
   const auto age = state.read(field::crust_age);

@@ -18,6 +18,7 @@ struct PlateForces {
   double gravity_m_s2 = 9.81;       ///< g
   double slab_km = 600.0;           ///< L, length of the slab that hangs in the upper mantle
   double slab_share = 0.14;         ///< epsilon, of its weight that reaches the plate
+  double suction_share = 0.0;       ///< epsilon_s, of its weight that reaches the plate above
   double viscosity_pa_s = 1e20;     ///< eta, of the asthenosphere
   double asthenosphere_km = 200.0;  ///< h, its thickness
   double continental_drag = 2.0;    ///< f, drag below continents over that below oceans
@@ -27,13 +28,21 @@ struct PlateForces {
 
 inline constexpr double kSecondsPerMyr = 3.15576e13;
 
-/// Pull of a slab on each metre of its trench, N/m: 2 rho_m alpha Delta T sqrt(kappa t / pi) g L
-/// epsilon, t the age of the floor that goes down.
-[[nodiscard]] inline double slab_pull_n_m(double age_myr, const PlateForces& k = {}) {
+/// Weight of a slab below each metre of its trench, N/m: 2 rho_m alpha Delta T sqrt(kappa t / pi) g
+/// L, t the age of the floor that goes down.
+[[nodiscard]] inline double slab_weight_n_m(double age_myr, const PlateForces& k = {}) {
   const double cold_m =
       std::sqrt(k.diffusivity_m2_s * std::fmax(age_myr, 0.0) * kSecondsPerMyr / std::numbers::pi);
   return 2.0 * k.mantle_kg_m3 * k.expansion_k * k.contrast_k * cold_m * k.gravity_m_s2 * 1e3 *
-         k.slab_km * k.slab_share;
+         k.slab_km;
+}
+/// What of it pulls the plate that goes down, and what, by the flow that the slab drives in the
+/// mantle, draws the plate above to the trench.
+[[nodiscard]] inline double slab_pull_n_m(double age_myr, const PlateForces& k = {}) {
+  return slab_weight_n_m(age_myr, k) * k.slab_share;
+}
+[[nodiscard]] inline double slab_suction_n_m(double age_myr, const PlateForces& k = {}) {
+  return slab_weight_n_m(age_myr, k) * k.suction_share;
 }
 /// Push of all the floor between a ridge and where it has an age, N/m: g rho_m alpha Delta T (1 + 2
 /// rho_m alpha Delta T / (pi (rho_m - rho_w))) kappa t.

@@ -41,6 +41,7 @@ struct SphereSettings {
   double accretion_top_km = -3.0;     ///< up to which a trench's sediment piles
   double accretion_width_km = 100.0;  ///< of the wedge
   double margin_km = 120.0;           ///< width of stretched crust where a continent breaks
+  double margin_necking = 1.0;        ///< exponent with which it thins: 1 or more
   double margin_source_km = 500.0;    ///< from which inland it flows there
   double margin_thinning = 0.18;      ///< most that the inland thins for it, at the break
   double rift_per_myr = 0.004;        ///< lambda_0
@@ -68,7 +69,8 @@ struct SphereSettings {
   bool fill_abyss = false;     ///< sediment piles on all floor below accretion_top_km
   bool rift_largest = false;   ///< only the largest plate rifts, into two, however much is land
   bool by_rivers = false;      ///< rivers carve and deposit, in place of erosion by height
-  RiverLaw rivers;             ///< their step and rebound are the model's
+  bool wears_land_alone = false;  ///< erosion by height leaves what lies below the sea as it is
+  RiverLaw rivers;                ///< their step and rebound are the model's
   bool no_net_rotation = true;
   bool hold_motions = true;  ///< whether a plate goes on turning as it is told to
   std::int64_t least_steps = 10, most_steps = 60;  ///< between resamplings

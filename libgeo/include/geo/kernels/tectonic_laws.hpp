@@ -115,11 +115,15 @@ struct TectonicConstants {
   constexpr double kOuter = 0.25;
   return kOuter + (1.0 - kOuter) * std::pow(1.0 - s * s * (3.0 - 2.0 * s), haste);
 }
-/// Height of a column whose dry height is given: water loads what lies below the sea,
-/// rho_m / (rho_m - rho_w).
-[[nodiscard]] inline double water_loaded(double dry) {
-  constexpr double kLoad = 1.45;
-  return dry < 0.0 ? kLoad * dry : dry;
+/// How much deeper a column below the sea stands for its water, rho_m / (rho_m - rho_w).
+inline constexpr double kWaterLoad = 1.45;
+/// Height of a column whose height without the water above it is given.
+[[nodiscard]] inline double water_loaded(double dry) { return dry < 0.0 ? kWaterLoad * dry : dry; }
+/// Height that a column would have without the water above it.
+[[nodiscard]] inline double dry_height(double z) { return z < 0.0 ? z / kWaterLoad : z; }
+/// Height of a column at z whose crust has thickened; the root is rho_m / (rho_m - rho_c).
+[[nodiscard]] inline double height_after(double z, double thickening, double root) {
+  return water_loaded(dry_height(z) + thickening / root);
 }
 
 /// P of 4.4: lambda e^-lambda, with lambda = lambda_0 f(x) A / A_0.

@@ -170,9 +170,10 @@ void SphereTectonics::surge(int upper, std::span<const std::int32_t> terrane,
   for (std::size_t k = 0; k < reached.size(); ++k) {
     const std::int32_t i = reached[k];
     const double lifted = lifted_km(k, high);
-    const double raised_m = crust.elevation_m[i] + 1e3 * (lifted + rest_km / s.rebound);
+    const double thicker_m = 1e3 * (s.rebound * lifted + rest_km);
+    const double raised_m = height_after(crust.elevation_m[i], thicker_m, s.rebound);
     crust.elevation_m[i] = static_cast<float>(std::min(1e3 * s.law.summit_km, raised_m));
-    crust.thickness_m[i] += static_cast<float>(1e3 * (s.rebound * lifted + rest_km));
+    crust.thickness_m[i] += static_cast<float>(thicker_m);
     if (lifted < 0.02) continue;
     crust.orogeny[i] = kHimalayan;
     crust.orogeny_age_myr[i] = 0.0F;

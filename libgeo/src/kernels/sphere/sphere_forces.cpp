@@ -63,7 +63,7 @@ class SphereTectonics::EdgeForces {
       } else if (crust_.plate[k] >= 0 && m_.state_.root(crust_.plate[k]) != root_) {
         if (parts(i, j, k)) continue;  // there is younger floor up to the ridge
         if (meets(i, j, k) && goes_below(i, k)) {
-          add_force(slab_pull_n_m(mean_age(i, j), force_), i, j, sum);
+          add_slab(mean_age(i, j), crust_.plate[k], i, j, sum);
         }
       }
       if (is_floor) add_force(push_of(i, j), i, j, sum);
@@ -113,13 +113,20 @@ class SphereTectonics::EdgeForces {
     }
     return m_.is_on_top(k, i);
   }
+  /// A slab pulls its plate down and sucks the one above it to the trench.
+  void add_slab(double age_myr, std::int16_t upper, std::int32_t i, std::int32_t j,
+                Part& sum) const {
+    add_force(slab_pull_n_m(age_myr, force_), i, j, sum);
+    if (force_.suction_share <= 0.0 || upper < 0) return;
+    sum.on_others.emplace_back(upper, scaled(along(i, j), -slab_suction_n_m(age_myr, force_)));
+  }
   /// Where the plate goes down, at k: floor pulls, a continent resists and so does the one above.
   void add_trench(std::int32_t i, std::int32_t j, std::int32_t k, Part& sum) const {
+    const std::int32_t above = m_.partner_[k];
     if (crust_.continental[k] == 0) {
-      add_force(slab_pull_n_m(crust_.age_myr[k], force_), i, j, sum);
+      add_slab(crust_.age_myr[k], above < 0 ? std::int16_t{-1} : crust_.plate[above], i, j, sum);
       return;
     }
-    const std::int32_t above = m_.partner_[k];
     if (above < 0 || crust_.plate[above] < 0 || crust_.continental[above] == 0) return;
     const std::int16_t upper = crust_.plate[above];
     if (leaving(i, j, upper).first >= 0.0) return;

@@ -8,16 +8,16 @@
 namespace geo {
 namespace {
 
-/// The haste with which a margin takes a share of what it takes with haste 1.
-double haste_for(double share) {
+/// The haste with which a margin takes a share of what it takes with the least haste.
+double haste_for(double share, double least) {
   constexpr int kParts = 32;
   const auto mean_kept = [](double haste) {
     double sum = 0.0;
     for (int k = 0; k < kParts; ++k) sum += stretched_share((k + 0.5) / kParts, haste);
     return sum / kParts;
   };
-  const double wanted = share * mean_kept(1.0);
-  double low = 1.0, high = 16.0;
+  const double wanted = share * mean_kept(least);
+  double low = least, high = 16.0 * least;
   for (int k = 0; k < 24; ++k) {
     const double haste = 0.5 * (low + high);
     (mean_kept(haste) > wanted ? low : high) = haste;
@@ -129,7 +129,7 @@ class PassiveMargins {
     }
     near_.emplace(mesh_, owner_, edge_, s_.margin_km / s_.radius_km);
     far_.emplace(mesh_, owner_, edge_, s_.margin_source_km / s_.radius_km);
-    haste_.assign(edge_.size(), 1.0);
+    haste_.assign(edge_.size(), s_.margin_necking);
     read_breaks();
     std::erase_if(margin_, [&](const Place& at) { return thick_m_[number_[at.edge]] < kWhole_m; });
     measure_off_shore(gaps, nearest);
@@ -165,7 +165,8 @@ class PassiveMargins {
       const float thinner_m = crust_.thickness_m[i] - static_cast<float>(lost_m);
       given_m_[inland[i]] += static_cast<double>(crust_.thickness_m[i]) - thinner_m;
       crust_.thickness_m[i] = thinner_m;
-      crust_.elevation_m[i] -= static_cast<float>(lost_m / s_.rebound);
+      crust_.elevation_m[i] =
+          static_cast<float>(height_after(crust_.elevation_m[i], -lost_m, s_.rebound));
     }
   }
 
@@ -175,18 +176,20 @@ class PassiveMargins {
     read_breaks();
     std::vector<double> met = share_met();
 #pragma omp parallel for schedule(static)
-    for (std::size_t e = 0; e < haste_.size(); ++e) haste_[e] = haste_for(met[e]);
+    for (std::size_t e = 0; e < haste_.size(); ++e) {
+      haste_[e] = haste_for(met[e], s_.margin_necking);
+    }
     met = share_met();
     for (const Place& at : margin_) {
       const std::int32_t e = number_[at.edge];
       const double margin_m = thick_m_[e] * share_kept(at) * met[e];
-      const double dry_m = high_m_[e] - (thick_m_[e] - margin_m) / s_.rebound;
+      const double margin_top_m = height_after(high_m_[e], margin_m - thick_m_[e], s_.rebound);
       // Never deeper than the floor that would lie there.
       const double floor_m =
           s_.floor_by_age ? crust_.elevation_m[at.sample] : 500.0 * s_.law.abyss_km;
       crust_.continental[at.sample] = 1;
       crust_.thickness_m[at.sample] = static_cast<float>(margin_m);
-      crust_.elevation_m[at.sample] = static_cast<float>(std::max(floor_m, water_loaded(dry_m)));
+      crust_.elevation_m[at.sample] = static_cast<float>(std::max(floor_m, margin_top_m));
       crust_.age_myr[at.sample] = 0.0F;
       crust_.orogeny_age_myr[at.sample] = crust_.orogeny_age_myr[at.edge];
       crust_.ridge[at.sample] = {};

@@ -136,11 +136,14 @@ void SphereTectonics::raise() {
         }
       }
       if (crust.continental[i] != 0) {
-        const double worn_km = s.by_rivers ? 0.0 : erosion_km(z_km, law);
-        z_km += raised_km + worn_km;
-        crust.thickness_m[i] += static_cast<float>(1e3 * s.rebound * (raised_km + worn_km));
-        sum[kRaised] += s.rebound * raised_km;
-        sum[kEroded] -= s.rebound * worn_km;
+        const bool wears = !s.by_rivers && (!s.wears_land_alone || z_km > 0.0);
+        const double worn_km = wears ? erosion_km(z_km, law) : 0.0, top_km = z_km + raised_km;
+        const double thicker_km = s.rebound * (dry_height(top_km) - dry_height(z_km));
+        const double thinner_km = s.rebound * (dry_height(top_km) - dry_height(top_km + worn_km));
+        z_km = top_km + worn_km;
+        crust.thickness_m[i] += static_cast<float>(1e3 * (thicker_km - thinner_km));
+        sum[kRaised] += thicker_km;
+        sum[kEroded] += thinner_km;
         crust.orogeny_age_myr[i] += step_myr;
       } else {
         const double age = crust.age_myr[i];

@@ -107,8 +107,9 @@ void SphereTectonics::resample() {
       if (before.continental[below] != 0 && before.continental[top] != 0) {
         const double added = before.thickness_m[below];
         now.thickness_m[i] += static_cast<float>(added);
-        now.elevation_m[i] = static_cast<float>(std::min(
-            1e3 * settings_.law.summit_km, now.elevation_m[i] + added / settings_.rebound));
+        now.elevation_m[i] = static_cast<float>(
+            std::min(1e3 * settings_.law.summit_km,
+                     height_after(now.elevation_m[i], added, settings_.rebound)));
         now.orogeny[i] = static_cast<std::int8_t>(OrogenyType::himalayan);
         now.orogeny_age_myr[i] = 0.0F;
       }

@@ -69,7 +69,8 @@ void SphereTectonics::spread_roots() {
     gain_m[i] -= excess_m[i];
     budget_.lost_km3 += 1e-3 * sample_km2() * excess_m[i];
     crust.thickness_m[i] += static_cast<float>(gain_m[i]);
-    crust.elevation_m[i] += static_cast<float>(gain_m[i] / settings_.rebound);
+    crust.elevation_m[i] =
+        static_cast<float>(height_after(crust.elevation_m[i], gain_m[i], settings_.rebound));
   }
 }
 

@@ -156,7 +156,8 @@ class Beginning {
           settings_.radius_km * angle_between(mesh_.samples().position(i),
                                               mesh_.samples().position(floor[nearest[i]])) -
           half_km;
-      kept[i] = stretched_share(1.0 - std::clamp(inland_km / settings_.margin_km, 0.0, 1.0));
+      kept[i] = stretched_share(1.0 - std::clamp(inland_km / settings_.margin_km, 0.0, 1.0),
+                                settings_.margin_necking);
     }
     return kept;
   }

@@ -149,6 +149,10 @@ std::vector<Parameter> PlatesParameters::declarations() {
           "forsyth1975"),
       real("plates.slab_share", sphere.force.slab_share, "1", 0.0, 1.0,
            "sphere: share of a slab's weight that reaches its plate, with forces", "forsyth1975"),
+      real("plates.suction_share", sphere.force.suction_share, "1", 0.0, 1.0,
+           "sphere: share of a slab's weight that draws the plate above it to the trench, with "
+           "forces",
+           "conrad2002"),
       real("plates.slab_km", sphere.force.slab_km, "km", 0.0, 3000.0,
            "sphere: length of the slab that pulls, with forces", "turcotte2002"),
       real("plates.asthenosphere_pa_s", sphere.force.viscosity_pa_s, "Pa s", 1e17, 1e23,
@@ -187,10 +191,12 @@ std::vector<Parameter> PlatesParameters::declarations() {
            "sphere: sinking of the sea floor, with damping", "cortial2019"),
       real("plates.continental_erosion_mm_yr", sphere.law.erosion_mm_yr, "mm yr-1", 0.0, 10.0,
            "sphere: erosion of the highest continents", "cortial2019"),
-      choice("plates.erosion", erosion, {"height", "rivers"},
-             "sphere: continents wear down by their height, or rivers carve them between the steps "
-             "and lay down what they carry",
-             "cortial2019"),
+      choice(
+          "plates.erosion", erosion, {"height", "land", "rivers"},
+          "sphere: continents wear down by their height, and what lies below the sea fills up; "
+          "the same on land alone; or rivers carve them between the steps and lay down what they "
+          "carry",
+          "cortial2019"),
       real("plates.river_erodibility_yr", sphere.rivers.erodibility_yr, "yr-1", 0.0, 1.0,
            "sphere: erodibility K for the square root of the drained area, with rivers",
            "whipple1999"),
@@ -229,6 +235,9 @@ std::vector<Parameter> PlatesParameters::declarations() {
            "sphere: height that those volcanoes reach", "design"),
       real("plates.margin_km", sphere.margin_km, "km", 0.0, 1000.0,
            "sphere: width of the stretched crust where a continent breaks", "watts2001"),
+      real("plates.margin_necking", sphere.margin_necking, "1", 1.0, 16.0,
+           "sphere: how soon that crust is thin; above 1 most of the thinning is near the land",
+           "peronpinvidic2013"),
       real("plates.margin_source_km", sphere.margin_source_km, "km", 1.0, 5000.0,
            "sphere: how far inland that crust flows from", "design"),
       real("plates.margin_thinning", sphere.margin_thinning, "1", 0.0, 0.5,

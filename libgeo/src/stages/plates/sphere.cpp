@@ -25,6 +25,7 @@ SphereSettings settings_of(const PlatesParameters& p, double radius_km, const Co
   settings.fill_abyss = p.accretion == "abyss";
   settings.rift_largest = p.rifting == "largest";
   settings.by_rivers = p.erosion == "rivers";
+  settings.wears_land_alone = p.erosion == "land";
   settings.force.gravity_m_s2 = context.planet.gravity_m_s2;
   settings.floor_by_age = p.ocean_floor == "age";
   settings.no_net_rotation = p.no_net_rotation;

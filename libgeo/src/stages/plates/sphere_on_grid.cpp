@@ -12,10 +12,12 @@
 namespace geo {
 namespace {
 
+/// None in floor; in continents at least half, so that no stretched margin counts as floor.
 double continental_share(const SphereCrust& crust, std::int32_t sample, double whole_m) {
   constexpr double kOceanic_m = 8e3;
   if (crust.continental[sample] == 0) return 0.0;
-  return std::clamp((crust.thickness_m[sample] - kOceanic_m) / (whole_m - kOceanic_m), 0.1, 1.0);
+  const double whole = (crust.thickness_m[sample] - kOceanic_m) / (whole_m - kOceanic_m);
+  return 0.5 + 0.5 * std::clamp(whole, 0.0, 1.0);
 }
 
 }  // namespace
@@ -165,7 +167,7 @@ void SphereOnGrid::draw_crust(const Cell& at, Index cell, const Vector3& unit,
       east_north(grid_.to_axis(velocity_mm_yr(model_.rotations()[plate], unit, radius_km_)), up);
   out.east[cell] = static_cast<float>(velocity.east);
   out.north[cell] = static_cast<float>(velocity.north);
-  double fraction = 0.0, elevation = 0.0, thickness = 0.0, age = 0.0, ages = 0.0;
+  double fraction = 0.0, elevation = 0.0, thickness = 0.0;
   Vector3 fold{}, ridge{};
   for (int k = 0; k < 3; ++k) {
     const std::int32_t i = at.place.corner[k];
@@ -177,15 +179,9 @@ void SphereOnGrid::draw_crust(const Cell& at, Index cell, const Vector3& unit,
       fold[c] += weight * crust.fold[i][c];
       ridge[c] += weight * crust.ridge[i][c];
     }
-    // Ages jump where plates meet and crust changes.
-    if (crust.plate[i] != plate || crust.continental[i] != crust.continental[at.nearest]) continue;
-    age += weight * (crust.continental[i] != 0 ? crust.orogeny_age_myr[i] : crust.age_myr[i]);
-    ages += weight;
   }
-  const bool land = crust.continental[at.nearest] != 0;
-  const double own_age =
-      ages > 0.0 ? age / ages
-                 : (land ? crust.orogeny_age_myr[at.nearest] : crust.age_myr[at.nearest]);
+  const bool land = fraction >= 0.5;
+  const double own_age = age(at, plate, land);
   out.fraction[cell] = static_cast<float>(std::clamp(fraction, 0.0, 1.0));
   out.elevation[cell] = static_cast<float>(elevation);
   out.thickness[cell] = static_cast<float>(thickness);
@@ -222,6 +218,24 @@ void SphereOnGrid::draw_boundary(const Cell& at, Index cell, const Vector3& bent
     out.type[cell] = static_cast<std::int8_t>(point.type);
     out.strength[cell] = static_cast<float>(point.strength);
   }
+}
+
+/// Age of the crust of one type about a place, on its own plate where that has some there: ages
+/// jump where plates meet and crust changes.
+double SphereOnGrid::age(const Cell& at, std::int16_t plate, bool land) const {
+  const SphereCrust& crust = model_.state().crust;
+  for (const bool any_plate : {false, true}) {
+    double sum = 0.0, weights = 0.0;
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t i = at.place.corner[k];
+      if ((crust.continental[i] != 0) != land) continue;
+      if (!any_plate && crust.plate[i] != plate) continue;
+      sum += at.place.weight[k] * (land ? crust.orogeny_age_myr[i] : crust.age_myr[i]);
+      weights += at.place.weight[k];
+    }
+    if (weights > 0.0) return sum / weights;
+  }
+  return land ? crust.orogeny_age_myr[at.nearest] : crust.age_myr[at.nearest];
 }
 
 /// Warmth of the mantle: plumes on an even background.

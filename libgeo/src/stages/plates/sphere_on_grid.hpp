@@ -29,6 +29,7 @@ class SphereOnGrid {
     std::int32_t nearest;
   };
   void draw_crust(const Cell& at, Index cell, const Vector3& unit, const Outputs& out) const;
+  [[nodiscard]] double age(const Cell& at, std::int16_t plate, bool land) const;
   void draw_boundary(const Cell& at, Index cell, const Vector3& bent, const Outputs& out) const;
   [[nodiscard]] float heat(const Vector3& unit) const;
 
