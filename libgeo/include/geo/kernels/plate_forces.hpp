@@ -36,8 +36,9 @@ inline constexpr double kSecondsPerMyr = 3.15576e13;
   return 2.0 * k.mantle_kg_m3 * k.expansion_k * k.contrast_k * cold_m * k.gravity_m_s2 * 1e3 *
          k.slab_km;
 }
-/// What of it pulls the plate that goes down, and what, by the flow that the slab drives in the
-/// mantle, draws the plate above to the trench.
+/// What of this weight W pulls the plate that goes down, W epsilon, and what draws the plate above
+/// to the trench by the flow that the slab drives in the mantle, W epsilon_s, N/m (Conrad &
+/// Lithgow-Bertelloni 2002).
 [[nodiscard]] inline double slab_pull_n_m(double age_myr, const PlateForces& k = {}) {
   return slab_weight_n_m(age_myr, k) * k.slab_share;
 }
