@@ -214,6 +214,27 @@ TEST(DriftedPlates, AreTheSameWithAndWithoutFrames) {
   EXPECT_TRUE(same_values(with, without));
 }
 
+TEST(DriftedPlates, ShowEveryMultipleOfTheIntervalThatStepsDoNotMeet) {
+  PlatesParameters parameters = with_frames();  // 100 Myr in steps of 2
+  const auto times_of = [&](double frames_myr, std::shared_ptr<const Checkpoint> start) {
+    parameters.frames_myr = frames_myr;
+    State state(std::make_shared<Grid>(Grid::sphere(32, 16)));
+    std::vector<double> times_myr;
+    for (const Frame& frame : frames_of(parameters, state, std::move(start))) {
+      times_myr.push_back(frame.checkpoint.time_myr);
+    }
+    return times_myr;
+  };
+  EXPECT_EQ(times_of(25.0, nullptr), (std::vector<double>{0.0, 26.0, 50.0, 76.0, 100.0}));
+  EXPECT_EQ(times_of(33.3, nullptr), (std::vector<double>{0.0, 34.0, 68.0, 100.0}));
+  EXPECT_EQ(times_of(0.5, nullptr).size(), 51U);  // no more than steps
+  State state(std::make_shared<Grid>(Grid::sphere(32, 16)));
+  parameters.frames_myr = 20.0;
+  const auto frames = frames_of(parameters, state, nullptr);
+  EXPECT_EQ(times_of(25.0, std::make_shared<const Checkpoint>(frames[2].checkpoint)),
+            (std::vector<double>{50.0, 76.0, 100.0}));
+}
+
 TEST(DriftedPlates, RefuseFramesThatDoNotFit) {
   State state(std::make_shared<Grid>(Grid::sphere(32, 16)));
   const auto frames = frames_of(with_frames(), state, nullptr);

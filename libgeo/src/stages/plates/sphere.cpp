@@ -231,8 +231,13 @@ void drift(const PlatesParameters& parameters, const StageInfo& info, StageIo& i
   Books books;
   context.steps.columns = Books::columns();
   const auto steps = std::lround(parameters.time_myr / settings.law.step_myr);
-  const auto every = std::lround(parameters.frames_myr / settings.law.step_myr);
   const bool shows = context.on_frame && parameters.frames_myr > 0.0;
+  // Frames that are due after so many steps: each multiple of the interval is shown by the step
+  // that reaches or passes it, however the two divide.
+  const auto frames_due = [&](auto step_count) {
+    const double time_myr = static_cast<double>(step_count) * settings.law.step_myr;
+    return std::floor(time_myr / parameters.frames_myr + 1e-9);
+  };
   for (auto k = model.state().steps; k < steps; ++k) {
     const double from_myr = model.state().time_myr;
     if (shows && k == 0) show(parameters, model, info, io.grid(), context);
@@ -242,7 +247,7 @@ void drift(const PlatesParameters& parameters, const StageInfo& info, StageIo& i
     model.advance();
     books.enter(model.budget());
     context.steps.rows.push_back(Books::row(model));
-    if (shows && (k + 1) % std::max(1L, every) == 0) {
+    if (shows && frames_due(k + 1) > frames_due(k)) {
       show(parameters, model, info, io.grid(), context);
     }
   }
