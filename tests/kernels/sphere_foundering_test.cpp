@@ -97,6 +97,10 @@ TEST(Foundering, NeedsOldFloorARateAndAPlateThatIsFree) {
   never.founder_per_myr = 0.0;
   EXPECT_EQ(founderings(never, 130.0F, false), 0);
   EXPECT_EQ(founderings(settings(), 130.0F, false), 1);
+  // Floor of a sea goes down also where plates of its size would not stay.
+  SphereSettings large_plates = settings();
+  large_plates.smallest_piece_km2 = 1e8;
+  EXPECT_EQ(founderings(large_plates, 130.0F, false), 1);
 }
 
 TEST(Foundering, IsAsLikelyAsItsMarginIsLong) {

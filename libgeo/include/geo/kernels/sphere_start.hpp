@@ -17,6 +17,7 @@ struct SphereStart {
   bool whole_plates = false;        ///< continents are whole plates; else they lie across plates
   double warp_km = 700.0;           ///< of the plates' borders
   double continent_km = 4500.0;     ///< wavelength of continents
+  double smallest_sea_km2 = 0.0;    ///< less than that, enclosed by land, is land; 0 closes none
   double continental_km = 36.0;     ///< thickness of their crust
   double oldest_floor_myr = 130.0;  ///< of the first sea floor, far from boundaries
   /// Heights of the samples, m: the highest are the continents, thick as such ground is; the floor

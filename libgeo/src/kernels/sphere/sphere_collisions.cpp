@@ -3,6 +3,7 @@
 
 #include "geo/kernels/sphere_tectonics.hpp"
 #include "sample_sums.hpp"
+#include "sphere_flood.hpp"
 
 namespace geo {
 namespace {
@@ -16,17 +17,10 @@ constexpr double kRemnant = 0.05;
 std::vector<std::int32_t> SphereTectonics::terrane_of(std::int32_t sample) const {
   const SphereCrust& crust = state_.crust;
   const std::int16_t plate = crust.plate[sample];
-  std::vector<std::int32_t> terrane{sample};
   std::vector<std::uint8_t> seen(crust.plate.size(), 0);
-  seen[sample] = 1;
-  for (std::size_t k = 0; k < terrane.size(); ++k) {
-    for (const std::int32_t j : mesh_->neighbours(terrane[k])) {
-      if (seen[j] != 0 || crust.plate[j] != plate || crust.continental[j] == 0) continue;
-      seen[j] = 1;
-      terrane.push_back(j);
-    }
-  }
-  return terrane;
+  return flooded_from(*mesh_, sample, seen, [&](std::int32_t j) {
+    return crust.plate[j] == plate && crust.continental[j] != 0;
+  });
 }
 
 /// Continents that have gone far enough below another one collide with it.

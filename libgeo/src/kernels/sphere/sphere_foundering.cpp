@@ -6,12 +6,15 @@
 #include "geo/kernels/sphere_boundaries.hpp"
 #include "geo/kernels/sphere_tectonics.hpp"
 #include "sample_sums.hpp"
+#include "sphere_flood.hpp"
 
 namespace geo {
 namespace {
 
 /// Smaller pieces of continental crust are islands, and go with the floor about them.
 constexpr double kContinent_km2 = 1e6;
+/// Smaller pieces of floor stay, however large a plate must be to last.
+constexpr double kSinking_km2 = 1e6;
 /// How far along a margin the floor breaks that is old enough to go with it, in ages of foundering.
 constexpr double kAlong = 0.75;
 
@@ -68,24 +71,11 @@ void SphereTectonics::founder(std::int32_t start) {
   const std::int16_t plate = crust.plate[start];
   const std::int32_t n = mesh_->size();
   const auto is_own = [&](std::int32_t i) { return crust.plate[i] == plate && hidden_[i] == 0; };
-  /// All that can be reached from a sample over what may be entered.
-  const auto flood = [&](std::int32_t from, std::vector<std::uint8_t>& seen, auto&& may_enter) {
-    std::vector<std::int32_t> reached{from};
-    seen[from] = 1;
-    for (std::size_t k = 0; k < reached.size(); ++k) {
-      for (const std::int32_t j : mesh_->neighbours(reached[k])) {
-        if (seen[j] != 0 || !may_enter(j)) continue;
-        seen[j] = 1;
-        reached.push_back(j);
-      }
-    }
-    return reached;
-  };
   std::vector<std::uint8_t> seen(n, 0), is_continent(n, 0), is_margin(n, 0), is_old(n, 0);
   for (std::int32_t i = 0; i < n; ++i) {
     if (seen[i] != 0 || !is_own(i) || crust.continental[i] == 0) continue;
-    const auto land =
-        flood(i, seen, [&](std::int32_t j) { return is_own(j) && crust.continental[j] != 0; });
+    const auto land = flooded_from(
+        *mesh_, i, seen, [&](std::int32_t j) { return is_own(j) && crust.continental[j] != 0; });
     if (sample_km2() * static_cast<double>(land.size()) < kContinent_km2) continue;
     for (const std::int32_t j : land) is_continent[j] = 1;
   }
@@ -99,17 +89,18 @@ void SphereTectonics::founder(std::int32_t start) {
   // Floor along the margin is narrow: samples beside it keep the line together.
   const double old_myr = kAlong * settings_.founder_age_myr;
   Vector3 shore{}, middle{};
-  for (const std::int32_t i : flood(start, is_old, [&](std::int32_t j) {
+  for (const std::int32_t i : flooded_from(*mesh_, start, is_old, [&](std::int32_t j) {
          return is_margin[j] != 0 && crust.age_myr[j] >= old_myr;
        })) {
     shore = add(shore, mesh_->samples().position(i));
   }
   const auto nearest = nearest_samples(*mesh_, margin, std::numbers::pi);
   std::vector<std::uint8_t> breaks(n, 0);
-  const auto sinking = flood(start, breaks, [&](std::int32_t j) {
+  const auto sinking = flooded_from(*mesh_, start, breaks, [&](std::int32_t j) {
     return is_own(j) && is_continent[j] == 0 && nearest[j] >= 0 && is_old[margin[nearest[j]]] != 0;
   });
-  if (sample_km2() * static_cast<double>(sinking.size()) < settings_.smallest_piece_km2) return;
+  const double least_km2 = std::min(kSinking_km2, settings_.smallest_piece_km2);
+  if (sample_km2() * static_cast<double>(sinking.size()) < least_km2) return;
   for (const std::int32_t i : sinking) middle = add(middle, mesh_->samples().position(i));
   std::vector<std::int8_t> fragment(n, -1);
   for (std::int32_t i = 0; i < n; ++i) {

@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
+#include <span>
 
 #include "geo/core/random.hpp"
 #include "geo/kernels/crust_columns.hpp"
 #include "geo/kernels/noise.hpp"
 #include "geo/kernels/ocean_depth.hpp"
 #include "geo/kernels/sphere_boundaries.hpp"
+#include "sphere_flood.hpp"
 
 namespace geo {
 namespace {
@@ -131,12 +134,53 @@ class Beginning {
                             ? start_.elevation_m
                             : fbm_at(noise, mesh_.samples().positions(),
                                      settings_.radius_km / start_.continent_km, 8, 0.55);
-    std::vector<float> sorted(height);
-    const auto at = std::clamp(n - wanted, 0, n - 1);
+    if (!start_.elevation_m.empty() || start_.smallest_sea_km2 <= 0.0) {
+      return raise_highest(height, wanted);
+    }
+    // What is closed is land too: so much less of the noise is taken.
+    constexpr int kRounds = 6;
+    std::int32_t highest = wanted;
+    for (int round = 0; round < kRounds && highest > 0; ++round) {
+      raise_highest(height, highest);
+      const std::int32_t excess = highest + close_small_seas() - wanted;
+      if (std::abs(excess) <= n / 2000) return;
+      highest -= excess;
+    }
+  }
+
+  /// The highest samples are continents.
+  void raise_highest(std::span<const float> height, std::int32_t count) {
+    std::vector<float> sorted(height.begin(), height.end());
+    const std::int32_t n = mesh_.size(), at = std::clamp(n - count, 0, n - 1);
     std::nth_element(sorted.begin(), sorted.begin() + at, sorted.end());
     for (std::int32_t i = 0; i < n; ++i) {
-      crust.continental[i] = wanted > 0 && height[i] >= sorted[at] ? 1 : 0;
+      state_.crust.continental[i] = count > 0 && height[i] >= sorted[at] ? 1 : 0;
     }
+  }
+
+  /// Hollows of the noise within a continent are basins on it and not holes down to ocean floor,
+  /// which nothing could ever take away: samples that became land. The largest sea stays.
+  std::int32_t close_small_seas() {
+    auto& continental = state_.crust.continental;
+    const double sample_km2 =
+        4.0 * std::numbers::pi * settings_.radius_km * settings_.radius_km / mesh_.size();
+    std::vector<std::uint8_t> seen(mesh_.size(), 0);
+    std::vector<std::vector<std::int32_t>> seas;
+    for (std::int32_t i = 0; i < mesh_.size(); ++i) {
+      if (seen[i] != 0 || continental[i] != 0) continue;
+      seas.push_back(
+          flooded_from(mesh_, i, seen, [&](std::int32_t j) { return continental[j] == 0; }));
+    }
+    const auto largest =
+        std::ranges::max_element(seas, {}, [](const auto& sea) { return sea.size(); });
+    std::int32_t closed = 0;
+    for (auto sea = seas.begin(); sea != seas.end(); ++sea) {
+      const auto size = static_cast<std::int32_t>(sea->size());
+      if (sea == largest || size * sample_km2 >= start_.smallest_sea_km2) continue;
+      for (const std::int32_t i : *sea) continental[i] = 1;
+      closed += size;
+    }
+    return closed;
   }
 
   /// Share of its thickness that crust of a continent keeps: the first edges are passive margins,
