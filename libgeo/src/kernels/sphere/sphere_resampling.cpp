@@ -5,6 +5,7 @@
 #include "geo/kernels/ocean_depth.hpp"
 #include "geo/kernels/sphere_tectonics.hpp"
 #include "sample_sums.hpp"
+#include "sphere_flood.hpp"
 
 namespace geo {
 namespace {
@@ -263,55 +264,41 @@ void SphereTectonics::fill_gaps(SphereCrust& now, std::vector<std::int16_t>& own
 /// of their own that go on as they did.
 void SphereTectonics::tidy_pieces() {
   auto& plate = state_.crust.plate;
-  const std::int32_t n = mesh_->size();
-  std::vector<std::int32_t> piece(n, -1), size;
-  std::vector<std::int32_t> member, first;
-  for (std::int32_t i = 0; i < n; ++i) {
-    if (piece[i] >= 0) continue;
-    const auto number = static_cast<std::int32_t>(size.size());
-    first.push_back(static_cast<std::int32_t>(member.size()));
-    member.push_back(i);
-    piece[i] = number;
-    for (std::size_t k = first.back(); k < member.size(); ++k) {
-      for (const std::int32_t j : mesh_->neighbours(member[k])) {
-        if (piece[j] >= 0 || plate[j] != plate[i]) continue;
-        piece[j] = number;
-        member.push_back(j);
-      }
-    }
-    size.push_back(static_cast<std::int32_t>(member.size()) - first.back());
-  }
-  first.push_back(n);
+  std::vector<std::uint8_t> seen(plate.size(), 0);
+  std::vector<std::vector<std::int32_t>> pieces;
   std::vector<std::int32_t> largest(state_.plates.size(), -1);
-  for (std::size_t k = 0; k < size.size(); ++k) {
-    std::int32_t& best = largest[plate[member[first[k]]]];
-    if (best < 0 || size[k] > size[best]) best = static_cast<std::int32_t>(k);
+  for (std::int32_t i = 0; i < mesh_->size(); ++i) {
+    if (seen[i] != 0) continue;
+    const auto own = plate[i];
+    pieces.push_back(
+        flooded_from(*mesh_, i, seen, [&](std::int32_t j) { return plate[j] == own; }));
+    std::int32_t& best = largest[own];
+    if (best >= 0 && pieces[best].size() >= pieces.back().size()) continue;
+    best = static_cast<std::int32_t>(pieces.size()) - 1;
   }
   const double small = settings_.smallest_piece_km2 / sample_km2();
-  for (std::size_t k = 0; k < size.size(); ++k) {
-    const auto own = plate[member[first[k]]];
-    const auto members = std::span(member).subspan(first[k], size[k]);
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    const std::vector<std::int32_t>& piece = pieces[k];
+    const auto own = plate[piece.front()];
+    const auto size = static_cast<double>(piece.size());
     const bool keeps = largest[own] == static_cast<std::int32_t>(k);
-    if (keeps && (size[k] > small || size.size() < 3)) continue;
-    if (size[k] > small) {
-      if (keeps) continue;
+    if (keeps && (size > small || pieces.size() < 3)) continue;
+    if (size > small) {
       SpherePlate copy = state_.plates[own];
       copy.born_myr = state_.time_myr;
       const int fresh = state_.add_plate(copy);
-      for (const std::int32_t i : members) plate[i] = static_cast<std::int16_t>(fresh);
+      for (const std::int32_t i : piece) plate[i] = static_cast<std::int16_t>(fresh);
       continue;
     }
     std::vector<std::int32_t> border(state_.plates.size(), 0);
-    for (const std::int32_t i : members) {
+    for (const std::int32_t i : piece) {
       for (const std::int32_t j : mesh_->neighbours(i)) {
-        if (piece[j] != static_cast<std::int32_t>(k) && plate[j] != own) ++border[plate[j]];
+        if (plate[j] != own) ++border[plate[j]];
       }
     }
     const auto best = std::max_element(border.begin(), border.end());
     if (*best == 0) continue;
-    for (const std::int32_t i : members) {
-      plate[i] = static_cast<std::int16_t>(best - border.begin());
-    }
+    for (const std::int32_t i : piece) plate[i] = static_cast<std::int16_t>(best - border.begin());
   }
 }
 
