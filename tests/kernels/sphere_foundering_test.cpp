@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "geo/kernels/sphere_tectonics.hpp"
 #include "support/sampled_sphere.hpp"
@@ -101,6 +102,29 @@ TEST(Foundering, NeedsOldFloorARateAndAPlateThatIsFree) {
   SphereSettings large_plates = settings();
   large_plates.smallest_piece_km2 = 1e8;
   EXPECT_EQ(founderings(large_plates, 130.0F, false), 1);
+}
+
+TEST(Foundering, LeavesASeaOfLessThanAMillionSquareKilometres) {
+  const SampledSphere world(20000);
+  SphereSettings s = settings();
+  s.smallest_piece_km2 = 1e8;
+  // Old floor in the midst of the continent: 0.6 and 2.4 million km2, and young floor all around
+  // it.
+  for (const auto& [half_deg, founderings] : {std::pair{3.5, 0}, std::pair{7.0, 1}}) {
+    SphereState state = beginning(world, 40.0F);
+    for (std::int32_t i = 0; i < world.mesh.size(); ++i) {
+      const Vector3& at = world.samples.position(i);
+      if (std::abs(longitude_deg(at) - 90.0) > half_deg) continue;
+      if (std::abs(latitude_deg(at)) > half_deg) continue;
+      state.crust.continental[i] = 0;
+      state.crust.thickness_m[i] = 7000.0F;
+      state.crust.elevation_m[i] = -5000.0F;
+      state.crust.age_myr[i] = 130.0F;
+    }
+    SphereTectonics model(world.mesh, s, std::move(state), 1);
+    model.advance();
+    EXPECT_EQ(model.budget().founderings, founderings) << half_deg;
+  }
 }
 
 TEST(Foundering, IsAsLikelyAsItsMarginIsLong) {
