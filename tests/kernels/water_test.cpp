@@ -6,6 +6,7 @@
 #include <numeric>
 #include <queue>
 
+#include "geo/core/error.hpp"
 #include "geo/kernels/depressions.hpp"
 #include "geo/kernels/flow_graph.hpp"
 #include "support/terrain.hpp"
@@ -66,6 +67,29 @@ TEST(Water, FilledSurfaceEqualsPriorityFlood) {
     ASSERT_EQ(filled, flood(grid, z, outlets));
     ASSERT_EQ(route_water(grid, z, outlets, true).filled_m, filled);
   });
+}
+
+TEST(Water, OrderHoldsForAnyNumberOfDonors) {
+  for (const int donors : {0, 1, 8, 254, 255, 256, 257, 640, 65'536, 100'000}) {
+    // A star, and beyond its centre a chain: the centre stands after all its donors.
+    std::vector<Index> receiver(donors + 2, 0);
+    receiver[0] = donors + 1;
+    receiver[donors + 1] = donors + 1;
+    const std::vector<Index> order = downstream_order(receiver);
+    ASSERT_EQ(order.size(), receiver.size());
+    ASSERT_EQ(order[donors], 0) << donors << " donors";
+    ASSERT_EQ(order[donors + 1], donors + 1) << donors << " donors";
+    auto sorted = order;
+    std::sort(sorted.begin(), sorted.end());
+    for (Index cell = 0; cell < donors + 2; ++cell) ASSERT_EQ(sorted[cell], cell);
+  }
+}
+
+TEST(Water, CyclesAreFound) {
+  EXPECT_THROW(downstream_order(std::vector<Index>{1, 2, 0}), Bug);
+  std::vector<Index> star(1000, 0);
+  star[0] = 1;  // and 1 drains to 0
+  EXPECT_THROW(downstream_order(star), Bug);
 }
 
 TEST(Water, EveryCellReachesAnOutletWithoutClimbingTheFilledSurface) {

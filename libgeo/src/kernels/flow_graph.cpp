@@ -1,21 +1,28 @@
 #include "geo/kernels/flow_graph.hpp"
 
 #include <algorithm>
-#include <array>
+#include <cstdint>
+#include <limits>
 
 #include "geo/core/error.hpp"
 
 namespace geo {
 
-std::vector<Index> downstream_order(std::span<const Index> receiver) {
+namespace {
+
+/// Walks downstream from each source as far as the last donor has been seen, with donors counted in
+/// `Count`. False where a cell has more donors than that holds.
+template <class Count>
+bool order_donors_first(std::span<const Index> receiver, std::vector<Index>& order) {
   const auto size = static_cast<Index>(receiver.size());
-  // Donors that have not been seen yet; 255 once the cell itself stands in the order.
-  constexpr std::uint8_t kDone = 255;
-  std::vector<std::uint8_t> waiting(size, 0);
+  // Donors that have not been seen yet; kDone once the cell itself stands in the order.
+  constexpr Count kDone = std::numeric_limits<Count>::max();
+  std::vector<Count> waiting(size, 0);
   for (Index cell = 0; cell < size; ++cell) {
-    if (receiver[cell] != cell) ++waiting[receiver[cell]];
+    const Index to = receiver[cell];
+    if (to != cell && ++waiting[to] == kDone) return false;
   }
-  std::vector<Index> order(size);
+  order.resize(size);
   Index* next = order.data();
   for (Index source = 0; source < size; ++source) {
     if (waiting[source] != 0) continue;
@@ -29,6 +36,17 @@ std::vector<Index> downstream_order(std::span<const Index> receiver) {
     }
   }
   if (next != order.data() + size) throw Bug("flow routing has a cycle");
+  return true;
+}
+
+}  // namespace
+
+std::vector<Index> downstream_order(std::span<const Index> receiver) {
+  std::vector<Index> order;
+  // A cell of a grid has at most eight donors, a lake that depressions spill into any number.
+  if (!order_donors_first<std::uint8_t>(receiver, order)) {
+    order_donors_first<std::uint32_t>(receiver, order);
+  }
   return order;
 }
 
