@@ -6,6 +6,7 @@
 #include <CLI/Formatter.hpp>
 #include <CLI/Version.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -129,6 +130,7 @@ int main(int argc, char** argv) {
   try {
     run_program(argc, argv);
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+      if (errno == EPIPE) terrane::end_by_broken_pipe();
       throw geo::IoError("standard output: could not be written");
     }
     return 0;
@@ -140,6 +142,7 @@ int main(int argc, char** argv) {
     terrane::log_error(error.what());
     return static_cast<int>(error.kind());
   } catch (const std::system_error& error) {
+    if (error.code() == std::errc::broken_pipe) terrane::end_by_broken_pipe();
     terrane::log_error(system_message(error));
     return static_cast<int>(geo::ErrorKind::io);
   } catch (const std::bad_alloc&) {
