@@ -8,11 +8,13 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include "geo/core/error.hpp"
 #include "geo/core/vector3.hpp"
 #include "geo/kernels/airy.hpp"
 #include "geo/kernels/area_sum.hpp"
+#include "geo/kernels/convergent_margins.hpp"
 #include "geo/kernels/quantiles.hpp"
 #include "geo/stages/plates.hpp"
 
@@ -324,6 +326,66 @@ TEST(Isostasy, PolarRowsAreAsRoughAsTheirNeighbours) {
             << spec->name << ", row " << j << ", " << parameters.crust;
       }
     }
+  }
+}
+
+/// Heights above the datum, with and without the plate's stiffness, in columns that the sea and
+/// its shelves leave as they are.
+struct Stiffness {
+  Planetary stiff, soft;
+  std::vector<double> change_m;
+};
+Stiffness stiffness(int nx, std::uint64_t seed, IsostasyParameters parameters = {}) {
+  parameters.ocean_depth_m = 0.0;
+  parameters.shelf_depth_m = 0.0;
+  IsostasyParameters local = parameters;
+  local.elastic_thickness_km = 0.0;
+  Stiffness s{planet(nx, seed, parameters), planet(nx, seed, local), {}};
+  const auto stiff = s.stiff.state.read(field::elevation),
+             soft = s.soft.state.read(field::elevation);
+  const double shift_m =
+      s.stiff.budget.at("sea_level_shift_m") - s.soft.budget.at("sea_level_shift_m");
+  for (std::size_t c = 0; c < stiff.size(); ++c) {
+    s.change_m.push_back(static_cast<double>(stiff[c]) - soft[c] + shift_m);
+  }
+  return s;
+}
+
+TEST(Isostasy, StiffnessHoldsUpNothingFarFromBeltsAndArcs) {
+  // Where nothing loads the plate it does not bend: further than two flexural wavelengths from the
+  // nearest belt or arc by a thousandth of what a belt's root would be.
+  const IsostasyParameters parameters;
+  const double restoring = (parameters.density.mantle - parameters.density.water) * 9.81;
+  const double wavelength_km =
+      2e-3 * std::numbers::pi * std::pow(4.0 * parameters.plate.rigidity_n_m() / restoring, 0.25);
+  EXPECT_NEAR(wavelength_km, 344.0, 5.0);
+  for (const std::uint64_t seed : {3, 11}) {
+    const Stiffness s = stiffness(1024, seed);
+    const Grid& grid = s.stiff.state.grid();
+    const auto belt = s.stiff.state.read(field::convergent_deformation);
+    std::vector<std::uint8_t> loaded(grid.size());
+    for (Index c = 0; c < grid.size(); ++c) loaded[c] = belt[c] > 1e-3F;
+    const auto away_km = distance_to_marked_km(grid, loaded);
+    double most_m = 0.0, near_m = 0.0;
+    int far = 0;
+    for (Index c = 0; c < grid.size(); ++c) {
+      const bool is_far = away_km[c] > 2.0 * wavelength_km;
+      far += is_far;
+      double& most = is_far ? most_m : near_m;
+      most = std::max(most, std::abs(s.change_m[c]));
+    }
+    EXPECT_GT(far, grid.size() / 5) << "seed " << seed;
+    EXPECT_LT(most_m, 10.0) << "seed " << seed;
+    EXPECT_GT(near_m, 500.0) << "seed " << seed;
+  }
+}
+
+TEST(Isostasy, OldBeltsStandInLocalBalance) {
+  IsostasyParameters parameters;
+  parameters.collision_km = 0.0;
+  parameters.arc_km = 0.0;
+  for (const double change_m : stiffness(256, 3, parameters).change_m) {
+    ASSERT_NEAR(change_m, 0.0, 0.01);
   }
 }
 

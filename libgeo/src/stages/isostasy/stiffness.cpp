@@ -12,7 +12,7 @@ void stiffen_blueprint(const Crust<float>& crust, const CoarseGrid& coarse) {
   for (std::size_t cell = 0; cell < local.size(); ++cell) {
     local[cell] *= density[cell] / static_cast<float>(crust.parameters.density.mantle);
   }
-  const std::vector<float> held = held_up_m(crust, coarse.grid(), local);
+  const std::vector<float> held = held_up_m(crust, coarse.grid(), local, /*infill=*/0.0);
   const Grid& grid = crust.grid;
   const CubicRows rows(coarse.grid(), grid);
   std::vector<float> line(grid.nx()), scratch;

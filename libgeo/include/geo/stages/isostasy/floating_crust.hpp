@@ -12,7 +12,7 @@ void float_margins_crust(const Crust<V>& crust, const CoarseGrid& coarse,
                          const TectonicFrame& frame) {
   Tectonics<V> tectonics = deform(crust, coarse, frame);
   cut_sections(crust, coarse, frame, tectonics);
-  tectonics.flexure_m = flexure_of_belts_m(crust, coarse.grid(), tectonics);
+  tectonics.flexure_m = flexure_of_belts_m(crust, coarse, tectonics);
   draw_margins_crust(crust, coarse, frame, tectonics);
 }
 

@@ -126,8 +126,8 @@ class Columns {
     const Tectonics<V>& row = along.from_afar;
     const Index cell = crust_.grid.cell(i, j);
     const double share = crust_.fraction[cell];
-    const Number belt = limited(Number(row.thickening[i]), 0.0, 1.3);
-    const Number island = greater(V(0.0F), row.arc[i]);
+    const Number belt = thickened(row.thickening[i]);
+    const Number island = raised_arc(row.arc[i]);
     const Number hot = p_.heat_m * static_cast<double>(crust_.in.heat[cell]);
     crust_.convergent[cell] = V(limited(Number(share * belt + (1 - share) * island), 0.0, 1.0));
     crust_.divergent[cell] = limited(row.divergent[i], 0.0, 1.0);
@@ -142,8 +142,9 @@ class Columns {
     }
     Number floor_m(0.0);
     if (share < 1.0) {
-      floor_m = sea_floor_m(i, along, crust_.in.age_myr[cell], island, rough) +
-                hot * (1.0 - 0.3 * share) - 0.25 * p_.heat_m;
+      floor_m =
+          sea_floor_m(i, along, floor_age_myr(crust_.in.age_myr[cell], share), island, rough) +
+          hot * (1.0 - 0.3 * share) - 0.25 * p_.heat_m;
     }
     crust_.thickness_m[cell] =
         V(1e3 * limited(Number(p_.oceanic_km + (land.thickness_km - p_.oceanic_km) * share +
@@ -214,15 +215,21 @@ class Columns {
     return {thickness_km, elevation_m};
   }
 
+  /// Age of the floor that a column's oceanic part is: towards continents, whose own age is that of
+  /// another event, as old as any floor gets. They were stretched before the first floor was made.
+  static double floor_age_myr(double crust_age_myr, double share) {
+    if (share >= 0.5) return kOldestFloor_myr;
+    const double age_myr = std::min(crust_age_myr, kOldestFloor_myr);
+    return age_myr + smooth_step(0.3, 0.5, share) * (kOldestFloor_myr - age_myr);
+  }
   /// Floor as deep as it is old, under its sediment, with hills, seamounts, arcs and trenches.
   [[nodiscard]] Number sea_floor_m(int i, const Row& along, double age_myr, const Number& island,
                                    double rough) const {
     const Tectonics<V>& row = along.from_afar;
-    return -ocean_depth_m(std::min(age_myr, kOldestFloor_myr)) + floor_cover_m(i, along, age_myr) +
+    return -ocean_depth_m(age_myr) + floor_cover_m(i, along, age_myr) +
            island * (2600.0 + 1500.0 * rough) + Number(row.trench_m[i]);
   }
-  /// Sediment, swells, hills and seamounts on a floor. Within margins, ages are partly those of
-  /// continents: their floor is as old as any floor gets.
+  /// Sediment, swells, hills and seamounts on a floor.
   [[nodiscard]] Number floor_cover_m(int i, const Row& along, double crust_age_myr) const {
     const Tectonics<V>& row = along.from_afar;
     const double age_myr = std::min(crust_age_myr, kOldestFloor_myr);

@@ -12,45 +12,75 @@ namespace geo {
   return p.compensation == "flexural" && p.elastic_thickness_km > 0.0;
 }
 
-/// What the plate's stiffness holds up of deflections of local balance, m: w - F w.
+/// What the plate's stiffness holds up of deflections of local balance, m: w - F w. `infill` is
+/// the density of what fills the hollow, kg m-3: that of air or of the sea.
 template <class V>
-std::vector<V> held_up_m(const Crust<V>& crust, const Grid& coarse, const std::vector<V>& local_m) {
+std::vector<V> held_up_m(const Crust<V>& crust, const Grid& coarse, const std::vector<V>& local_m,
+                         const Arithmetic<V>& infill) {
   const IsostasyParameters& p = crust.parameters;
   ElasticPlate plate = p.plate;
-  plate.infill_kg_m3 = 0.0;
   plate.gravity_m_s2 = crust.planet.gravity_m_s2;
   plate.radius_m = 1e3 * crust.radius_km();
   std::vector<V> held(local_m), flexed(local_m);
-  apply_linear<V, 2>(flexed, {crust.lift(p.elastic_thickness_km), crust.lift(p.density.mantle)},
-                     [&](auto values, const std::array<double, 2>& of_plate) {
+  apply_linear<V, 3>(flexed,
+                     {crust.lift(p.elastic_thickness_km), crust.lift(p.density.mantle), infill},
+                     [&](auto values, const std::array<double, 3>& of_plate) {
                        plate.thickness_m = 1e3 * of_plate[0];
                        plate.mantle_kg_m3 = of_plate[1];
+                       plate.infill_kg_m3 = of_plate[2];
                        flex(coarse, values, plate);
                      });
   for (std::size_t cell = 0; cell < held.size(); ++cell) held[cell] -= flexed[cell];
   return held;
 }
 
-/// What the plate's stiffness changes under a margins crust (Turcotte et al. 1981), m: w - F w for
-/// the deflection w of local balance under belts and arcs. Margins were cut and filled while the
-/// plate was warm and weak: they stay in local balance.
+/// How far crust that plates have laid on their stiff neighbours presses the mantle down in local
+/// balance, m.
 template <class V>
-std::vector<V> flexure_of_belts_m(const Crust<V>& crust, const Grid& coarse,
-                                  const Tectonics<V>& t) {
+struct BeltLoads {
+  std::vector<V> on_land, at_sea;
+  bool any_at_sea = false;
+};
+
+/// The thickening of active belts and arcs that columns of a margins crust have, each by its share
+/// of a cell: of continents in air, rho_c / rho_m of it; of arcs in the sea,
+/// (rho_o - rho_w) / (rho_m - rho_w) of it. Ranges within a belt fold while it is hot: no load.
+template <class V>
+BeltLoads<V> belt_loads_m(const Crust<V>& crust, const CoarseGrid& coarse, const Tectonics<V>& t) {
   using Number = Arithmetic<V>;
   const IsostasyParameters& p = crust.parameters;
-  std::vector<V> local(coarse.size(), V(0.0F));
-  if (!is_stiff(p)) return local;
-  const Number share = crust.lift(p.density.continental_crust) / crust.lift(p.density.mantle);
-  const Number collision_km = crust.lift(p.collision_km), relict_km = crust.lift(p.relict_km),
-               arc_km = crust.lift(p.arc_km);
-  for (Index cell = 0; cell < coarse.size(); ++cell) {
-    local[cell] =
-        V(1e3 * share *
-          (collision_km * Number(t.thickening[cell]) +
-           relict_km * static_cast<double>(t.relict[cell]) + arc_km * Number(t.arc[cell])));
+  const auto density = crust.densities();
+  const Number belt_m =
+      1e3 * crust.lift(p.collision_km) * density.continental_crust / density.mantle;
+  const Number arc_m = 1e3 * crust.lift(p.arc_km) * (density.oceanic_crust - density.water) /
+                       (density.mantle - density.water);
+  const auto share = coarse.middle(std::span<const float>(crust.fraction));
+  BeltLoads<V> loads{std::vector<V>(share.size()), std::vector<V>(share.size())};
+  for (std::size_t cell = 0; cell < share.size(); ++cell) {
+    const double continental = share[cell];
+    loads.on_land[cell] = V(continental * (belt_m * thickened(t.thickening[cell])));
+    loads.at_sea[cell] = V((1.0 - continental) * (arc_m * raised_arc(t.arc[cell])));
+    loads.any_at_sea = loads.any_at_sea || value_of(loads.at_sea[cell]) > 0.0;
   }
-  return held_up_m(crust, coarse, local);
+  return loads;
+}
+
+/// What the plate's stiffness changes under a margins crust (Turcotte et al. 1981), m: w - F w for
+/// the deflection w of local balance under belts and arcs that plates raise today. What was made
+/// or worn down while the plate was warm and weak stays in local balance: margins, and the roots
+/// of old belts, which are narrower than a stiff plate could have let sink.
+template <class V>
+std::vector<V> flexure_of_belts_m(const Crust<V>& crust, const CoarseGrid& coarse,
+                                  const Tectonics<V>& t) {
+  const IsostasyParameters& p = crust.parameters;
+  if (!is_stiff(p)) return std::vector<V>(coarse.grid().size(), V(0.0F));
+  const BeltLoads<V> loads = belt_loads_m(crust, coarse, t);
+  std::vector<V> held = held_up_m(crust, coarse.grid(), loads.on_land, Arithmetic<V>(0.0));
+  if (!loads.any_at_sea) return held;
+  const std::vector<V> under_arcs =
+      held_up_m(crust, coarse.grid(), loads.at_sea, crust.lift(p.density.water));
+  for (std::size_t cell = 0; cell < held.size(); ++cell) held[cell] += under_arcs[cell];
+  return held;
 }
 
 }  // namespace geo

@@ -29,4 +29,14 @@ struct Tectonics {
   std::vector<float> ocean_swell, relict;
 };
 
+/// Thickening and arc as columns have them.
+template <class V>
+[[nodiscard]] Arithmetic<V> thickened(const V& thickening) {
+  return limited(Arithmetic<V>(thickening), 0.0, 1.3);
+}
+template <class V>
+[[nodiscard]] Arithmetic<V> raised_arc(const V& arc) {
+  return greater(V(0.0F), arc);
+}
+
 }  // namespace geo
