@@ -81,6 +81,23 @@ TEST(ConvergentMargins, OfTwoOceansTheOlderGoesDown) {
   EXPECT_GT(margins.across_km[t.grid.cell(7, 60)], 0.0F);
 }
 
+TEST(ConvergentMargins, ContinentsInAnOceanDoNotMakeItsFloorOlder) {
+  EquatorialTrench t;
+  for (Index cell = 0; cell < t.grid.size(); ++cell) {
+    // A third of the younger plate is an old continent.
+    const bool continent = t.plate[cell] == 0 && t.grid.column(cell) % 3 == 0;
+    t.fraction[cell] = continent ? 1.0F : 0.0F;
+    t.age[cell] = continent ? 2000.0F : t.plate[cell] == 1 ? 120.0F : 30.0F;
+  }
+  const auto margins =
+      convergent_margins(t.grid, t.plate, t.type, t.strength, t.fraction, t.age, t.speed);
+  for (Index cell = 0; cell < t.grid.size(); ++cell) {
+    ASSERT_EQ(margins.kind[cell], Convergence::oceans);
+    if (t.type[cell] != 0) continue;  // on the boundary itself
+    ASSERT_EQ(margins.across_km[cell] < 0.0F, t.plate[cell] == 1);
+  }
+}
+
 TEST(Hypsometry, PowerLawBringsTheMedianOfLandToItsAim) {
   const Grid grid = Grid::sphere(256, 128);
   const Noise noise(5, "heights");

@@ -15,6 +15,7 @@
 #include "geo/kernels/plate_evolution.hpp"
 #include "geo/kernels/plate_growth.hpp"
 #include "geo/kernels/plate_motion.hpp"
+#include "geo/kernels/plate_pieces.hpp"
 
 namespace geo {
 namespace {
@@ -246,6 +247,20 @@ TEST(CrustAge, GrowsWithTheDistanceFromTheRidge) {
   for (const float myr : capped) EXPECT_TRUE(myr >= 0.0F && myr <= 180.0F);
 }
 
+TEST(PlateBoundaries, OfSmallPlanetsAreTakenOverNoMoreThanPartOfThem) {
+  const Hemispheres two;
+  const double widest_km = kWidestSmoothing_rad * kRadius_km;
+  const auto widest =
+      find_boundaries(two.mesh, two.plate, two.rotation, 2.0, widest_km, kRadius_km);
+  const auto wider =
+      find_boundaries(two.mesh, two.plate, two.rotation, 2.0, 1e4 * widest_km, kRadius_km);
+  ASSERT_EQ(widest.size(), wider.size());
+  for (std::size_t k = 0; k < widest.size(); ++k) {
+    ASSERT_EQ(widest[k].towards, wider[k].towards);
+    ASSERT_EQ(widest[k].type, wider[k].type);
+  }
+}
+
 TEST(NearestCells, AreNearestByGreatCircle) {
   const CubedSphere mesh(40);
   std::vector<std::int32_t> sources;
@@ -296,6 +311,49 @@ TEST(PlateGrowth, SmallPiecesJoinTheNeighbourTheyBorderMost) {
   merge_small_pieces(mesh, 0.05, plate);
   EXPECT_EQ(plate[island], 0);
   EXPECT_EQ(plate[mesh.locate(at(-50, 20))], 1);
+}
+
+TEST(PlatePieces, OfAnySizeJoinANeighbourUntilEachPlateIsOne) {
+  const CubedSphere mesh(32);
+  std::vector<std::int16_t> plate(mesh.size(), 0);
+  const auto paint = [&](const Vector3& middle, double radius_rad, std::int16_t own) {
+    for (std::int32_t cell = 0; cell < mesh.size(); ++cell) {
+      if (angle_between(mesh.position(cell), middle) < radius_rad) plate[cell] = own;
+    }
+  };
+  // Three discs of plate 1; in the second one plate 2, and in that a piece of plate 0.
+  paint(at(0, 0), 0.6, 1);
+  paint(at(0, 90), 0.5, 1);
+  paint(at(0, 90), 0.3, 2);
+  paint(at(0, 90), 0.1, 0);
+  paint(at(0, 180), 0.4, 1);
+  connect_plates(mesh, plate);
+  EXPECT_EQ(plate[mesh.locate(at(0, 0))], 1);
+  EXPECT_EQ(plate[mesh.locate(at(0, 180))], 0);
+  EXPECT_EQ(plate[mesh.locate(at(0, 90 + 0.4 / kRadians))], 0);  // borders plate 0 most
+  EXPECT_EQ(plate[mesh.locate(at(0, 90 + 0.2 / kRadians))], 2);
+  EXPECT_EQ(plate[mesh.locate(at(0, 90))], 2);
+  const auto connected = plate;
+  merge_small_pieces(mesh, 4.0 * kPi, plate);
+  EXPECT_EQ(plate, connected);
+}
+
+TEST(PlatePieces, OnAGridHangTogetherByCornersOverTheDateLineAndPoles) {
+  const Grid grid = Grid::sphere(16, 8);
+  std::vector<std::int16_t> plate(grid.size(), 0);
+  const auto set = [&](int i, int j, std::int16_t own) { plate[grid.cell(i, j)] = own; };
+  // By a corner across the date line; half-way round over the pole; by a corner over it.
+  for (const auto [i, j] : {std::pair{15, 3}, {0, 4}, {14, 2}}) set(i, j, 1);
+  for (const auto [i, j] : {std::pair{3, 7}, {11, 7}, {3, 6}}) set(i, j, 2);
+  for (const auto [i, j] : {std::pair{5, 0}, {14, 0}}) set(i, j, 3);
+  const auto before = plate;
+  EXPECT_TRUE(connect_plates(grid, plate).empty());
+  EXPECT_EQ(plate, before);
+  // Two cells of plate 1 away from the rest, and one of plate 2.
+  set(8, 4, 1), set(9, 4, 1), set(8, 2, 2);
+  const std::vector<Index> cut_off{grid.cell(8, 2), grid.cell(8, 4), grid.cell(9, 4)};
+  EXPECT_EQ(connect_plates(grid, plate), cut_off);
+  EXPECT_EQ(plate, before);
 }
 
 TEST(PlateEvolution, APlateMovesRigidly) {

@@ -247,6 +247,77 @@ TEST(Plates, SeaFloorIsYoungAtRidgesAndAsOldAsEarths) {
   EXPECT_NEAR(mean, 64.0, 12.0);
 }
 
+/// Pieces of plates on the grid, by sides and corners, beyond one for each plate.
+int detached_pieces(const State& state) {
+  const Grid& grid = state.grid();
+  const auto plate = state.read(field::plate_id);
+  std::vector<std::uint8_t> seen(grid.size(), 0);
+  std::map<int, int> pieces;
+  for (Index start = 0; start < grid.size(); ++start) {
+    if (seen[start] != 0) continue;
+    ++pieces[plate[start]];
+    seen[start] = 1;
+    std::vector<Index> cells{start};
+    while (!cells.empty()) {
+      const Index cell = cells.back();
+      cells.pop_back();
+      for (int k = 0; k < kDirections; ++k) {
+        const Index next = grid.neighbour(cell, k);
+        if (seen[next] != 0 || plate[next] != plate[start]) continue;
+        seen[next] = 1;
+        cells.push_back(next);
+      }
+    }
+  }
+  int detached = 0;
+  for (const auto& [id, count] : pieces) detached += count - 1;
+  return detached;
+}
+
+TEST(Plates, AreConnectedOnEveryGrid) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    for (const int nx : {64, 256, 512}) {
+      for (const std::int64_t count : {std::int64_t{22}, std::int64_t{100}}) {
+        if (count == 100 && nx != 256) continue;
+        PlatesParameters parameters;
+        parameters.growth.count = count;
+        EXPECT_EQ(detached_pieces(planet(nx, seed, parameters)), 0)
+            << "seed " << seed << ", " << count << " plates, " << nx << " columns";
+      }
+    }
+    EXPECT_EQ(detached_pieces(planet(256, seed, blueprint())), 0) << "blueprint, seed " << seed;
+  }
+}
+
+TEST(Plates, OfOceansCarryTheAgeOfTheirFloor) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    PlatesParameters parameters;
+    const State state = planet(256, seed, parameters);
+    const auto age = state.read(field::crust_age);
+    const auto fraction = state.read(field::continental_fraction);
+    for (Index c = 0; c < state.grid().size(); ++c) {
+      if (fraction[c] < 0.5F) {
+        ASSERT_LE(age[c], parameters.oldest_floor_myr) << "seed " << seed << ", cell " << c;
+      } else {
+        ASSERT_GE(age[c], 200.0F) << "seed " << seed << ", cell " << c;
+      }
+    }
+  }
+}
+
+TEST(Plates, OfPlanetsOfAnySizeGrow) {
+  for (const double radius_km : {1.0, 1e6}) {
+    State state(std::make_shared<Grid>(Grid::sphere(64, 32, {1e3 * radius_km, 0.0})));
+    const auto stage = make_plates_stage();
+    StageIo io(state, stage->info());
+    Context context;
+    context.seed = 1;
+    stage->run(io, context);
+    EXPECT_NEAR(context.budget.at("plates_area_error"), 0.0, 1e-9) << radius_km << " km";
+    for (const float myr : state.read(field::crust_age)) ASSERT_TRUE(std::isfinite(myr));
+  }
+}
+
 TEST(Plates, TurnNoFasterWithoutNetRotation) {
   const State state = planet(128, 6);
   const Grid& grid = state.grid();

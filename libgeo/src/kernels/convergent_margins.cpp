@@ -48,8 +48,8 @@ bool touches_another_plate(const Grid& grid, std::span<const std::int16_t> plate
 /// What one plate is like near a point of its boundary.
 struct Side {
   std::int16_t plate = -1;
-  double fraction = 0.0, age_myr = 0.0, speed = 0.0;
-  int cells = 0;
+  double fraction = 0.0, floor_myr = 0.0, speed = 0.0;
+  int cells = 0, floor_cells = 0;
 };
 
 }  // namespace
@@ -82,7 +82,9 @@ ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int1
                                      std::span<const float> age_myr,
                                      std::span<const float> speed_mm_yr) {
   constexpr auto kConvergent = static_cast<std::int8_t>(BoundaryType::convergent);
-  constexpr double kWindow_m = 220e3, kHandicap_m = 150e3;
+  constexpr double kWindow_m = 220e3, kWidest_rad = 0.35, kHandicap_m = 150e3;
+  // On small planets a window of that width holds all plates.
+  const double window_m = std::min(kWindow_m, kWidest_rad * grid.figure().radius_m);
   Sources sources(grid);
   std::vector<std::int16_t> down;
   std::vector<Convergence> kind;
@@ -90,9 +92,9 @@ ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int1
     if (boundary_type[cell] != kConvergent || !touches_another_plate(grid, plate, cell)) continue;
     // Means of both plates over a window of constant size.
     const int column = grid.column(cell), row = grid.row(cell);
-    const int rows = std::max(1, static_cast<int>(kWindow_m / grid.spacing_north_m(grid.ny() / 2)));
+    const int rows = std::max(1, static_cast<int>(window_m / grid.spacing_north_m(grid.ny() / 2)));
     const int columns =
-        std::clamp(static_cast<int>(kWindow_m / grid.spacing_east_m(row)), 1, grid.nx() / 4);
+        std::clamp(static_cast<int>(window_m / grid.spacing_east_m(row)), 1, grid.nx() / 4);
     const int stride = std::max(1, columns / (2 * rows));
     std::array<Side, 2> side;
     side[0].plate = plate[cell];
@@ -112,9 +114,11 @@ ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int1
           for (Side& s : side) {
             if (plate[there] != s.plate) continue;
             s.fraction += continental_fraction[there];
-            s.age_myr += age_myr[there];
             s.speed += speed_mm_yr[there];
             ++s.cells;
+            if (continental_fraction[there] >= 0.5F) continue;  // of another age
+            s.floor_myr += age_myr[there];
+            ++s.floor_cells;
           }
         }
       }
@@ -123,7 +127,7 @@ ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int1
     if (side[1].plate < 0) continue;
     for (Side& s : side) {
       s.fraction /= s.cells;
-      s.age_myr /= s.cells;
+      s.floor_myr /= std::max(1, s.floor_cells);
       s.speed /= s.cells;
     }
     constexpr double kContinental = 0.45;
@@ -139,7 +143,7 @@ ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int1
       first_goes_down = decides(side[1].speed, side[0].speed);
       kind.push_back(Convergence::continents);
     } else {
-      first_goes_down = decides(side[1].age_myr, side[0].age_myr);
+      first_goes_down = decides(side[1].floor_myr, side[0].floor_myr);
       kind.push_back(Convergence::oceans);
     }
     down.push_back(side[first_goes_down ? 0 : 1].plate);

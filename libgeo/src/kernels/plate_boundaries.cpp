@@ -109,8 +109,8 @@ std::vector<BoundaryPoint> find_boundaries(const CubedSphere& mesh,
     point_of[cell] = static_cast<std::int32_t>(points.size());
     points.push_back({cell, plate[cell], other, {}, {}, BoundaryType::interior, 0.0});
   }
-  const int rings =
-      std::max(1, static_cast<int>(std::lround(smoothing_km / (mesh.spacing() * radius_km))));
+  const double smoothing_rad = std::min(smoothing_km / radius_km, kWidestSmoothing_rad);
+  const int rings = std::max(1, static_cast<int>(std::lround(smoothing_rad / mesh.spacing())));
   std::vector<BoundaryPoint> raw;
 #pragma omp parallel
   {

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 
 namespace geo {
 namespace {
@@ -23,11 +24,17 @@ struct PlateSet {
   }
 };
 
-/// Plates within some rings of cells around each: those that may arrive there in one step.
+/// Plates as near to each cell as they may come from in one step.
 std::vector<PlateSet> plates_around(const CubedSphere& mesh, const std::vector<std::int16_t>& plate,
-                                    int rings) {
+                                    double reach_rad) {
+  if (reach_rad >= std::numbers::pi) {
+    PlateSet all;
+    for (const std::int16_t own : plate) all.add(own);
+    return std::vector<PlateSet>(mesh.size(), all);
+  }
   std::vector<PlateSet> around(mesh.size()), grown(mesh.size());
   for (std::int32_t cell = 0; cell < mesh.size(); ++cell) around[cell].add(plate[cell]);
+  const int rings = 2 + static_cast<int>(reach_rad / (0.7 * mesh.spacing()));
   for (int ring = 0; ring < rings; ++ring) {
 #pragma omp parallel for schedule(static)
     for (std::int32_t cell = 0; cell < mesh.size(); ++cell) {
@@ -60,8 +67,7 @@ void move_plates(const CubedSphere& mesh, const std::vector<Plate>& plates, doub
   for (const Plate& p : plates) {
     farthest = std::max(farthest, length(p.rotation_rad_myr) * time_myr);
   }
-  const int rings = 2 + static_cast<int>(farthest / (0.7 * mesh.spacing()));
-  const auto around = plates_around(mesh, plate, rings);
+  const auto around = plates_around(mesh, plate, farthest);
   std::vector<Turn> back;
   for (const Plate& p : plates) back.emplace_back(scaled(p.rotation_rad_myr, -time_myr));
   std::vector<std::int16_t> moved(plate);

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
-#include <numeric>
 #include <queue>
 #include <tuple>
 
 #include "geo/core/random.hpp"
 #include "geo/kernels/noise.hpp"
+#include "geo/kernels/plate_pieces.hpp"
 
 namespace geo {
 namespace {
@@ -150,54 +150,6 @@ std::vector<std::int16_t> grow_plates(const PlateGrowth& model, const CubedSpher
   }
   merge_small_pieces(mesh, model.smallest_part_km2 / (model.radius_km * model.radius_km), plate);
   return plate;
-}
-
-void merge_small_pieces(const CubedSphere& mesh, double smallest_sr,
-                        std::vector<std::int16_t>& plate) {
-  std::vector<std::int32_t> piece(mesh.size(), -1);
-  std::vector<std::vector<std::int32_t>> pieces;
-  std::vector<double> area_sr;
-  for (std::int32_t seed = 0; seed < mesh.size(); ++seed) {
-    if (piece[seed] >= 0) continue;
-    const auto number = static_cast<std::int32_t>(pieces.size());
-    std::vector<std::int32_t> cells{seed};
-    piece[seed] = number;
-    double area = 0.0;
-    for (std::size_t at = 0; at < cells.size(); ++at) {
-      area += mesh.area_sr(cells[at]);
-      for (const std::int32_t next : mesh.neighbours(cells[at])) {
-        if (piece[next] >= 0 || plate[next] != plate[seed]) continue;
-        piece[next] = number;
-        cells.push_back(next);
-      }
-    }
-    pieces.push_back(std::move(cells));
-    area_sr.push_back(area);
-  }
-  const auto plates = 1 + *std::max_element(plate.begin(), plate.end());
-  std::vector<std::int32_t> largest(plates, -1);
-  for (std::size_t k = 0; k < pieces.size(); ++k) {
-    std::int32_t& best = largest[plate[pieces[k][0]]];
-    if (best < 0 || area_sr[k] > area_sr[best]) best = static_cast<std::int32_t>(k);
-  }
-  std::vector<std::int32_t> order;
-  for (std::size_t k = 0; k < pieces.size(); ++k) {
-    if (area_sr[k] < smallest_sr && largest[plate[pieces[k][0]]] != static_cast<std::int32_t>(k)) {
-      order.push_back(static_cast<std::int32_t>(k));
-    }
-  }
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::int32_t a, std::int32_t b) { return area_sr[a] < area_sr[b]; });
-  for (const std::int32_t small : order) {
-    std::vector<int> border(plates, 0);
-    const std::int16_t own = plate[pieces[small][0]];
-    for (const std::int32_t cell : pieces[small]) {
-      for (const std::int32_t next : mesh.neighbours(cell)) border[plate[next]] += 1;
-    }
-    border[own] = 0;
-    const auto host = std::max_element(border.begin(), border.end()) - border.begin();
-    for (const std::int32_t cell : pieces[small]) plate[cell] = static_cast<std::int16_t>(host);
-  }
 }
 
 }  // namespace geo

@@ -17,7 +17,7 @@ struct PlateGrowth {
   double roughness = 1.0;          ///< of the growth's cost
   double structure_km = 1200.0;    ///< wavelength of weak and strong zones
   double polar_resistance = 0.0;   ///< extra cost at the poles; the blueprint's is 0.1
-  double smallest_part_km2 = 8e4;  ///< smaller pieces join a neighbour
+  double smallest_part_km2 = 8e4;  ///< smaller pieces join a neighbour at once
   double radius_km = 6371.0;
 };
 
@@ -38,12 +38,8 @@ std::vector<Plate> draw_plates(const PlateGrowth& model, std::uint64_t seed);
 /// to 18 path nuclei, the cheapest cell first (Dijkstra 1959), at the cost per length of eq. 2.2:
 ///   spread f_rough f_drift f_structure f_polar.
 /// Pieces smaller than smallest_part_km2 then join the neighbour with the longest common border.
+/// Larger ones, between whose nuclei other plates grew, stay (see connect_plates).
 std::vector<std::int16_t> grow_plates(const PlateGrowth& model, const CubedSphere& mesh,
                                       const std::vector<Plate>& plates, std::uint64_t seed);
-
-/// Hands pieces (connected cells of one plate) smaller than `smallest_sr` to the neighbour with the
-/// longest common border, the smallest piece first. The largest piece of each plate stays.
-void merge_small_pieces(const CubedSphere& mesh, double smallest_sr,
-                        std::vector<std::int16_t>& plate);
 
 }  // namespace geo

@@ -14,6 +14,7 @@
 #include "geo/kernels/plate_evolution.hpp"
 #include "geo/kernels/plate_growth.hpp"
 #include "geo/kernels/plate_motion.hpp"
+#include "geo/kernels/plate_pieces.hpp"
 #include "geo/kernels/smoothing.hpp"
 #include "geo/stages/plates.hpp"
 
@@ -145,7 +146,8 @@ class GrownPlates {
   static constexpr int kEdge = 160;  // about 58 km on Earth
   static constexpr double kPi = std::numbers::pi;
 
-  /// Section 2.3: the plates move for a while; the last thing taken away is their common rotation.
+  /// Section 2.3: the plates move for a while. Then each is what hangs together, and the last thing
+  /// taken away is their common rotation.
   void evolve(const PlateGrowth& growth) {
     const RandomStream random(seed_, "plates.evolution");
     const double smallest_sr = growth.smallest_part_km2 / (radius_km_ * radius_km_);
@@ -157,6 +159,7 @@ class GrownPlates {
       move_plates(mesh_, plates_, time_myr, plate_);
       merge_small_pieces(mesh_, smallest_sr, plate_);
     }
+    connect_plates(mesh_, plate_);
     if (p_.no_net_rotation) subtract_net_rotation();
   }
   void subtract_net_rotation() {

@@ -13,6 +13,7 @@
 #include "geo/kernels/noise_row.hpp"
 #include "geo/kernels/plate_boundaries.hpp"
 #include "geo/kernels/plate_motion.hpp"
+#include "geo/kernels/plate_pieces.hpp"
 #include "geo/kernels/quantiles.hpp"
 #include "geo/kernels/shapes.hpp"
 #include "geo/kernels/smoothing.hpp"
@@ -44,15 +45,10 @@ class PlatesOnGrid {
 
   /// Plates, velocities, boundaries, ages of the floor, heat.
   void draw(StageIo& io) const {
-    const auto plate = io.write(field::plate_id);
-    const auto east = io.write(field::plate_velocity_east);
-    const auto north = io.write(field::plate_velocity_north);
-    const auto type = io.write(field::boundary_type);
-    const auto strength = io.write(field::boundary_strength);
+    const Drawn to{io.write(field::plate_id), io.write(field::boundary_type),
+                   io.write(field::boundary_strength), io.write(field::plate_velocity_east),
+                   io.write(field::plate_velocity_north)};
     const auto heat = io.write(field::heat_anomaly);
-    const auto& mesh = grown_.mesh();
-    const double half_width_km =
-        std::max(0.5 * p_.boundary_width_km, 0.6e-3 * grid_.spacing_north_m(0));
 #pragma omp parallel
     {
       std::vector<float> scratch;
@@ -61,31 +57,16 @@ class PlatesOnGrid {
       for (int j = 0; j < grid_.ny(); ++j) {
         smooth_fields_.heat(j, heat.subspan(grid_.cell(0, j), grid_.nx()), scratch);
         bends.read(j);
-        for (int i = 0; i < grid_.nx(); ++i) {
-          const Index cell = grid_.cell(i, j);
-          const Vector3 at = grid_.unit_vector(i, j);
-          const bool near = bends.near(i);
-          const Vector3 place = near ? bends.bent(i, at) : at;
-          const MeshStencil stencil =
-              stencil_at(mesh, near ? mesh.locate(place) : bends.cell(i), place);
-          const std::int16_t own =
-              near ? grown_.plate_at(stencil) : grown_.plate()[stencil.cell[0]];
-          plate[cell] = own;
-          const Vector3 motion =
-              velocity_mm_yr(grown_.plates()[own].rotation_rad_myr, at, radius_km_);
-          const auto velocity = east_north(grid_.to_axis(motion), grid_.to_axis(at));
-          east[cell] = static_cast<float>(velocity.east);
-          north[cell] = static_cast<float>(velocity.north);
-          age_[cell] = static_cast<float>(grown_.age_myr(stencil, own));
-          type[cell] = static_cast<std::int8_t>(BoundaryType::interior);
-          strength[cell] = 0.0F;
-          if (!near) continue;
-          const auto boundary = grown_.boundary_near(stencil, place, own);
-          if (boundary.point == nullptr || boundary.distance_km > half_width_km) continue;
-          type[cell] = static_cast<std::int8_t>(boundary.point->type);
-          strength[cell] = static_cast<float>(boundary.point->strength);
-        }
+        for (int i = 0; i < grid_.nx(); ++i) draw_cell(i, j, bends, kAsItLies, to);
       }
+    }
+    // Bent outlines fold over here and there; what they cut off is its neighbours'.
+    const std::vector<Index> handed_over = connect_plates(grid_, to.plate);
+    Bends bends(*this);
+    for (std::size_t k = 0; k < handed_over.size(); ++k) {
+      const int i = grid_.column(handed_over[k]), j = grid_.row(handed_over[k]);
+      if (k == 0 || j != grid_.row(handed_over[k - 1])) bends.read(j);
+      draw_cell(i, j, bends, to.plate[handed_over[k]], to);
     }
   }
 
@@ -182,8 +163,7 @@ class PlatesOnGrid {
           const double old = std::clamp(0.5 + 2.0 * noise[i], 0.0, 1.0);
           const double far = smooth_step(0.0, 1500.0, reached_km);
           const double thermal_myr = kYoungest_myr + (kOldest_myr - kYoungest_myr) * old * far;
-          const double continental = smooth_step(0.3, 0.7, fraction_[cell]);
-          age_[cell] += static_cast<float>(continental * (thermal_myr - age_[cell]));
+          if (fraction_[cell] >= 0.5F) age_[cell] = static_cast<float>(thermal_myr);
         }
       }
     }
@@ -223,6 +203,41 @@ class PlatesOnGrid {
     std::vector<std::int32_t> cell_;
     std::array<std::vector<float>, 3> along_;
   };
+
+  /// What is drawn of plates alone.
+  struct Drawn {
+    std::span<std::int16_t> plate;
+    std::span<std::int8_t> type;
+    std::span<float> strength, east, north;
+  };
+  static constexpr std::int16_t kAsItLies = -1;
+  /// A cell of plate `own`, or of the one that it lies on.
+  void draw_cell(int i, int j, const Bends& bends, std::int16_t own, const Drawn& to) const {
+    const double half_width_km =
+        std::max(0.5 * p_.boundary_width_km, 0.6e-3 * grid_.spacing_north_m(0));
+    const auto& mesh = grown_.mesh();
+    const Index cell = grid_.cell(i, j);
+    const Vector3 at = grid_.unit_vector(i, j);
+    const bool near = bends.near(i);
+    const Vector3 place = near ? bends.bent(i, at) : at;
+    const MeshStencil stencil = stencil_at(mesh, near ? mesh.locate(place) : bends.cell(i), place);
+    if (own == kAsItLies) {
+      own = near ? grown_.plate_at(stencil) : grown_.plate()[stencil.cell[0]];
+    }
+    to.plate[cell] = own;
+    const Vector3 motion = velocity_mm_yr(grown_.plates()[own].rotation_rad_myr, at, radius_km_);
+    const auto velocity = east_north(grid_.to_axis(motion), grid_.to_axis(at));
+    to.east[cell] = static_cast<float>(velocity.east);
+    to.north[cell] = static_cast<float>(velocity.north);
+    age_[cell] = static_cast<float>(grown_.age_myr(stencil, own));
+    to.type[cell] = static_cast<std::int8_t>(BoundaryType::interior);
+    to.strength[cell] = 0.0F;
+    if (!near) return;
+    const auto boundary = grown_.boundary_near(stencil, place, own);
+    if (boundary.point == nullptr || boundary.distance_km > half_width_km) return;
+    to.type[cell] = static_cast<std::int8_t>(boundary.point->type);
+    to.strength[cell] = static_cast<float>(boundary.point->strength);
+  }
 
   [[nodiscard]] double fraction_at(const Vector3& place) const {
     const Vector3 at = grid_.to_axis(place);

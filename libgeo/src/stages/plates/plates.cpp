@@ -29,7 +29,10 @@ std::vector<Parameter> PlatesParameters::declarations() {
       real("plates.polar_resistance", growth.polar_resistance, "1", 0.0, 1.0,
            "extra cost of growth at the poles", "tectonica2026"),
       real("plates.smallest_part_km2", growth.smallest_part_km2, "km2", 0.0, 1e8,
-           "smaller detached pieces of a plate join a neighbour", "tectonica2026"),
+           "smaller detached pieces of a plate join a neighbour at once, larger ones when all "
+           "plates "
+           "have moved",
+           "tectonica2026"),
       flag("plates.no_net_rotation", no_net_rotation, "take the common rotation of all plates away",
            "bird2003"),
       integer("plates.evolution_steps", evolution_steps, "1", 0, 100,
