@@ -46,7 +46,9 @@ void ReliefFile::write(const std::filesystem::path& path) const {
   for (int j = 0; j < ny; ++j) rows.push_back(-90.0 + (j + 0.5) * (90.0 + north_deg) / ny);
   for (int i = 0; i < nx; ++i) columns.push_back(-180.0 + (i + 0.5) * 360.0 / nx);
   for (const double row : rows) {
-    for (const double column : columns) values.push_back(elevation_m(row, column));
+    for (const double column : columns) {
+      values.push_back(height_m ? height_m(row, column) : elevation_m(row, column));
+    }
   }
   if (hole) values[static_cast<std::size_t>(ny / 2) * nx + 5] = *hole;
   rows[ny / 2] += latitude_kink_deg;

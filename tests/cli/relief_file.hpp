@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -16,6 +17,8 @@ struct ReliefFile {
   double north_deg = 90.0;          ///< where its rows end
   double latitude_kink_deg = 0.0;   ///< added to one latitude
   bool one_dimensional = false;     ///< the variable has no columns
+  /// Instead of continents in an ocean, if given: from latitude and longitude, degrees.
+  std::function<double(double latitude_deg, double longitude_deg)> height_m = {};
 
   void write(const std::filesystem::path& path) const;
 };

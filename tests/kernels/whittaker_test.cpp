@@ -123,5 +123,15 @@ TEST(SmoothBiomes, ReachesAcrossThePole) {
   EXPECT_EQ(biome, std::vector<std::int8_t>(grid.size(), 1));
 }
 
+TEST(SmoothBiomes, ReachesNoFurtherThanAQuarterRoundASmallPlanet) {
+  const Grid grid = Grid::sphere(64, 32);
+  std::vector<std::int8_t> biome(grid.size(), 1), scratch(grid.size());
+  for (Index cell = 0; cell < grid.size() / 2; ++cell) biome[cell] = 3;
+  auto quarter = biome;
+  smooth_biomes(grid, 16.0 * grid.spacing_north_m(0), quarter, scratch);
+  smooth_biomes(grid, 1e12, biome, scratch);
+  EXPECT_EQ(biome, quarter);
+}
+
 }  // namespace
 }  // namespace geo

@@ -275,17 +275,14 @@ int detached_pieces(const State& state) {
 }
 
 TEST(Plates, AreConnectedOnEveryGrid) {
-  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-    for (const int nx : {64, 256, 512}) {
-      for (const std::int64_t count : {std::int64_t{22}, std::int64_t{100}}) {
-        if (count == 100 && nx != 256) continue;
-        PlatesParameters parameters;
-        parameters.growth.count = count;
-        EXPECT_EQ(detached_pieces(planet(nx, seed, parameters)), 0)
-            << "seed " << seed << ", " << count << " plates, " << nx << " columns";
-      }
-    }
-    EXPECT_EQ(detached_pieces(planet(256, seed, blueprint())), 0) << "blueprint, seed " << seed;
+  PlatesParameters many;
+  many.growth.count = 100;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    EXPECT_EQ(detached_pieces(planet(64, seed)), 0);
+    EXPECT_EQ(detached_pieces(planet(512, seed)), 0);
+    EXPECT_EQ(detached_pieces(planet(256, seed, many)), 0);
+    EXPECT_EQ(detached_pieces(planet(256, seed, blueprint())), 0);
   }
 }
 

@@ -101,7 +101,10 @@ double treeline_deficit_k(double mean_c, double range_k) {
 
 void smooth_biomes(const Grid& grid, double length_m, std::span<std::int8_t> biome,
                    std::span<std::int8_t> scratch) {
-  const int rows = static_cast<int>(std::lround(length_m / grid.spacing_north_m(0)));
+  // On small planets no further than a quarter of the way round.
+  const double quarter = grid.ny() / 2;
+  const int rows =
+      static_cast<int>(std::lround(std::min(length_m / grid.spacing_north_m(0), quarter)));
   if (rows == 0) return;
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     std::copy(biome.begin(), biome.end(), scratch.begin());

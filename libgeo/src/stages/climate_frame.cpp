@@ -120,6 +120,7 @@ void ClimateFrame::continue_edge(std::span<float> coverage, std::span<float> lan
       land.push_back(land_sum / known);
       height.push_back(height_sum / known);
     }
+    if (reached.empty()) return;
     for (std::size_t k = 0; k < reached.size(); ++k) {
       coverage[reached[k]] = 1.0F;
       land_fraction[reached[k]] = land[k];
