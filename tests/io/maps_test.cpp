@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -331,6 +332,32 @@ TEST(Maps, PlateBoundariesHaveTheColourOfTheirTypeAndNeighboursDiffer) {
   EXPECT_EQ(red_elsewhere, 0);
   const int sea = kWidth / 9;  // 140 degrees west
   EXPECT_NE(picture.map(sea + 7, 40), picture.map(sea + 7, kWidth / 4));
+}
+
+TEST(Maps, LegendOfPlatesNamesGreyLinesWhereThereAreSome) {
+  const TemporaryFolder folder;
+  constexpr Colour kGrey{0x6b, 0x6f, 0x76}, kRed{0xc8, 0x28, 0x1c};
+  const MapLayout layout = map_layout(*small_sphere(), kWidth);
+  const auto has_below_map = [&](State& state, const Colour& colour) {
+    draw_map_files(state, folder.path(), kWidth);
+    const Picture picture(folder / "plates.png", layout);
+    for (int y = layout.map_top + layout.map_height + 2; y < picture.height(); ++y) {
+      for (int x = 0; x < picture.width(); ++x) {
+        if (picture.at(x, y) == colour) return true;
+      }
+    }
+    return false;
+  };
+  State state = full_state();  // two boundaries, of which one alone has a type
+  EXPECT_TRUE(has_below_map(state, kGrey));
+  EXPECT_TRUE(has_below_map(state, kRed));
+  State untyped = full_state();
+  untyped.erase(field::boundary_type);
+  EXPECT_TRUE(has_below_map(untyped, kGrey));
+  EXPECT_FALSE(has_below_map(untyped, kRed));
+  std::ranges::fill(state.update(field::boundary_type), std::int8_t{2});
+  EXPECT_FALSE(has_below_map(state, kGrey));
+  EXPECT_TRUE(has_below_map(state, kRed));
 }
 
 TEST(Maps, EveryFieldThatIsDrawnIsAskedFor) {

@@ -116,12 +116,17 @@ void stroke(MapCanvas& canvas, const Outline& line, std::size_t begin, std::size
 
 constexpr double kLinePx = 3.0, kCasingPx = 5.4;
 
-void draw_boundaries(MapCanvas& canvas, const MapFrame& frame, const Raster& plates,
-                     std::span<const std::int8_t> types) {
+/// Which types of boundary a map shows; the type 0 is that of plates that hardly move past each
+/// other.
+using ShownTypes = std::set<int>;
+
+ShownTypes draw_boundaries(MapCanvas& canvas, const MapFrame& frame, const Raster& plates,
+                           std::span<const std::int8_t> types) {
   const ColourMap colours("boundary_type");
   // Where cells are larger than pixels their steps are, too.
   const auto lines = trace_outlines(plates, 1.2 * std::max(1.5, frame.pixels_per_row()));
   cairo_t* pen = canvas.pen();
+  ShownTypes shown;
   canvas.inside([&] {
     cairo_set_line_join(pen, CAIRO_LINE_JOIN_ROUND);
     cairo_set_line_cap(pen, CAIRO_LINE_CAP_ROUND);
@@ -140,10 +145,12 @@ void draw_boundaries(MapCanvas& canvas, const MapFrame& frame, const Raster& pla
         while (end + 1 < line.size() && type[end] == type[begin]) ++end;
         canvas.colour(colours.category(type[begin])->colour);
         stroke(canvas, line, begin, end);
+        shown.insert(type[begin]);
         begin = end;
       }
     }
   });
+  return shown;
 }
 
 void draw_arrow(MapCanvas& canvas, double x, double y, double dx, double dy) {
@@ -209,7 +216,14 @@ void draw_velocities(MapCanvas& canvas, const MapFrame& frame, std::span<const f
   });
 }
 
-void draw_legend(MapCanvas& canvas, bool with_types, double px_per_mm_yr) {
+/// What a line of this type says. Where no types are known all lines are of type 0.
+std::string words_of_line(const ColourMap::Stop& stop, bool types_are_known) {
+  if (stop.value != 0.0F) return stop.name;
+  return types_are_known ? "hardly moving" : "plate boundary";
+}
+
+void draw_legend(MapCanvas& canvas, const ShownTypes& shown, bool types_are_known,
+                 double px_per_mm_yr) {
   const ColourMap colours("boundary_type");
   cairo_t* pen = canvas.pen();
   const double unit = canvas.unit(), sample = 60 * unit, gap = 12 * unit;
@@ -218,15 +232,17 @@ void draw_legend(MapCanvas& canvas, bool with_types, double px_per_mm_yr) {
   double x = layout.map_left;
   canvas.font(18 * unit);
   for (const auto& stop : colours.stops()) {
-    if (!with_types || stop.value == 0.0F) continue;
+    const bool is_grey = stop.value == 0.0F;
+    if (is_grey ? !shown.contains(0) : !types_are_known) continue;
+    const std::string words = words_of_line(stop, types_are_known);
     canvas.colour(stop.colour);
     cairo_set_line_width(pen, 1.3 * kLinePx * unit);
     cairo_move_to(pen, x, y);
     cairo_line_to(pen, x + sample, y);
     cairo_stroke(pen);
     canvas.colour(kInk);
-    canvas.text(x + sample + gap, y + 6 * unit, stop.name);
-    x += sample + gap + canvas.text_width(stop.name) + 44 * unit;
+    canvas.text(x + sample + gap, y + 6 * unit, words);
+    x += sample + gap + canvas.text_width(words) + 44 * unit;
   }
   if (!(px_per_mm_yr > 0.0)) return;
   const double speed = round_down_nicely(kArrowSpacingPx * unit / px_per_mm_yr * 1.001);
@@ -267,8 +283,9 @@ void draw_plates(MapCanvas& canvas, const MapFrame& frame, const State& state,
     draw_coast(row, base, y, 0.35F);
   });
   const bool typed = state.has(field::boundary_type);
-  draw_boundaries(canvas, frame, plates,
-                  typed ? state.read(field::boundary_type) : std::span<const std::int8_t>{});
+  const ShownTypes shown =
+      draw_boundaries(canvas, frame, plates,
+                      typed ? state.read(field::boundary_type) : std::span<const std::int8_t>{});
   double px_per_mm_yr = 0.0;
   if (state.has(field::plate_velocity_east) && state.has(field::plate_velocity_north)) {
     const auto east = state.read(field::plate_velocity_east);
@@ -277,7 +294,7 @@ void draw_plates(MapCanvas& canvas, const MapFrame& frame, const State& state,
     draw_velocities(canvas, frame, east, north, px_per_mm_yr);
   }
   canvas.frame();
-  draw_legend(canvas, typed, px_per_mm_yr);
+  draw_legend(canvas, shown, typed, px_per_mm_yr);
 }
 
 }  // namespace geo::io

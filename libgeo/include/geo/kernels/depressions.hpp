@@ -35,9 +35,9 @@ struct DepressionHierarchy {
 };
 
 /// Depressions of a surface routed by `receiver` (steepest_receivers). Pits are roots that are no
-/// outlets. Method: the lowest pass of each catchment by Boůvka's algorithm on the planar graph of
-/// catchments (Cordonnier, Bovy & Braun 2019), then unions in order of sill elevation. Cost: linear
-/// but for a sort of the passes.
+/// outlets. Method: the minimum spanning tree of the graph of catchments (Cordonnier, Bovy & Braun
+/// 2019) by Kruskal's algorithm, whose order of passes is that in which depressions join. Cost:
+/// linear but for a radix sort of the passes.
 DepressionHierarchy build_depression_hierarchy(const Grid& grid, std::span<const float> elevation_m,
                                                std::span<const std::uint8_t> outlets,
                                                std::span<const Index> receiver);
