@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "geo/core/error.hpp"
+#include "geo/stages/erosion/ground.hpp"
 
 namespace geo::calibration {
 namespace {
@@ -41,6 +42,7 @@ Model::Model(std::span<const Parameter> configuration) {
     if (std::holds_alternative<double*>(parameter.storage)) declarations_.push_back(parameter);
   }
   check_differentiable(isostasy, erosion);
+  uplift_factor = speed_factor(erosion, configuration);
 }
 
 const Parameter& Model::find(std::string_view name) const {

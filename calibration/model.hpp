@@ -29,6 +29,7 @@ class Model {
   Planet planet;
   IsostasyParameters isostasy;
   ErosionParameters erosion;
+  double uplift_factor = 1.0;  ///< speed_factor of the run's plates
 
  private:
   std::vector<Parameter> declarations_;

@@ -199,9 +199,10 @@ Relief<V> SeedPlanet::evaluate(const Model& model, const Lift<V>& lift, bool rou
   }
   std::vector<V> uplift(cells, V(0.0));
   if (p.uplift_from == "deformation") {
-    add_belt_uplift<V>(p, lift, convergent, divergent, transform, uplift);
+    add_belt_uplift<V>(p, lift, convergent, divergent, transform, model.uplift_factor, uplift);
   } else if (p.uplift_from == "boundaries") {
-    add_boundary_uplift<V>(p, lift, in.boundary_type, in.boundary_strength, uplift);
+    add_boundary_uplift<V>(p, lift, in.boundary_type, in.boundary_strength, model.uplift_factor,
+                           uplift);
   }
   const std::vector<V> erodibility = resolved_erodibility<V>(p, lift, grid, held_.erodibility);
   Landscape<V> landscape(p, lift, grid, z, uplift, erodibility, held_.outlets);

@@ -274,7 +274,13 @@ def run_page(page, program, scratch, full, update):
     prepare(scratch, program)
     expectations = Expectations(page, full, update)
     printed, command, ran = "", "", 0
-    for block in blocks_of(page.read_text(encoding="utf-8"), full):
+    blocks = blocks_of(page.read_text(encoding="utf-8"), full)
+    if update:  # what comes after the last output changes nothing
+        blocks = blocks[: max((k + 1 for k, block in enumerate(blocks) if block.note("output") is not None), default=0)]
+        if not blocks:
+            print("prints nothing that is kept", flush=True)
+            return
+    for block in blocks:
         if (reason := block.note("skip")) is not None:
             print(f"line {block.line}: left out, {reason}", flush=True)
         elif name := block.note("file"):

@@ -80,8 +80,11 @@ std::string words_of(const EventRecord& event) {
                     get(event, "crater_diameter_km"), get(event, "crater_depth_m"));
   }
   if (get(event, "cooling_k") >= 0.005) {
-    words += fmt::format("; dust cools the planet by {:.2f} K and takes {:.1f} % of its rain",
-                         get(event, "cooling_k"), 100.0 * (1.0 - get(event, "rain_left")));
+    words += fmt::format("; dust cools the planet by {:.2f} K and takes ", get(event, "cooling_k"));
+    words +=
+        has(event, "rain_lost_mm_yr")
+            ? fmt::format("{:.3g} mm of rain a year from its land", get(event, "rain_lost_mm_yr"))
+            : fmt::format("{:.1f} % of its rain", 100.0 * (1.0 - get(event, "rain_left")));
   }
   return words + ".";
 }

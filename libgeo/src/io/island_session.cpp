@@ -127,6 +127,7 @@ std::string IslandSession::execute(const RunEvents& events) {
   context.planet = planet_;
   context.seed = seed;
   context.exemplars = exemplars_;
+  context.events = settings_.events;
   context.on_progress = events.progress;
   context.stop = events.stop;
   StageRecord record;

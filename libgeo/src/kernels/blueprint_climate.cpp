@@ -6,37 +6,33 @@
 #include <numbers>
 
 #include "geo/kernels/circulation.hpp"
-#include "geo/kernels/orography.hpp"
 
 namespace geo {
 namespace {
 
 constexpr double kRadians = std::numbers::pi / 180.0;
 
-/// Share of sea within a disc, from samples on two rings and the centre.
-double sea_exposure(const DisplacedSampler& land, int column, int row, double reach_m) {
-  constexpr int kSpokes = 8;
-  double sea = 1.0 - land(column, row, 0.0, 0.0);
-  double weight = 1.0;
-  // Rings at the mid-radii of two shells; each stands for its shell's area.
-  constexpr std::array<double, 2> kRadius{0.5, 0.85}, kShare{4.0, 5.0};
-  for (std::size_t ring = 0; ring < kRadius.size(); ++ring) {
-    for (int spoke = 0; spoke < kSpokes; ++spoke) {
-      const double angle = 2.0 * std::numbers::pi * spoke / kSpokes;
-      const double reach = kRadius[ring] * reach_m;
-      sea += kShare[ring] / kSpokes *
-             (1.0 - land(column, row, reach * std::cos(angle), reach * std::sin(angle)));
-    }
-    weight += kShare[ring];
-  }
-  return sea / weight;
-}
-
 }  // namespace
 
+double sea_exposure(const DisplacedSampler& land, int column, int row, double reach_m) {
+  // Rings in the middle of shells of equal area, each turned against the last, so that no straight
+  // shore runs along their samples.
+  constexpr int kRings = 3, kSpokes = 12;
+  double sea = 0.0;
+  for (int ring = 0; ring < kRings; ++ring) {
+    const double reach = reach_m * std::sqrt((ring + 0.5) / kRings);
+    for (int spoke = 0; spoke < kSpokes; ++spoke) {
+      const double turns = (spoke + (ring + 0.5) / kRings) / kSpokes;
+      const double angle = 2.0 * std::numbers::pi * turns;
+      sea += 1.0 - land(column, row, reach * std::cos(angle), reach * std::sin(angle));
+    }
+  }
+  return sea / (kRings * kSpokes);
+}
+
 double blueprint_temperature_c(const BlueprintClimate& model, double latitude_deg,
-                               double elevation_m, double distance_to_coast_km,
-                               double pressure_bar) {
+                               double elevation_m, double distance_to_coast_km, double pressure_bar,
+                               double noise_k, double aerosol_k) {
   const bool ocean = elevation_m < 0.0;
   const double sea_level = model.equator_c - model.cooling_c_deg2 * latitude_deg * latitude_deg;
   const double lapse = model.lapse_k_km * 1.0e-3 * std::max(0.0, elevation_m);
@@ -44,7 +40,8 @@ double blueprint_temperature_c(const BlueprintClimate& model, double latitude_de
                                    : model.continental_k_km * distance_to_coast_km *
                                          std::sin(std::abs(latitude_deg) * kRadians);
   return std::clamp(sea_level - lapse + (ocean ? model.ocean_warming_k : 0.0) +
-                        model.greenhouse_k * std::log1p(pressure_bar) - continental,
+                        model.greenhouse_k * std::log1p(pressure_bar) - continental + noise_k -
+                        aerosol_k,
                     -70.0, 55.0);
 }
 
@@ -98,13 +95,13 @@ void blueprint_relief_precipitation(const Grid& grid, const BlueprintClimate& mo
 double blueprint_precipitation_mm_yr(const BlueprintClimate& model, double hadley_mm_yr,
                                      double relief_mm_yr, double elevation_m,
                                      double distance_to_coast_km, double pressure_bar,
-                                     double noise_mm_yr) {
+                                     double noise_mm_yr, double aerosol) {
   const double atmosphere = std::sqrt(pressure_bar);
   if (elevation_m < 0.0) return hadley_mm_yr * model.ocean_factor * atmosphere;
   const double altitude = std::max(0.1, std::exp(-elevation_m * model.altitude_decay_1_m));
   const double inland = std::exp(-distance_to_coast_km / model.continental_decay_km);
   const double rain = (hadley_mm_yr * inland + relief_mm_yr) * altitude + noise_mm_yr;
-  return std::clamp(rain * atmosphere, 20.0, 4500.0);
+  return std::clamp(rain * atmosphere - aerosol * model.aerosol_mm_yr, 20.0, 4500.0);
 }
 
 }  // namespace geo

@@ -87,6 +87,21 @@ std::vector<std::uint8_t> continental_plates(const CubedSphere& mesh,
   return continental;
 }
 
+std::vector<std::uint8_t> continental_plates_reaching(const CubedSphere& mesh,
+                                                      std::span<const std::int16_t> plate,
+                                                      const std::vector<Plate>& plates,
+                                                      double share) {
+  const auto area_sr = plate_areas_sr(mesh, plate, plates.size());
+  std::vector<std::uint8_t> continental(plates.size(), 0);
+  double missing = 4.0 * kPi * share;
+  for (const int k : by_falling_buoyancy(plates)) {
+    if (missing <= 0.0) break;
+    continental[k] = 1;
+    missing -= area_sr[k];
+  }
+  return continental;
+}
+
 CratonNoise craton_noise(const CubedSphere& mesh, std::uint64_t seed) {
   constexpr double kFrequency = 1.6;
   const std::array<Noise, 3> bend{Noise(seed, "plates.craton_bend_x"),

@@ -10,10 +10,13 @@
 
 namespace geo {
 
-double bend_hypsometry(const Grid& grid, std::span<float> elevation_m, double median_m,
-                       double smoothing_m) {
-  constexpr double kLeast = 0.2, kMost = 5.0, kTolerance = 0.01;
-  constexpr int kTurns = 8;
+namespace {
+
+constexpr double kMost = 5.0;
+
+double bend(const Grid& grid, std::span<float> elevation_m, double median_m, double smoothing_m,
+            double least, int turns) {
+  constexpr double kTolerance = 0.01;
   const std::vector<float> before(elevation_m.begin(), elevation_m.end());
   std::vector<std::uint8_t> land(before.size());
   std::transform(before.begin(), before.end(), land.begin(),
@@ -23,8 +26,8 @@ double bend_hypsometry(const Grid& grid, std::span<float> elevation_m, double me
   const double median = half_and_most[0], most = half_and_most[1];
   if (median >= most || median_m >= most) return 1.0;
   double aim_m = median_m, alpha = 1.0;
-  for (int turn = 0; turn < kTurns; ++turn) {
-    alpha = std::clamp(std::log(aim_m / most) / std::log(median / most), kLeast, kMost);
+  for (int turn = 0; turn < turns; ++turn) {
+    alpha = std::clamp(std::log(aim_m / most) / std::log(median / most), least, kMost);
     std::vector<float> change(before.size(), 0.0F);
 #pragma omp parallel for schedule(static)
     for (std::size_t cell = 0; cell < before.size(); ++cell) {
@@ -43,6 +46,20 @@ double bend_hypsometry(const Grid& grid, std::span<float> elevation_m, double me
     aim_m *= median_m / reached;
   }
   return alpha;
+}
+
+}  // namespace
+
+double bend_hypsometry(const Grid& grid, std::span<float> elevation_m, double median_m,
+                       double smoothing_m) {
+  constexpr double kLeast = 0.2;
+  constexpr int kTurns = 8;
+  return bend(grid, elevation_m, median_m, smoothing_m, kLeast, kTurns);
+}
+
+double bend_hypsometry_once(const Grid& grid, std::span<float> elevation_m, double median_m,
+                            double smoothing_m) {
+  return bend(grid, elevation_m, median_m, smoothing_m, 1.0, 1);
 }
 
 }  // namespace geo

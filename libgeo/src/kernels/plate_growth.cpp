@@ -88,11 +88,11 @@ std::vector<Plate> draw_plates(const PlateGrowth& model, std::uint64_t seed) {
   const RandomStream random(seed, "plates.specification"), place(seed, "plates.centres"),
       pole(seed, "plates.poles");
   std::vector<Plate> plates(model.count);
-  constexpr int kCandidates = 6;  // the one farthest from its elders is taken
+  const auto candidates = static_cast<std::uint64_t>(model.centre_candidates);
   for (std::size_t k = 0; k < plates.size(); ++k) {
     double farthest = -1.0;
-    for (int c = 0; c < kCandidates; ++c) {
-      const Vector3 candidate = place.direction(k * kCandidates + c);
+    for (std::uint64_t c = 0; c < candidates; ++c) {
+      const Vector3 candidate = place.direction(k * candidates + c);
       double nearest = kPi;
       for (std::size_t other = 0; other < k; ++other) {
         nearest = std::min(nearest, angle_between(candidate, plates[other].centre));

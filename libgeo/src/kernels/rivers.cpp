@@ -87,8 +87,19 @@ float river_prominence(double discharge_m3_s, double slope, RiverScale scale) {
   const double size = (discharge_m3_s - scale.threshold_m3_s) /
                       std::max(scale.reference_m3_s - scale.threshold_m3_s, 1e-9);
   const double slope_m_km = 1000 * slope;
-  const double vigour = 0.34 + 0.86 * slope_m_km / (slope_m_km + 3.5);
+  const double vigour = 0.34 + 0.86 * slope_m_km / (slope_m_km + scale.slope_m_km);
   return static_cast<float>(std::min(std::pow(std::min(size, 1.0), 0.45) * vigour, 1.0));
+}
+
+RiverScale blueprint_river_scale(const Grid& grid, std::span<const double> area_m2,
+                                 std::span<const std::uint8_t> sea, double rounds) {
+  double largest_m2 = 0.0;
+  for (std::size_t cell = 0; cell < area_m2.size(); ++cell) {
+    if (sea[cell] == 0) largest_m2 = std::max(largest_m2, area_m2[cell]);
+  }
+  return {.threshold_m3_s = (0.00018 + 0.00007 * rounds) * grid.total_area_m2(),
+          .reference_m3_s = largest_m2,
+          .slope_m_km = 35.0 / 9.77};
 }
 
 double valley_depth(double discharge_m3_s) {

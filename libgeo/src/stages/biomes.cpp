@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <span>
+#include <vector>
 
+#include "geo/kernels/blueprint_climate.hpp"
 #include "geo/kernels/koppen.hpp"
 #include "geo/kernels/noise.hpp"
 #include "geo/kernels/productivity.hpp"
@@ -60,12 +62,19 @@ class Treeline {
   }
   [[nodiscard]] bool above_fixed_line(int i, int j, double elevation_m) const {
     if (elevation_m <= p_.treeline_onset_m) return false;
-    const double top_m = p_.treeline_m + p_.treeline_noise_m * noise(i, j);
+    const double top_m = p_.treeline_m + p_.treeline_noise_m * full_noise(i, j);
     if (elevation_m > top_m) return true;
     // Between onset and treeline: patches, the denser the higher.
     const double share =
         (elevation_m - p_.treeline_onset_m) / std::max(top_m - p_.treeline_onset_m, 1.0);
     return 0.5 + 1.2 * noise_.fbm(grid_.unit_vector(i, j), 4 * frequency_, 2) < share;
+  }
+  /// Noise that comes as far as its amplitude.
+  [[nodiscard]] double full_noise(int i, int j) const {
+    const auto at = grid_.unit_vector(i, j);
+    return noise_.value(static_cast<float>(at[0] * frequency_),
+                        static_cast<float>(at[1] * frequency_),
+                        static_cast<float>(at[2] * frequency_));
   }
   [[nodiscard]] double noise(int i, int j) const {
     return noise_.fbm(grid_.unit_vector(i, j), frequency_, 3);
@@ -111,6 +120,9 @@ class BiomesStage final : public Stage {
     const auto settlement = io.write(field::settlement_suitability);
 
     const Treeline treeline(p_, grid, context.seed);
+    const bool by_exposure = p_.coast == "exposure" && p_.coast_weight > 0;
+    const std::vector<float> land_share = by_exposure ? land_of(elevation) : std::vector<float>{};
+    const DisplacedSampler land(grid, land_share);
 #pragma omp parallel for schedule(dynamic, 8)
     for (int j = 0; j < grid.ny(); ++j) {
       for (int i = 0; i < grid.nx(); ++i) {
@@ -127,23 +139,34 @@ class BiomesStage final : public Stage {
         productivity[c] = static_cast<float>(npp);
         double suitability = npp / kFullYield * altitude_factor(elevation[c]);
         if (!river.empty()) suitability += p_.river_weight * river[c];
-        if (!coast.empty()) {
-          const double near = 1 - coast[c] / (p_.coast_reach_km * 1000);
+        if (p_.coast_weight > 0 && (!coast.empty() || by_exposure)) {
+          const double near = by_exposure ? sea_exposure(land, i, j, p_.coast_reach_km * 1000)
+                                          : 1 - coast[c] / (p_.coast_reach_km * 1000);
           suitability += p_.coast_weight * std::max(near, 0.0);
         }
         settlement[c] = static_cast<float>(std::clamp(suitability, 0.0, 1.0));
       }
     }
     context.advance(0.7);
+    const auto line_rivers = [&] {
+      if (!river.empty()) line_rivers_with_trees(grid, river, temperature, biome);
+    };
+    if (p_.smooth_corridors) line_rivers();
     std::vector<std::int8_t> scratch(biome.size());
     smooth_biomes(grid, p_.smoothing_km * 1000, biome, scratch);
     context.advance(0.9);
-    if (!river.empty()) line_rivers_with_trees(grid, river, temperature, biome);
+    if (!p_.smooth_corridors) line_rivers();
     context.advance(1.0);
   }
 
  private:
-  // After the smoothing: corridors are narrow by nature.
+  static std::vector<float> land_of(std::span<const float> elevation) {
+    std::vector<float> land(elevation.size());
+    std::transform(elevation.begin(), elevation.end(), land.begin(),
+                   [](float z) { return z >= 0 ? 1.0F : 0.0F; });
+    return land;
+  }
+  // After the smoothing unless asked otherwise: corridors are narrow by nature.
   void line_rivers_with_trees(const Grid& grid, std::span<const float> river,
                               std::span<const float> temperature,
                               std::span<std::int8_t> biome) const {
@@ -192,12 +215,23 @@ std::vector<Parameter> BiomesParameters::declarations() {
            "river intensity above which trees line the river in dry land", "tectonica2026"),
       real("biomes.smoothing_km", smoothing_km, "km", 0.0, 1000.0,
            "patches of biome smaller than this merge into their surroundings", "tectonica2026"),
+      flag("biomes.smooth_corridors", smooth_corridors,
+           "whether that smoothing comes after the trees along rivers, as in the blueprint's 7.5, "
+           "and takes those away that stand alone",
+           "tectonica2026"),
       real("biomes.river_weight", river_weight, "1", 0.0, 1.0,
            "what a navigable river adds to the suitability for settlement", "diamond1997"),
       real("biomes.coast_weight", coast_weight, "1", 0.0, 1.0,
            "what the sea shore adds to the suitability for settlement", "diamond1997"),
-      real("biomes.coast_reach_km", coast_reach_km, "km", 0.01, 1000.0,
-           "distance inland at which the shore's advantage ends", "design"),
+      choice(
+          "biomes.coast", coast, {"distance", "exposure"},
+          "what the shore's advantage follows: the distance to it, or the share of sea around, as "
+          "in the blueprint's 8.5",
+          "tectonica2026"),
+      real(
+          "biomes.coast_reach_km", coast_reach_km, "km", 0.01, 1000.0,
+          "distance inland at which the shore's advantage ends, radius within which the sea counts",
+          "design"),
   };
 }
 

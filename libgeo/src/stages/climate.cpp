@@ -26,7 +26,8 @@ struct Outputs {
       wind_north, coast, evaporation;
 };
 
-/// Coherent noise on annual means; free where the amplitudes are 0.
+/// Coherent noise on annual means; free where the amplitudes are 0. That of the blueprint is value
+/// noise, which comes as far as its amplitudes.
 class ClimateNoise {
  public:
   ClimateNoise(const ClimateParameters& p, const Grid& grid, std::uint64_t seed)
@@ -34,6 +35,7 @@ class ClimateNoise {
         rain_(seed, "climate.precipitation"),
         grid_(grid),
         frequency_(grid.figure().radius_m / (1000.0 * p.noise_wavelength_km)),
+        fills_its_range_(p.model == "blueprint"),
         temperature_k_(p.temperature_noise_k),
         rain_mm_yr_(p.precipitation_noise_mm_yr) {}
   [[nodiscard]] double temperature_k(int i, int j) const {
@@ -44,13 +46,19 @@ class ClimateNoise {
   }
 
  private:
+  static constexpr int kOctaves = 4;
   [[nodiscard]] double sample(const Noise& noise, int i, int j) const {
-    constexpr int kOctaves = 4;
-    return noise.fbm(grid_.unit_vector(i, j), frequency_, kOctaves);
+    const auto at = grid_.unit_vector(i, j);
+    if (!fills_its_range_) return noise.fbm(at, frequency_, kOctaves);
+    return noise.value(static_cast<float>(at[0] * frequency_),
+                       static_cast<float>(at[1] * frequency_),
+                       static_cast<float>(at[2] * frequency_));
   }
   Noise temperature_, rain_;
   const Grid& grid_;
-  double frequency_, temperature_k_, rain_mm_yr_;
+  double frequency_;
+  bool fills_its_range_;
+  double temperature_k_, rain_mm_yr_;
 };
 
 /// The model's constants on this planet: its sun's path, its air.
@@ -165,7 +173,8 @@ class ClimateStage final : public Stage {
     const SeasonalFields fields =
         solve_seasonal_climate(frame.planet(), model, frame.planet_latitudes_deg(), land, height_m);
     context.advance(0.5);
-    const DimmedSun dimmed = dim_the_sun(model.energy, context);
+    const DimmedSun dimmed =
+        dim_the_sun(model.energy, p_.model == "blueprint" ? &p_.blueprint : nullptr, context);
 
     const auto relief_size = static_cast<std::size_t>(frame.relief().size());
     std::vector<float> relief_land(relief_size), relief_height(relief_size), coverage(relief_size);
@@ -266,14 +275,12 @@ class ClimateStage final : public Stage {
         for (std::size_t i = 0; i < nx; ++i) {
           const double h = elevation[begin + i], coast_km = 1.0e-3 * out.coast[begin + i];
           const int column = static_cast<int>(i);
-          temperature[i] = static_cast<float>(std::clamp(
-              blueprint_temperature_c(p_.blueprint, latitude, h, coast_km, pressure_bar) +
-                  noise.temperature_k(column, j) - dimmed.cooling_k,
-              -70.0, 55.0));
-          const double total_mm_yr =
-              blueprint_precipitation_mm_yr(p_.blueprint, hadley, rain[i], h, coast_km,
-                                            pressure_bar, noise.rain_mm_yr(column, j));
-          rain[i] = static_cast<float>(dimmed.rain_left * total_mm_yr);
+          temperature[i] = static_cast<float>(
+              blueprint_temperature_c(p_.blueprint, latitude, h, coast_km, pressure_bar,
+                                      noise.temperature_k(column, j), dimmed.cooling_k));
+          rain[i] = static_cast<float>(blueprint_precipitation_mm_yr(
+              p_.blueprint, hadley, rain[i], h, coast_km, pressure_bar, noise.rain_mm_yr(column, j),
+              dimmed.aerosol));
           range[i] = 2.0F * std::sqrt(cosine[i] * cosine[i] + sine[i] * sine[i]);
           seasonality[i] = std::clamp(summer * seasonality[i], -1.0F, 1.0F);
           out.wind_east[begin + i] = static_cast<float>(p_.wind_speed_m_s * wind.east);

@@ -153,6 +153,10 @@ std::vector<Parameter> ClimateParameters::declarations() {
            "blueprint: e-folding distance of rain from the coast (5.10a)", "tectonica2026"),
       real("climate.ocean_factor", b.ocean_factor, "1", 0.0, 10.0,
            "blueprint: rain at sea over the zonal base", "tectonica2026"),
+      real("climate.aerosol_mm_yr", b.aerosol_mm_yr, "mm yr-1", 0.0, 10000.0,
+           "blueprint: rain on land lost per unit of aerosol, the optical depth of the dust of "
+           "impacts (5.10)",
+           "tectonica2026"),
   };
 }
 

@@ -52,6 +52,10 @@ std::vector<Parameter> ErosionParameters::declarations() {
            "rock uplift where plates part", "tectonica2026"),
       real("erosion.transform_uplift_mm_yr", transform_uplift_mm_yr, "mm yr-1", -100.0, 100.0,
            "rock uplift where plates shear", "tectonica2026"),
+      real("erosion.uplift_speed_cm_yr", uplift_speed_cm_yr, "cm yr-1", 0.0, 50.0,
+           "speed of plates (plates.speed_cm_yr) at which these rates hold, in proportion to which "
+           "they grow; 0: the same at any speed",
+           "tectonica2026"),
       real("erosion.erodibility_factor", erodibility_factor, "1", 0.0, 1000.0,
            "factor of the erodibilities that a field gives", "harel2016"),
       real("erosion.reference_cell_km", reference_cell_km, "km", 0.01, 1000.0,
@@ -80,12 +84,13 @@ std::vector<Parameter> ErosionParameters::declarations() {
            "tectonica2026"),
       real("erosion.land_smoothing_km", land_smoothing_km, "km", 0.0, 1000.0,
            "length over which the land is smoothed after that", "tectonica2026"),
-      choice("erosion.hypsometry", hypsometry, {"none", "power-law", "rank"},
-             "whether the relief keeps its own hypsometric curve, has its land bent to a median "
-             "height, or takes over a given curve by rank",
+      choice("erosion.hypsometry", hypsometry, {"none", "power-law", "blueprint", "rank"},
+             "whether the relief keeps its own hypsometric curve, has its land bent until it has a "
+             "median height, is bent once by the blueprint's 4.7 to 4.9, or takes over a given "
+             "curve by rank",
              "tectonica2026"),
       real("erosion.hypsometry_median_m", hypsometry_median_m, "m", 1.0, 20000.0,
-           "median height of land, with power-law", "cogley1984"),
+           "median height of land, with power-law and blueprint", "cogley1984"),
       real("erosion.hypsometry_smoothing_km", hypsometry_smoothing_km, "km", 0.0, 1000.0,
            "length over which the bending is smoothed", "tectonica2026"),
       real("erosion.detail_noise", detail_noise, "1", 0.0, 100.0,
@@ -132,7 +137,7 @@ class ErosionStage final : public Stage {
     const Grid& grid = io.grid();
     const std::span<float> elevation = io.write(field::elevation);
     const std::span<float> uplift = io.write(field::uplift_rate);
-    add_tectonic_uplift(io, uplift);
+    add_tectonic_uplift(io, speed_factor(parameters_, context.configuration), uplift);
     const std::vector<float> erodibility =
         resolved_erodibility<float>(parameters_, {}, grid, io.read_optional(field::erodibility));
 
@@ -192,18 +197,18 @@ class ErosionStage final : public Stage {
     }
   }
   /// Rock uplift by plates (Tectonica blueprint 4.5).
-  void add_tectonic_uplift(StageIo& io, std::span<float> uplift_m_yr) const {
+  void add_tectonic_uplift(StageIo& io, double faster, std::span<float> uplift_m_yr) const {
     if (parameters_.uplift_from == "deformation") {
       const auto closing = io.read_optional(field::convergent_deformation);
       const auto opening = io.read_optional(field::divergent_deformation);
       const auto shear = io.read_optional(field::transform_deformation);
       if (closing.empty() || opening.empty() || shear.empty()) return;
-      add_belt_uplift<float>(parameters_, {}, closing, opening, shear, uplift_m_yr);
+      add_belt_uplift<float>(parameters_, {}, closing, opening, shear, faster, uplift_m_yr);
     } else if (parameters_.uplift_from == "boundaries") {
       const auto type = io.read_optional(field::boundary_type);
       const auto strength = io.read_optional(field::boundary_strength);
       if (type.empty() || strength.empty()) return;
-      add_boundary_uplift<float>(parameters_, {}, type, strength, uplift_m_yr);
+      add_boundary_uplift<float>(parameters_, {}, type, strength, faster, uplift_m_yr);
     }
   }
   /// What the file reports is the whole uplift of the land.

@@ -38,6 +38,10 @@ bool ReliefFinish::reshape(std::span<float> elevation_m) const {
   if (p_.hypsometry == "power-law") {
     bend_hypsometry(grid_, elevation_m, p_.hypsometry_median_m, 1e3 * p_.hypsometry_smoothing_km);
   }
+  if (p_.hypsometry == "blueprint") {
+    bend_hypsometry_once(grid_, elevation_m, p_.hypsometry_median_m,
+                         1e3 * p_.hypsometry_smoothing_km);
+  }
   add_detail(elevation_m);
   const auto level = static_cast<float>(sea_level_m(grid_, elevation_m, context_.planet));
   for (float& height : elevation_m) height -= level;

@@ -112,7 +112,7 @@ class HydrologyStage final : public Stage {
                                       io.read(field::potential_evaporation), water, loss);
     const double inflow = add_inflow(io.read_optional(field::inflow_discharge), water);
     context.advance(0.1);
-    shape_valleys(grid, outlets, sea, water, z);
+    shape_valleys(grid, outlets, sea, water, inflow_area, z);
     context.advance(0.5);
 
     const Drainage d = drain(grid, z, outlets, water, loss);
@@ -129,36 +129,78 @@ class HydrologyStage final : public Stage {
 
     const auto slope = io.write(field::slope);
     steepest_slope(grid, z, sea, slope);
-    const auto river = io.write(field::river_intensity);
-#pragma omp parallel for schedule(static)
-    for (Index c = 0; c < grid.size(); ++c) {
-      river[c] = river_prominence(discharge[c], slope[c], scale());
-    }
     const auto receiver = io.write(field::flow_receiver);
     std::copy(d.graph.receiver.begin(), d.graph.receiver.end(), receiver.begin());
     flow_directions(grid, receiver, io.write(field::flow_direction));
     write_network(grid, d.graph, sea, inflow_area, io);
+    write_rivers(grid, sea, discharge, slope, io);
     context.advance(1.0);
   }
 
  private:
-  [[nodiscard]] RiverScale scale() const {
-    return {p_.river_threshold_m3_s, p_.river_reference_m3_s};
+  [[nodiscard]] bool by_area() const { return p_.rivers == "area"; }
+
+  void write_rivers(const Grid& grid, const Bytes& sea, std::span<const float> discharge,
+                    std::span<const float> slope, StageIo& io) const {
+    const auto river = io.write(field::river_intensity);
+    const auto area = io.write(field::drainage_area);
+    const RiverScale scale =
+        by_area() ? blueprint_river_scale(grid, area, sea, static_cast<double>(p_.carving_rounds))
+                  : RiverScale{p_.river_threshold_m3_s, p_.river_reference_m3_s};
+#pragma omp parallel for schedule(static)
+    for (Index c = 0; c < grid.size(); ++c) {
+      const double size = by_area() ? (sea[c] != 0 ? 0.0 : area[c]) : discharge[c];
+      river[c] = river_prominence(size, slope[c], scale);
+    }
+  }
+
+  /// What carves, m3/s, and from what on: the water that flows while every depression overflows,
+  /// or the same runoff from everywhere.
+  std::vector<double> carving_discharge(const Grid& grid, const FlowGraph& graph, const Bytes& sea,
+                                        std::span<const double> runoff,
+                                        std::span<const double> inflow_area,
+                                        double& threshold_m3_s) const {
+    threshold_m3_s = p_.river_threshold_m3_s;
+    if (!by_area()) {
+      std::vector<double> discharge(runoff.begin(), runoff.end());
+      graph.accumulate(discharge);
+      return discharge;
+    }
+    constexpr double kYear_s = 365.25 * 86400.0;
+    const double runoff_m_s = 1e-3 * p_.carving_runoff_mm_yr / kYear_s;
+    std::vector<double> area(grid.size());
+    drain_area(grid, graph, inflow_area, area);
+    threshold_m3_s =
+        runoff_m_s * blueprint_river_scale(grid, area, sea, static_cast<double>(p_.carving_rounds))
+                         .threshold_m3_s;
+    for (double& flow : area) flow *= runoff_m_s;
+    return area;
+  }
+
+  static void drain_area(const Grid& grid, const FlowGraph& graph,
+                         std::span<const double> inflow_area, std::span<double> area) {
+    for (int j = 0; j < grid.ny(); ++j) {
+      std::fill_n(area.begin() + grid.cell(0, j), grid.nx(), grid.area_m2(j));
+    }
+    for (std::size_t c = 0; c < inflow_area.size(); ++c) area[c] += inflow_area[c];
+    graph.accumulate(area);
   }
 
   /// False dams cut and valleys carved, as wide as cells are high where meridians converge; rivers
   /// are those that flow while every depression overflows.
   void shape_valleys(const Grid& grid, const Bytes& outlets, const Bytes& sea,
-                     std::span<const double> runoff, std::span<float> z) const {
+                     std::span<const double> runoff, std::span<const double> inflow_area,
+                     std::span<float> z) const {
     const std::vector<float> before(z.begin(), z.end());
     breach_dams(grid, outlets, {p_.breach_depth_m, p_.breach_length_km * 1000}, z);
     const FlowGraph graph = route_water(grid, z, outlets).graph;
-    std::vector<double> discharge(runoff.begin(), runoff.end());
-    graph.accumulate(discharge);
+    double threshold_m3_s = 0.0;
+    const std::vector<double> discharge =
+        carving_discharge(grid, graph, sea, runoff, inflow_area, threshold_m3_s);
     grade_rivers(grid, graph, outlets, discharge, {p_.gorge_factor, p_.gorge_length_km * 1000}, z);
     if (p_.carving > 0) {
-      const CarvingLaw law{p_.carving, static_cast<double>(p_.carving_rounds),
-                           p_.river_threshold_m3_s, p_.valley_blend, 1000 * p_.valley_width_km};
+      const CarvingLaw law{p_.carving, static_cast<double>(p_.carving_rounds), threshold_m3_s,
+                           p_.valley_blend, 1000 * p_.valley_width_km};
       carve_valleys(grid, graph, sea, discharge, law, z);
     }
     widen_valleys<float>(grid, before, sea, z);
@@ -175,12 +217,7 @@ class HydrologyStage final : public Stage {
   void write_network(const Grid& grid, const FlowGraph& graph, const Bytes& sea,
                      std::span<const double> inflow_area, StageIo& io) const {
     const auto area = io.write(field::drainage_area);
-    for (int j = 0; j < grid.ny(); ++j) {
-      const Index row = grid.cell(0, j);
-      std::fill(area.begin() + row, area.begin() + row + grid.nx(), grid.area_m2(j));
-    }
-    for (std::size_t c = 0; c < inflow_area.size(); ++c) area[c] += inflow_area[c];
-    graph.accumulate(area);
+    drain_area(grid, graph, inflow_area, area);
     Bytes channel(grid.size());
 #pragma omp parallel for schedule(static)
     for (Index c = 0; c < grid.size(); ++c) {
@@ -231,6 +268,10 @@ std::vector<Parameter> HydrologyParameters::declarations() {
            "longest dam that a river is graded through", "design"),
       real("hydrology.channel_area_km2", channel_area_km2, "km2", 0.0, 1e8,
            "drainage area from which a channel has a stream order", "design"),
+      choice("hydrology.rivers", rivers, {"discharge", "area"},
+             "what makes rivers: their discharge, or, as in the blueprint's 6.4 to 6.6a, the area "
+             "that they drain, over the largest on the planet",
+             "tectonica2026"),
       real("hydrology.river_threshold_m3_s", river_threshold_m3_s, "m3 s-1", 0.0, 1e7,
            "discharge from which a river shows and carves", "tectonica2026"),
       real("hydrology.river_reference_m3_s", river_reference_m3_s, "m3 s-1", 1.0, 1e8,
@@ -241,6 +282,8 @@ std::vector<Parameter> HydrologyParameters::declarations() {
       integer("hydrology.carving_rounds", carving_rounds, "1", 1, 100,
               "parts in which valleys are cut, each limited to 23 % of the height",
               "tectonica2026"),
+      real("hydrology.carving_runoff_mm_yr", carving_runoff_mm_yr, "mm yr-1", 0.0, 10000.0,
+           "runoff from everywhere whose rivers carve, with rivers = area", "fekete2002"),
       real("hydrology.valley_blend", valley_blend, "1", 0.0, 1.0,
            "by how much valley sides sink towards the mean of their neighbours", "tectonica2026"),
       real("hydrology.valley_width_km", valley_width_km, "km", 0.01, 1e6,

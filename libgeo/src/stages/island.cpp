@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "climate_events.hpp"
 #include "geo/core/error.hpp"
 #include "geo/kernels/depressions.hpp"
 #include "geo/kernels/inflow.hpp"
@@ -199,7 +200,8 @@ class IslandStage final : public Stage {
         state.update(field::precipitation),     state.update(field::precipitation_seasonality),
         state.update(field::wind_east),         state.update(field::wind_north),
         state.update(field::distance_to_coast), state.update(field::potential_evaporation)};
-    island_climate(cells, climate, context.planet.pressure_bar, p_,
+    island_climate(cells, climate,
+                   {context.planet.pressure_bar, aerosol_of(context.events, context.planet)}, p_,
                    {io.read(field::elevation), planets_m, state.read(field::elevation)}, from, to);
   }
 

@@ -93,16 +93,15 @@ std::vector<float> extra_lift(const Grid& fine, const Overlay& overlay,
 /// the planet's and is interpolated.
 class PlaceLaw {
  public:
-  PlaceLaw(const PlanetCells& cells, const ClimateParameters& climate, double pressure_bar,
+  PlaceLaw(const PlanetCells& cells, const ClimateParameters& climate, const IslandAir& air,
            std::span<const float> planet_elevation_m, const ClimateFields<const float>& from)
       : model_(climate.blueprint),
         closed_(climate.model == "blueprint"),
         lapse_k_m_(climate.seasonal.energy.lapse_k_m),
-        pressure_bar_(pressure_bar),
+        air_(air),
         warmth_(cells.size()),
         moisture_(cells.size()) {
     const Grid& planet = cells.planet();
-    if (closed_) find_rain_left(planet, planet_elevation_m, from.precipitation);
     for (int j = cells.first_row(); j < cells.first_row() + cells.rows(); ++j) {
       for (int i = 0; i < planet.nx(); ++i) {
         const Index c = planet.cell(i, j);
@@ -120,16 +119,16 @@ class PlaceLaw {
   [[nodiscard]] double temperature_c(const Place& at) const {
     if (!closed_) return -lapse_k_m_ * std::max(0.0, at.elevation_m);
     return blueprint_temperature_c(model_, at.latitude_deg, at.elevation_m, 1e-3 * at.coast_m,
-                                   pressure_bar_);
+                                   air_.pressure_bar);
   }
   /// Precipitation of the place with the interpolated moisture and lift over the planet's relief.
   [[nodiscard]] double precipitation_mm_yr(const Place& at, double moisture_mm_yr, double lift_m,
                                            double lift_height_m) const {
     if (!closed_) return moisture_mm_yr * std::exp(std::clamp(lift_m / lift_height_m, -1.0, 1.0));
-    return rain_left_ *
-           blueprint_precipitation_mm_yr(model_, hadley_precipitation_mm_yr(at.latitude_deg),
+    return blueprint_precipitation_mm_yr(model_, hadley_precipitation_mm_yr(at.latitude_deg),
                                          moisture_mm_yr + model_.lift_mm_yr_m * lift_m,
-                                         at.elevation_m, 1e-3 * at.coast_m, pressure_bar_, 0.0);
+                                         at.elevation_m, 1e-3 * at.coast_m, air_.pressure_bar, 0.0,
+                                         air_.aerosol);
   }
   /// What is to be interpolated, on the covered cells of the planet.
   [[nodiscard]] std::span<const float> warmth() const { return warmth_; }
@@ -137,17 +136,6 @@ class PlaceLaw {
   [[nodiscard]] double least_moisture_mm_yr() const { return closed_ ? -1e9 : 0.0; }
 
  private:
-  /// Dust of impacts leaves the same share of rain everywhere; at sea the rest is known.
-  void find_rain_left(const Grid& planet, std::span<const float> z, std::span<const float> rain) {
-    for (Index c = 0; c < planet.size(); ++c) {
-      if (z[c] >= 0.0F) continue;
-      rain_left_ =
-          rain[c] / blueprint_precipitation_mm_yr(
-                        model_, hadley_precipitation_mm_yr(planet.latitude_deg(planet.row(c))), 0.0,
-                        z[c], 0.0, pressure_bar_, 0.0);
-      return;
-    }
-  }
   /// Rain, or what wind and relief add to the blueprint's (5.5-5.8): eq. 5.10 backwards.
   [[nodiscard]] float moisture_mm_yr(const Place& at, double rain_mm_yr) const {
     if (!closed_) return static_cast<float>(rain_mm_yr);
@@ -155,14 +143,15 @@ class PlaceLaw {
       return static_cast<float>(model_.windward_mm_yr + model_.coastal_mm_yr);
     const double altitude = std::max(0.1, std::exp(-at.elevation_m * model_.altitude_decay_1_m));
     const double inland = std::exp(-1e-3 * at.coast_m / model_.continental_decay_km);
-    const double all = rain_mm_yr / (rain_left_ * std::sqrt(pressure_bar_) * altitude);
+    const double all = (rain_mm_yr + air_.aerosol * model_.aerosol_mm_yr) /
+                       (std::sqrt(air_.pressure_bar) * altitude);
     return static_cast<float>(all - inland * hadley_precipitation_mm_yr(at.latitude_deg));
   }
 
   const BlueprintClimate& model_;
   bool closed_;
-  double lapse_k_m_, pressure_bar_;
-  double rain_left_ = 1.0;
+  double lapse_k_m_;
+  IslandAir air_;
   std::vector<float> warmth_, moisture_;
 };
 
@@ -230,12 +219,13 @@ void measure_coast(const PlanetCells& cells, std::span<const float> elevation_m,
 
 }  // namespace
 
-void island_climate(const PlanetCells& cells, const ClimateParameters& climate, double pressure_bar,
-                    const IslandParameters& p, const IslandHeights& heights,
-                    const ClimateFields<const float>& from, const ClimateFields<float>& to) {
+void island_climate(const PlanetCells& cells, const ClimateParameters& climate,
+                    const IslandAir& air_above, const IslandParameters& p,
+                    const IslandHeights& heights, const ClimateFields<const float>& from,
+                    const ClimateFields<float>& to) {
   const Grid& fine = cells.fine();
   measure_coast(cells, heights.elevation_m, from.distance_to_coast, to.distance_to_coast);
-  const PlaceLaw law(cells, climate, pressure_bar, heights.planet_elevation_m, from);
+  const PlaceLaw law(cells, climate, air_above, heights.planet_elevation_m, from);
   interpolate_climate(cells, law, heights, from, to);
 
   const double reach_m = 1000.0 * p.lift_reach_km;

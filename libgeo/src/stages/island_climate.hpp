@@ -23,6 +23,12 @@ struct IslandHeights {
   std::span<const float> elevation_m;         ///< on the island
 };
 
+/// The air over the whole planet.
+struct IslandAir {
+  double pressure_bar = 1.0;
+  double aerosol = 0.0;  ///< as in blueprint_precipitation_mm_yr
+};
+
 /// The planet's climate at the island's true places, adapted to its relief.
 ///
 /// Temperature: what the run's model makes of a place itself (height by the lapse rate; the
@@ -35,8 +41,8 @@ struct IslandHeights {
 /// Potential evaporation: interpolated, in proportion to what the formula of Oudin et al. (2005)
 /// makes of the change in temperature. Distance to the coast: on the fine grid as far as it
 /// reaches, the planet's beyond. Seasons and winds: interpolated.
-void island_climate(const PlanetCells& cells, const ClimateParameters& climate, double pressure_bar,
-                    const IslandParameters& p, const IslandHeights& heights,
+void island_climate(const PlanetCells& cells, const ClimateParameters& climate,
+                    const IslandAir& air, const IslandParameters& p, const IslandHeights& heights,
                     const ClimateFields<const float>& from, const ClimateFields<float>& to);
 
 }  // namespace geo

@@ -296,6 +296,10 @@ std::vector<float> island_erodibility(const PlanetCells& cells, const PlanetReli
         return p.convergent_erodibility_yr;
     }
   };
+  // Cubics swing beyond what they pass through; nothing is weaker or stronger than the table has
+  // it.
+  const auto [least, most] = std::minmax(
+      {p.convergent_erodibility_yr, p.divergent_erodibility_yr, p.interior_erodibility_yr});
   std::vector<float> erodibility(cells.fine().size());
   on_cells(cells.fine(), [&](int i, int j, Index c) {
     const CatmullRom stencil(cells.planet(), cells.fine().position(i, j));
@@ -304,7 +308,8 @@ std::vector<float> island_erodibility(const PlanetCells& cells, const PlanetReli
       return by_boundary ? of_type(planet.boundary_type[cell])
                          : static_cast<double>(planet.erodibility[cell]);
     };
-    erodibility[c] = static_cast<float>(std::max(0.0, stencil.of(at)));
+    const double worn = std::max(0.0, stencil.of(at));
+    erodibility[c] = static_cast<float>(by_boundary ? std::clamp(worn, least, most) : worn);
   });
   if (by_boundary) return erodibility;
   return resolved_erodibility<float>(law, {}, cells.fine(), erodibility);

@@ -3,6 +3,7 @@
 #include <span>
 
 #include "geo/core/grid.hpp"
+#include "geo/kernels/orography.hpp"
 
 namespace geo {
 
@@ -28,14 +29,22 @@ struct BlueprintClimate {
   double altitude_decay_1_m = 0.0004;   ///< 5.9
   double continental_decay_km = 800.0;  ///< 5.10a
   double ocean_factor = 1.2;            ///< ocean precipitation over the zonal base
+  double aerosol_mm_yr = 200.0;         ///< 5.10: rain lost per unit of aerosol
 };
 
-/// Temperature, eqs 5.1-5.3a, degC, clamped to -70..55.
+/// Temperature, eqs 5.1-5.3a, degC: the sum of all terms, clamped to -70..55. `aerosol_k` is the
+/// cooling by events.
 [[nodiscard]] double blueprint_temperature_c(const BlueprintClimate& model, double latitude_deg,
                                              double elevation_m, double distance_to_coast_km,
-                                             double pressure_bar);
+                                             double pressure_bar, double noise_k = 0.0,
+                                             double aerosol_k = 0.0);
 /// Zonal base of precipitation, eq. 5.4, mm yr-1: linear between its values.
 [[nodiscard]] double hadley_precipitation_mm_yr(double latitude_deg);
+
+/// Coastal exposure of a place (5.6): share of sea within a disc about the cell (column, row), from
+/// 36 samples of the share of land, right to some 0.03.
+[[nodiscard]] double sea_exposure(const DisplacedSampler& land, int column, int row,
+                                  double reach_m);
 
 /// What the relief and the wind make of precipitation, mm yr-1 per cell: windward moisture (5.5),
 /// coastal exposure (5.6), orographic lift (5.7), rain shadow (5.8, subtracted), traced against the
@@ -46,10 +55,13 @@ void blueprint_relief_precipitation(const Grid& grid, const BlueprintClimate& mo
                                     std::span<const float> land_fraction,
                                     std::span<const float> height_m, std::span<float> rain_mm_yr);
 
-/// The whole of eq. 5.10 for one cell, without noise. Land is clamped to 20..4500 mm yr-1.
+/// The whole of eq. 5.10 for one cell. Land loses `aerosol_mm_yr` per unit of `aerosol`, the
+/// optical depth of what events have left in the air, and is clamped to 20..4500 mm yr-1; rain at
+/// sea knows no aerosol.
 [[nodiscard]] double blueprint_precipitation_mm_yr(const BlueprintClimate& model,
                                                    double hadley_mm_yr, double relief_mm_yr,
                                                    double elevation_m, double distance_to_coast_km,
-                                                   double pressure_bar, double noise_mm_yr);
+                                                   double pressure_bar, double noise_mm_yr,
+                                                   double aerosol = 0.0);
 
 }  // namespace geo

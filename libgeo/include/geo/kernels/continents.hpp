@@ -11,11 +11,18 @@
 
 namespace geo {
 
-/// Whole plates as continents (Tectonica blueprint 3.1b): the most buoyant first, until their area
-/// is as near as it gets to `share` of the sphere. One entry per plate.
+/// Whole plates as continents: the most buoyant first, without those that are too large to bring
+/// their area nearer to `share` of the sphere. One entry per plate.
 std::vector<std::uint8_t> continental_plates(const CubedSphere& mesh,
                                              std::span<const std::int16_t> plate,
                                              const std::vector<Plate>& plates, double share);
+
+/// The same as the Tectonica blueprint has it (3.1b): the most buoyant plates until their area
+/// reaches the share.
+std::vector<std::uint8_t> continental_plates_reaching(const CubedSphere& mesh,
+                                                      std::span<const std::int16_t> plate,
+                                                      const std::vector<Plate>& plates,
+                                                      double share);
 
 /// How continents are put together from cratons.
 struct Cratons {

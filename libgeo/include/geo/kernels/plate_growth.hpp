@@ -19,6 +19,8 @@ struct PlateGrowth {
   double polar_resistance = 0.0;   ///< extra cost at the poles; the blueprint's is 0.1
   double smallest_part_km2 = 8e4;  ///< smaller pieces join a neighbour at once
   double radius_km = 6371.0;
+  /// Places drawn for each centre, of which the one farthest from its elders is taken; 1: anywhere.
+  std::int64_t centre_candidates = 6;
 };
 
 /// One plate: where it began, how it turns, what it is made of.
@@ -30,8 +32,8 @@ struct Plate {
   double heat;      ///< 0.5 + mantle_heat u 2.5
 };
 
-/// Plates of a seed: centres apart from each other, poles uniform on the sphere, speeds
-/// speed_cm_yr U(0.5, 1.5) U(0.82, 1.24).
+/// Plates of a seed: centres apart from each other (by `centre_candidates`), poles uniform on the
+/// sphere, speeds speed_cm_yr U(0.5, 1.5) U(0.82, 1.24).
 std::vector<Plate> draw_plates(const PlateGrowth& model, std::uint64_t seed);
 
 /// Which plate each cell of the mesh belongs to. Plates grow from a primary, 2 to 7 secondary and 6

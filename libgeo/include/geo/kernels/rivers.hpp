@@ -22,13 +22,21 @@ void flow_directions(const Grid& grid, std::span<const Index> receiver,
 struct RiverScale {
   double threshold_m3_s = 0.0;
   double reference_m3_s = 1.0;
+  double slope_m_km = 3.5;  ///< at which a river is half as vigorous as slopes can make it
 };
 
+/// The blueprint's own measure of rivers (6.4, 6.5), by drainage area: they show from a share
+/// 0.00018 + 0.00007 `rounds` of all area on (6.4 counts it in cells), are as large as rivers get
+/// where `area_m2` is largest on land, and the slope is 35 m from cell to cell of 9.77 km. Both
+/// areas stand in place of discharges.
+RiverScale blueprint_river_scale(const Grid& grid, std::span<const double> area_m2,
+                                 std::span<const std::uint8_t> sea, double rounds);
+
 /// Prominence of a river, 0..1:
-///   ((Q - Q0) / (Q1 - Q0))^0.45 (0.34 + 0.86 s / (s + 3.5)),
-/// discharge Q from threshold Q0 to reference Q1, slope s in m/km. After the Tectonica blueprint,
-/// with discharge in place of counted cells, and its slope of 35 m from cell to cell of 9.8 km as
-/// 3.5 m/km, so that neither depends on the resolution.
+///   ((Q - Q0) / (Q1 - Q0))^0.45 (0.34 + 0.86 s / (s + s0)),
+/// discharge Q from threshold Q0 to reference Q1, slope s in m/km, s0 = 3.5 unless set. After the
+/// Tectonica blueprint, with discharge in place of counted cells, and its slope of 35 m from cell
+/// to cell of 9.8 km as 3.5 m/km, so that neither depends on the resolution.
 float river_prominence(double discharge_m3_s, double slope, RiverScale scale);
 
 /// Depth in metres of the valley that a river has cut in geological time, 16 Q^0.36: 80 times its

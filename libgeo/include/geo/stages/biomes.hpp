@@ -19,8 +19,10 @@ struct BiomesParameters {
   double lapse_rate_k_km = 6.0;
   double riparian_threshold = 0.12;
   double smoothing_km = 10.0;
+  bool smooth_corridors = false;
   double river_weight = 0.0;
   double coast_weight = 0.0;
+  std::string coast = "distance";
   double coast_reach_km = 10.0;
 
   [[nodiscard]] std::vector<Parameter> declarations();

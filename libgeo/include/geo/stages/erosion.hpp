@@ -28,6 +28,7 @@ struct ErosionParameters {
   double convergent_uplift_mm_yr = 0.06;
   double divergent_uplift_mm_yr = -0.02;
   double transform_uplift_mm_yr = 0.03;
+  double uplift_speed_cm_yr = 0.0;
   double rebound_fraction = 0.8;
   double rebound_length_km = 100.0;
   double rebound_time_yr = 1e6;

@@ -14,10 +14,12 @@ struct HydrologyParameters {
   double gorge_factor = 1.0;
   double gorge_length_km = 450.0;
   double channel_area_km2 = 5000.0;
+  std::string rivers = "discharge";
   double river_threshold_m3_s = 100.0;
   double river_reference_m3_s = 20000.0;
   double carving = 1.0;
   std::int64_t carving_rounds = 1;
+  double carving_runoff_mm_yr = 400.0;
   double valley_blend = 0.2;
   double valley_width_km = 10.0;
   double frozen_temperature_degc = -15.0;
@@ -28,6 +30,9 @@ struct HydrologyParameters {
 /// Where the rain goes: runoff after Budyko (1974), routing over a relief freed of the false dams
 /// of its resolution, lakes and endorheic basins by the steady water balance, discharge,
 /// valleys carved by rivers (Leopold & Maddock 1953), basins and stream orders.
+///
+/// With `rivers = "area"` rivers show and carve by their drainage area, as in the Tectonica
+/// blueprint: by 6.4 and 6.5, with the discharge of one runoff everywhere (6.6a).
 ///
 /// Discharge is that which leaves the cell; on a lake it is the lake's outflow, on an endorheic
 /// lake its inflow, at sea 0. Ice does not pond: where it is colder than `frozen_temperature_degc`

@@ -119,11 +119,11 @@ class PlatesOnGrid {
     }
   }
 
-  /// Continents that are whole plates.
+  /// Continents that are whole plates (blueprint 3.1b).
   void draw_plates(std::span<const std::int16_t> plate, double land_share) const {
     const double share = std::min(land_share + p_.land_buffer, 0.85);
     const auto continental =
-        continental_plates(grown_.mesh(), grown_.plate(), grown_.plates(), share);
+        continental_plates_reaching(grown_.mesh(), grown_.plate(), grown_.plates(), share);
 #pragma omp parallel for schedule(static)
     for (Index cell = 0; cell < grid_.size(); ++cell) {
       fraction_[cell] = continental[plate[cell]] != 0 ? 1.0F : 0.0F;

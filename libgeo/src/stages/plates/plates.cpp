@@ -28,6 +28,11 @@ std::vector<Parameter> PlatesParameters::declarations() {
            "tectonica2026"),
       real("plates.polar_resistance", growth.polar_resistance, "1", 0.0, 1.0,
            "extra cost of growth at the poles", "tectonica2026"),
+      integer(
+          "plates.centre_candidates", growth.centre_candidates, "1", 1, 1000,
+          "places drawn for each plate, of which it begins at the one farthest from its elders; "
+          "1: anywhere",
+          "tectonica2026"),
       real("plates.smallest_part_km2", growth.smallest_part_km2, "km2", 0.0, 1e8,
            "smaller detached pieces of a plate join a neighbour at once, larger ones when all "
            "plates "

@@ -4,23 +4,36 @@
 #include <cmath>
 #include <cstdint>
 #include <span>
+#include <variant>
 #include <vector>
 
 #include "geo/core/grid.hpp"
 #include "geo/core/numeric.hpp"
+#include "geo/core/parameter.hpp"
 #include "geo/kernels/valley_width.hpp"
 #include "geo/stages/erosion.hpp"
 
 namespace geo {
 
+/// By how much faster than the rates of uplift say plates of this run raise the ground
+/// (speed_factor of Tectonica blueprint 4.5): their speed over `uplift_speed_cm_yr`; 1 without one,
+/// and where no plates stand in the run's configuration.
+[[nodiscard]] inline double speed_factor(const ErosionParameters& p,
+                                         std::span<const Parameter> run) {
+  const Parameter* speed = find_parameter(run, "plates.speed_cm_yr");
+  if (p.uplift_speed_cm_yr <= 0.0 || speed == nullptr) return 1.0;
+  return std::get<double>(speed->value()) / p.uplift_speed_cm_yr;
+}
+
 /// Rock uplift over the belts of deformation (Tectonica blueprint 4.5), m yr-1, added to a field.
+/// `faster`: speed_factor.
 template <class V>
 void add_belt_uplift(const ErosionParameters& p, const Lift<V>& lift, std::span<const V> convergent,
-                     std::span<const V> divergent, std::span<const V> transform,
+                     std::span<const V> divergent, std::span<const V> transform, double faster,
                      std::span<V> uplift_m_yr) {
-  const V closing(1e-3 * lift(p.convergent_uplift_mm_yr));
-  const V opening(1e-3 * lift(p.divergent_uplift_mm_yr));
-  const V shearing(1e-3 * lift(p.transform_uplift_mm_yr));
+  const V closing(1e-3 * faster * lift(p.convergent_uplift_mm_yr));
+  const V opening(1e-3 * faster * lift(p.divergent_uplift_mm_yr));
+  const V shearing(1e-3 * faster * lift(p.transform_uplift_mm_yr));
 #pragma omp parallel for schedule(static)
   for (std::size_t cell = 0; cell < uplift_m_yr.size(); ++cell) {
     uplift_m_yr[cell] +=
@@ -28,14 +41,15 @@ void add_belt_uplift(const ErosionParameters& p, const Lift<V>& lift, std::span<
   }
 }
 
-/// Rock uplift on the cells of plate boundaries alone, m yr-1, added to a field.
+/// Rock uplift on the cells of plate boundaries alone, m yr-1, added to a field. `faster`:
+/// speed_factor.
 template <class V>
 void add_boundary_uplift(const ErosionParameters& p, const Lift<V>& lift,
                          std::span<const std::int8_t> type, std::span<const float> strength,
-                         std::span<V> uplift_m_yr) {
-  const std::array<V, 4> rate{V(0.0F), V(1e-3 * lift(p.convergent_uplift_mm_yr)),
-                              V(1e-3 * lift(p.divergent_uplift_mm_yr)),
-                              V(1e-3 * lift(p.transform_uplift_mm_yr))};
+                         double faster, std::span<V> uplift_m_yr) {
+  const std::array<V, 4> rate{V(0.0F), V(1e-3 * faster * lift(p.convergent_uplift_mm_yr)),
+                              V(1e-3 * faster * lift(p.divergent_uplift_mm_yr)),
+                              V(1e-3 * faster * lift(p.transform_uplift_mm_yr))};
 #pragma omp parallel for schedule(static)
   for (std::size_t cell = 0; cell < uplift_m_yr.size(); ++cell) {
     uplift_m_yr[cell] += rate[type[cell]] * V(strength[cell]);
