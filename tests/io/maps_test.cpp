@@ -348,10 +348,19 @@ TEST(Maps, LegendOfPlatesNamesGreyLinesWhereThereAreSome) {
     }
     return false;
   };
-  State state = full_state();  // two boundaries, of which one alone has a type
+  const auto plates_alone = [] {
+    const State full = full_state();
+    State state(full.shared_grid());
+    for (const FieldSpec* spec : {static_cast<const FieldSpec*>(&field::plate_id),
+                                  static_cast<const FieldSpec*>(&field::boundary_type)}) {
+      state.share(*spec, full.values(*spec));
+    }
+    return state;
+  };
+  State state = plates_alone();  // two boundaries, of which one alone has a type
   EXPECT_TRUE(has_below_map(state, kGrey));
   EXPECT_TRUE(has_below_map(state, kRed));
-  State untyped = full_state();
+  State untyped = plates_alone();
   untyped.erase(field::boundary_type);
   EXPECT_TRUE(has_below_map(untyped, kGrey));
   EXPECT_FALSE(has_below_map(untyped, kRed));
