@@ -17,7 +17,8 @@ the page with its output. Comments above a block, which no reader sees, say how:
   <!-- test: replace `A` by `B` -->    in every block from here on; the test's planets are small
 
 In expected output three dots stand for any words of a line, a line of three dots for any lines; all else
-must be there as it stands, numbers too, spaces aside. Only times, dates, versions and commits may differ.
+must be there as it stands, numbers too, spaces aside. Only times, dates, versions and commits may differ;
+the path of the folder is left out.
 At the page's own sizes the page says what is expected. At the sizes of the test its numbers are others:
 expected/PAGE.txt has the page's blocks with those. --update mends numbers alone: words that differ are
 for an author.
@@ -292,7 +293,7 @@ def run_page(page, program, scratch, full, update):
             begun = time.monotonic()
             result = subprocess.run(command_of(block), cwd=scratch, env=environment(scratch), text=True,
                                     stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL)
-            printed, ran = result.stdout, ran + 1
+            printed, ran = result.stdout.replace(f"{scratch}/", ""), ran + 1  # a reader is elsewhere
             command = next((line for line in reversed(block.text.splitlines()) if line.strip()), "")
             print(f"line {block.line}: {time.monotonic() - begun:.1f} s", flush=True)
             if full:
