@@ -43,9 +43,19 @@ TEST(Hypsography, LeavesOneOfThemAtTheEnds) {
   EXPECT_EQ(with_ocean_share(curve, 1.0).elevation_m.back(), 0.0);
 }
 
-TEST(Hypsography, OfOneKindOfGroundStaysAsItIs) {
-  const Hypsography dry{{0.0, 1.0}, {10.0, 4000.0}};
-  EXPECT_EQ(with_ocean_share(dry, 0.5).elevation_m, dry.elevation_m);
+TEST(Hypsography, OfOneKindOfGroundIsMovedToTheWantedShare) {
+  const Hypsography dry{{0.0, 0.4, 1.0}, {10.0, 1000.0, 4000.0}};
+  const Hypsography wet = with_ocean_share(dry, 0.7);
+  EXPECT_EQ(wet.fraction, dry.fraction);
+  EXPECT_NEAR(ocean_share_of(wet), 0.7, 1e-12);
+  EXPECT_NEAR(wet.elevation_m.back() - wet.elevation_m.front(), 3990.0, 1e-9);
+  EXPECT_EQ(with_ocean_share(dry, 0.0).elevation_m, dry.elevation_m);
+}
+
+TEST(Hypsography, TellsItsShareOfSea) {
+  EXPECT_NEAR(ocean_share_of({{0.0, 0.5, 1.0}, {-3000.0, -1000.0, 1000.0}}), 0.75, 1e-12);
+  EXPECT_EQ(ocean_share_of({{0.0, 1.0}, {10.0, 4000.0}}), 0.0);
+  EXPECT_EQ(ocean_share_of({{0.0, 1.0}, {-4000.0, -10.0}}), 1.0);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -90,11 +91,27 @@ Shore shore_of(const Hypsography& curve) {
   return {std::lerp(curve.fraction[at - 1], curve.fraction[at], -low / (high - low)), at};
 }
 
+/// Moves a curve up or down so that a share of the area lies below 0.
+void move_shore(Hypsography& curve, double share) {
+  const auto above =
+      std::upper_bound(curve.fraction.begin() + 1, curve.fraction.end() - 1, share);
+  const auto k = above - curve.fraction.begin();
+  const double level_m = std::lerp(
+      curve.elevation_m[k - 1], curve.elevation_m[k],
+      (share - curve.fraction[k - 1]) / (curve.fraction[k] - curve.fraction[k - 1]));
+  for (double& height_m : curve.elevation_m) height_m -= level_m;
+}
+
 }  // namespace
+
+double ocean_share_of(const Hypsography& curve) { return shore_of(curve).share; }
 
 Hypsography with_ocean_share(Hypsography curve, double share) {
   const auto [below, entry] = shore_of(curve);
-  if (below <= 0.0 || below >= 1.0) return curve;
+  if (below <= 0.0 || below >= 1.0) {
+    if (share != below) move_shore(curve, share);
+    return curve;
+  }
   Hypsography mixed;
   const auto add = [&](double fraction, double elevation_m) {
     if (!mixed.fraction.empty() && fraction <= mixed.fraction.back()) return;

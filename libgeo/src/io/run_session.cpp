@@ -196,7 +196,7 @@ void RunSession::execute(const RunEvents& events) {
 
 void RunSession::compute(const RunEvents& events) {
   Context context;
-  context.planet = planet_;
+  context.planet = planet_with_sea();
   context.seed = static_cast<std::uint64_t>(settings_.seed);
   context.hypsography = hypsography();
   context.plates = plates_;

@@ -45,6 +45,11 @@ bool has_choice(Stage& stage, std::string_view key, std::string_view value) {
   return false;
 }
 
+bool takes_hypsography(Stage& stage) {
+  return lists(stage.info().optional, field::ranking) ||
+         has_choice(stage, "erosion.hypsometry", "rank");
+}
+
 /// The keys of [fields] that a stage reads something by.
 std::vector<std::string> given_fields_of(Stage& stage) {
   const StageInfo& info = stage.info();
@@ -55,7 +60,7 @@ std::vector<std::string> given_fields_of(Stage& stage) {
   if (takes(field::erodibility)) keys.emplace_back("fields.erodibility");
   if (takes(field::uplift_rate)) keys.emplace_back("fields.uplift_rate");
   if (takes(field::ranking)) keys.emplace_back("fields.ranking");
-  if (takes(field::ranking) || has_choice(stage, "erosion.hypsometry", "rank")) {
+  if (takes_hypsography(stage)) {
     keys.insert(keys.end(), {"fields.hypsography", "fields.hypsography_ocean"});
   }
   if (info.name == "plates") {
@@ -296,6 +301,10 @@ void RunSession::keep_earlier_stages(const std::string& before, int old_begin) {
     }
     if (pipeline_.stages()[at]->info().feels_events) sections.emplace_back("event");
   }
+  // The sea of all stages may be the hypsography's, whichever of them follows it.
+  if (follows_hypsography()) {
+    sections.insert(sections.end(), {"fields.hypsography", "fields.hypsography_ocean"});
+  }
   const auto difference =
       first_difference(before, resolved_config(), sections, kFreeOnPartialOverwrite);
   if (!difference.empty()) {
@@ -392,7 +401,8 @@ void RunSession::read_initial_relief() {
   folder_.check_writable(prediction().disk_bytes);
   std::vector<float> elevation_m = resample(relief, *grid);
   if (settings_.dem_sea_level == "fraction") {
-    const float sea_level_m = level_for_fraction(*grid, elevation_m, planet_.ocean_fraction);
+    const float sea_level_m =
+        level_for_fraction(*grid, elevation_m, planet_with_sea().ocean_fraction);
     for (float& height_m : elevation_m) height_m -= sea_level_m;
   }
   state_->set(field::elevation, std::move(elevation_m));
@@ -429,6 +439,25 @@ Hypsography RunSession::hypsography() const {
   Hypsography curve = read_hypsography(settings_.hypsography);
   if (settings_.hypsography_ocean == "curve" || planet_.sea_level != "fraction") return curve;
   return with_ocean_share(std::move(curve), planet_.ocean_fraction);
+}
+
+/// Whether a stage of the run as a whole takes its heights from the hypsography.
+bool RunSession::follows_hypsography() const {
+  const auto& stages = pipeline_.stages();
+  for (int at = begin_; at <= last_; ++at) {
+    if (takes_hypsography(*stages[at])) return true;
+  }
+  return false;
+}
+
+/// The planet as stages see it: where the hypsography says which part of it lies below the sea, all
+/// of them have that sea.
+Planet RunSession::planet_with_sea() const {
+  Planet planet = planet_;
+  if (settings_.hypsography_ocean != "curve" || !follows_hypsography()) return planet;
+  planet.sea_level = "fraction";
+  planet.ocean_fraction = ocean_share_of(read_hypsography(settings_.hypsography));
+  return planet;
 }
 
 void RunSession::read_given_fields() {

@@ -49,7 +49,7 @@ std::vector<Parameter> RunSettings::parameters() {
       choice(
           "fields.hypsography_ocean", hypsography_ocean, {"planet", "curve"},
           "its parts below and above 0 are mixed so that planet.ocean_fraction lies below (where "
-          "planet.sea_level is fraction), or it is taken as it stands",
+          "planet.sea_level is fraction), or it is taken as it stands and its 0 is the sea of all stages",
           "davidson2013"),
       text("fields.ranking", ranking,
            "FILE[:VARIABLE] of any unit, a mask or a relief, that orders places by height where "

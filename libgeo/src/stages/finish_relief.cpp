@@ -43,14 +43,19 @@ bool ReliefFinish::reshape(std::span<float> elevation_m) const {
                          1e3 * p_.hypsometry_smoothing_km);
   }
   add_detail(elevation_m);
-  const auto level = static_cast<float>(sea_level_m(grid_, elevation_m, context_.planet));
-  for (float& height : elevation_m) height -= level;
+  const auto settle_sea = [&] {
+    const auto level = static_cast<float>(sea_level_m(grid_, elevation_m, context_.planet));
+    for (float& height : elevation_m) height -= level;
+  };
+  settle_sea();
   if (p_.hypsometry == "rank") {
     const Hypsography& target = context_.hypsography;
     if (target.fraction.empty()) {
       throw ConfigurationError("erosion.hypsometry = rank needs fields.hypsography");
     }
     rank_match(grid_, {target.fraction, target.elevation_m}, elevation_m);
+    // The curve's zero is the sea's, unless a volume of water fills what now are its basins.
+    if (context_.planet.sea_level == "volume") settle_sea();
   }
   return true;
 }

@@ -12,8 +12,12 @@ namespace geo::io {
 /// Throws InputError, IoError.
 [[nodiscard]] Hypsography read_hypsography(const std::string& name_or_file);
 
+/// Share of the area below 0 m.
+[[nodiscard]] double ocean_share_of(const Hypsography& curve);
+
 /// The curve with its parts below and above 0 m stretched so that `share` of the area lies below.
-/// 0 and 1 leave one of them; a curve that has but one part stays as it is.
+/// 0 and 1 leave one of them. A curve that has but one part, and so no sea level of its own, is
+/// moved as a whole until `share` lies below; it stays as it is where 0 or 1 asks for that part.
 [[nodiscard]] Hypsography with_ocean_share(Hypsography curve, double share);
 
 }  // namespace geo::io

@@ -92,6 +92,8 @@ class RunSession {
   void find_exemplars();
   void refuse_beginning() const;
   [[nodiscard]] Hypsography hypsography() const;
+  [[nodiscard]] bool follows_hypsography() const;
+  [[nodiscard]] Planet planet_with_sea() const;
   [[nodiscard]] int count_complete_stages() const;
   [[nodiscard]] bool is_complete(int position) const;
   [[nodiscard]] bool is_still_read(const FieldSpec& spec) const;
