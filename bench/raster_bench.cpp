@@ -26,7 +26,7 @@ void RasterWorldOfTenPlates(benchmark::State& state) {
     while (model.advance()) {
     }
     steps = model.steps();
-    benchmark::DoNotOptimize(model.map(true).crust.data());
+    benchmark::DoNotOptimize(model.map().crust.data());
   }
   state.counters["steps"] = static_cast<double>(steps);
 }

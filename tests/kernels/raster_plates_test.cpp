@@ -31,7 +31,7 @@ double closing_error(const RasterTectonics& model) {
 
 std::vector<float> heights(const RasterTectonics& model) {
   std::vector<float> out;
-  for (const RasterCrust& crust : model.map(true).crust) out.push_back(crust.height);
+  for (const RasterCrust& crust : model.map().crust) out.push_back(crust.height);
   return out;
 }
 
@@ -69,7 +69,7 @@ TEST(RasterPlates, FillTheTorus) {
     RasterTectonics model(small(), seed);
     for (int k = 0; k < 150 && model.advance(); ++k) {
     }
-    const RasterMap map = model.map(false);
+    const RasterMap map = model.map();
     for (std::size_t cell = 0; cell < map.crust.size(); ++cell) {
       ASSERT_GT(map.crust[cell].height, 0.0F) << "seed " << seed << ", cell " << cell;
       ASSERT_GE(map.plate[cell], 0) << "seed " << seed << ", cell " << cell;
@@ -101,9 +101,9 @@ TEST(RasterPlates, RestInTheSameShapeWhenNothingMoves) {
   settings.erosion_steps = 0;
   settings.restart_quiet = 1000;
   RasterTectonics model(settings, 4);
-  const RasterMap before = model.map(false);
+  const RasterMap before = model.map();
   for (int k = 0; k < 40; ++k) ASSERT_TRUE(model.advance());
-  const RasterMap after = model.map(false);
+  const RasterMap after = model.map();
   for (std::size_t cell = 0; cell < before.crust.size(); ++cell) {
     ASSERT_EQ(before.crust[cell].height, after.crust[cell].height) << cell;
   }
@@ -297,25 +297,6 @@ TEST(RasterPlates, MountainsRiseWhereContinentsMeet) {
     const auto map = heights(model);
     EXPECT_GT(*std::max_element(map.begin(), map.end()), 1.5 * first) << "seed " << seed;
   }
-}
-
-TEST(RasterPlates, YoungFloorStandsHigherAndTrenchesShow) {
-  RasterSettings settings = small();
-  settings.trench = 0.05;
-  RasterTectonics model(settings, 6);
-  for (int k = 0; k < 60; ++k) model.advance();
-  const RasterMap bare = model.map(false), seen = model.map(true);
-  int ridges = 0, trenches = 0;
-  for (std::size_t k = 0; k < bare.crust.size(); ++k) {
-    const float rise = seen.crust[k].height - bare.crust[k].height;
-    if (bare.crust[k].height >= 1.0F) {
-      ASSERT_EQ(rise, 0.0F);
-    }
-    ridges += rise > 0.15F ? 1 : 0;
-    trenches += rise < -0.02F ? 1 : 0;
-  }
-  EXPECT_GT(ridges, 50);
-  EXPECT_GT(trenches, 50);
 }
 
 TEST(RasterPlates, HeightsBecomeMetresWithTheWantedSeaAndPlains) {

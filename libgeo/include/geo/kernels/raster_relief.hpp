@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "geo/core/field.hpp"
 #include "geo/kernels/raster_tectonics.hpp"
 
 namespace geo {
@@ -38,6 +39,15 @@ void fit_scale(std::vector<float> heights, double ocean_share, double median_lan
                                         const RasterScale& scale);
 /// Age of floor, Myr, from the steps since it was made: a_0 tanh(a / a_0).
 [[nodiscard]] double raster_age_myr(double steps, const RasterScale& scale);
+
+/// The last orogeny of some crust: that of two continents, or of magma that rose inland. Land that
+/// never folded is older than the model's time.
+struct RasterOrogeny {
+  OrogenyType type = OrogenyType::none;
+  double age_myr = 0.0;
+};
+[[nodiscard]] RasterOrogeny raster_orogeny(const RasterCrust& crust, double now,
+                                           const RasterScale& scale);
 
 /// A raster world in the vocabulary of the planet, one value a cell.
 struct RasterRelief {

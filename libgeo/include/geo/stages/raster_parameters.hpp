@@ -20,7 +20,6 @@ struct RasterParameters {
   double spin_deg_myr = 0.0, curve_deg_myr = 0.0;
   std::string plate_speed, plate_folding, plate_overlap, plate_erosion;
   double median_land_m = 300.0;
-  double polar_circle_deg = 52.0;
 };
 
 }  // namespace geo

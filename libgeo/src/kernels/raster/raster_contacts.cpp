@@ -72,34 +72,31 @@ void RasterTectonics::meet(const Meeting& meeting, int world_row, Row& events) {
                                static_cast<std::size_t>(column)];
   const RasterCrust& crust = plates_[plate].crust(place);
   const RasterCrust& top = plates_[other].crust(other_place);
-  constexpr float kSame = 1e-6F;
-  const bool top_floats = std::abs(top.height - crust.height) < kSame ? top.born >= crust.born
-                                                                      : top.height > crust.height;
-  if (crust.height < 1.0F && top_floats) {
-    subduct(plate, other, place, column, world_row, events);
-    if (!(crust.height > 0.0F)) return;
-  } else if (top.height < 1.0F) {
-    subduct(other, plate, other_place, column, world_row, events);
-    if (!(top.height > 0.0F)) {
-      owner = plate;
-      return;
-    }
+  switch (raster_meeting(top, crust)) {
+    case RasterMeeting::second_sinks:
+      subduct(plate, other, place, column, world_row, events);
+      if (!(crust.height > 0.0F)) return;
+      break;
+    case RasterMeeting::first_sinks:
+      subduct(other, plate, other_place, column, world_row, events);
+      if (!(top.height > 0.0F)) {
+        owner = plate;
+        return;
+      }
+      break;
+    case RasterMeeting::both_stay: break;
   }
   fold(plate, place, other, other_place, column, world_row, events);
 }
 
 void RasterTectonics::subduct(int below, int above, std::int32_t place, int column, int row,
                               Row& events) {
-  const auto floor = static_cast<float>(settings_.ocean_crust);
   RasterCrust crust = plates_[below].crust(place);
-  const float before = crust.height, after = std::max(0.0F, before - floor);
-  // Water on top is what melts the mantle: the deeper what goes down, the more comes up.
-  const auto melt =
-      static_cast<float>(settings_.melting_ratio) * (before - after) * (1.0F - before);
+  const float before = crust.height;
+  const auto [after, melt] =
+      raster_sinking(before, settings_.ocean_crust, settings_.melting_ratio);
   crust.height = after;
   plates_[below].set(place, crust);
-  trench_[static_cast<std::size_t>(row) * settings_.world.columns + column] =
-      static_cast<std::int32_t>(budget_.steps);
   events.subductions.push_back({column, static_cast<std::int16_t>(below),
                                 static_cast<std::int16_t>(above), before, after, melt, -1});
 }
@@ -120,15 +117,13 @@ void RasterTectonics::fold(int a, std::int32_t place_a, int b, std::int32_t plac
   if (small.area > large.area) std::swap(small, large);
   RasterPlate& from = plates_[small.plate];
   RasterPlate& to = plates_[large.plate];
-  const auto ratio = static_cast<float>(
-      own(small.plate, &RasterPlateSettings::folding_ratio, settings_.folding_ratio));
   RasterCrust source = from.crust(small.place), target = to.crust(large.place);
   const float before = source.height, other_before = target.height;
-  const float moved = ratio * before, after = before - moved;
-  target.add({moved, source.born, 0});
-  source.height = after;
-  const float other_after = target.height;
-  if (other_after >= 1.0F) target.folded = static_cast<std::uint16_t>(2 * budget_.steps + 1);
+  raster_fold(source, target,
+              settings_.of(small.plate, &RasterPlateSettings::folding_ratio,
+                           settings_.folding_ratio),
+              budget_.steps);
+  const float after = source.height, other_after = target.height;
   from.set(small.place, source);
   to.set(large.place, target);
   events.folds.push_back({column, static_cast<std::int16_t>(small.plate),
@@ -138,7 +133,7 @@ void RasterTectonics::fold(int a, std::int32_t place_a, int b, std::int32_t plac
       static_cast<std::int16_t>(large.plate);
 }
 
-RasterMap RasterTectonics::map(bool visible) const {
+RasterMap RasterTectonics::map() const {
   const RasterWorld& world = settings_.world;
   RasterMap map;
   map.crust.resize(world.size());
@@ -157,20 +152,7 @@ RasterMap RasterTectonics::map(bool visible) const {
         all.add(crust);
       }
     }
-    if (!visible) continue;
-    for (int x = 0; x < world.columns; ++x) {
-      RasterCrust& cell = map.crust[first + x];
-      if (!(cell.height < 1.0F)) continue;
-      const auto now = static_cast<double>(budget_.steps);
-      const double young = 1.0 - (now - cell.born) / std::max(1, settings_.buoyant_steps);
-      const double rise = settings_.buoyancy * settings_.ocean_crust * std::clamp(young, 0.0, 1.0);
-      const std::int32_t last = trench_[first + x];
-      const double fresh =
-          last < 0 ? 0.0 : 1.0 - (now - last) / std::max(1, settings_.trench_steps);
-      cell.height += static_cast<float>(rise - settings_.trench * std::clamp(fresh, 0.0, 1.0));
-    }
   }
-  if (visible) map.trench = trench_;
   return map;
 }
 

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "geo/core/field.hpp"
 #include "geo/kernels/ocean_depth.hpp"
 
 namespace geo {
@@ -93,10 +92,18 @@ double raster_thickness_m(double height, double ocean_crust, const RasterScale& 
   return shore_m + scale.rebound * raster_elevation_m(height, 0.0, ocean_crust, scale);
 }
 
+RasterOrogeny raster_orogeny(const RasterCrust& crust, double now, const RasterScale& scale) {
+  constexpr double kShield_myr = 1000.0;
+  if (crust.height < scale.sea_height) return {};
+  if (crust.folded == 0) return {OrogenyType::none, now * scale.step_myr + kShield_myr};
+  return {crust.folded % 2 == 1 ? OrogenyType::himalayan : OrogenyType::andean,
+          (now - crust.folded / 2) * scale.step_myr};
+}
+
 RasterRelief raster_relief(const RasterTectonics& model, const RasterScale& scale) {
   const RasterWorld& world = model.settings().world;
   const double ocean_crust = model.settings().ocean_crust;
-  const RasterMap map = model.map(false);
+  const RasterMap map = model.map();
   const auto now = static_cast<double>(model.steps());
   RasterRelief relief;
   relief.world = world;
@@ -119,15 +126,10 @@ RasterRelief raster_relief(const RasterTectonics& model, const RasterScale& scal
     relief.thickness_m[k] =
         static_cast<float>(raster_thickness_m(crust.height, ocean_crust, scale));
     const bool land = crust.height >= scale.sea_height;
-    const bool has_folds = land && crust.folded > 0;
-    // Ground that never folded is older than the model's time.
-    constexpr double kShield_myr = 1000.0;
-    const double since = has_folds ? now - crust.folded / 2 : now + kShield_myr / scale.step_myr;
-    relief.orogeny_age_myr[k] = land ? static_cast<float>(since * scale.step_myr) : 0.0F;
-    relief.orogeny[k] = static_cast<std::int8_t>(!has_folds              ? OrogenyType::none
-                                                 : crust.folded % 2 == 1 ? OrogenyType::himalayan
-                                                                         : OrogenyType::andean);
-    folded[k] = has_folds ? 1 : 0;
+    const RasterOrogeny orogeny = raster_orogeny(crust, now, scale);
+    relief.orogeny_age_myr[k] = static_cast<float>(orogeny.age_myr);
+    relief.orogeny[k] = static_cast<std::int8_t>(orogeny.type);
+    folded[k] = orogeny.type == OrogenyType::none ? 0 : 1;
     floor[k] = land ? 0 : 1;
   }
   along_contours(world, relief.elevation_m, folded, relief.fold_x, relief.fold_y);

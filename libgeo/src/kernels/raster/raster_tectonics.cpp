@@ -27,18 +27,11 @@ RasterTectonics::RasterTectonics(const RasterSettings& settings, std::uint64_t s
   }
   constexpr std::int32_t kPays = 1'000'000;  // cells
   pays_ = world.size() >= kPays;
-  trench_.assign(world.size(), -1);
   rows_.resize(world.rows);
   std::vector<RasterCrust> crust = start_raster(world, settings_.sea_share, settings_.ocean_crust,
                                                 settings_.continents_across, seed_);
   for (const RasterCrust& cell : crust) budget_.start += cell.height;
   divide(std::move(crust));
-}
-
-double RasterTectonics::own(int plate, double RasterPlateSettings::*value, double common) const {
-  if (plate >= static_cast<int>(settings_.own.size())) return common;
-  const double of_plate = settings_.own[plate].*value;
-  return std::isnan(of_plate) ? common : of_plate;
 }
 
 /// Cuts the crust of the world into new plates with new motion.
@@ -81,7 +74,7 @@ void RasterTectonics::divide(std::vector<RasterCrust> crust) {
     const std::uint64_t draw = 8 * static_cast<std::uint64_t>(budget_.cycles);
     const double angle = 2.0 * std::numbers::pi * random.uniform(p, draw);
     const double spread = settings_.speed_spread;
-    const double speed = settings_.speed * own(p, &RasterPlateSettings::speed, 1.0) *
+    const double speed = settings_.speed * settings_.of(p, &RasterPlateSettings::speed, 1.0) *
                          random.uniform(p, draw + 1, 1.0 - spread, 1.0 + spread);
     plate.east = speed * std::cos(angle);
     plate.north = speed * std::sin(angle);
@@ -98,39 +91,33 @@ void RasterTectonics::divide(std::vector<RasterCrust> crust) {
   for (RasterPlate& plate : plates_) plate.tighten();
   previous_ = owner_;
   ++budget_.cycles;
-  peak_momentum_ = 0.0;
-  cycle_step_ = quiet_ = 0;
+  cycle_ = {};
 }
 
-/// Whether the cycle has come to its end.
-bool RasterTectonics::is_over() {
-  double speed = 0.0, momentum = 0.0;
-  int alive = 0;
+RasterCycle::Motion RasterTectonics::motion() const {
+  RasterCycle::Motion motion;
   for (const RasterPlate& plate : plates_) {
     if (!plate.alive) continue;
-    const double own_speed = std::hypot(plate.east, plate.north);
-    speed += own_speed;
-    momentum += own_speed * plate.mass;
-    ++alive;
+    const double speed = std::hypot(plate.east, plate.north);
+    motion.speed += speed;
+    motion.momentum += speed * plate.mass;
+    ++motion.plates;
   }
-  peak_momentum_ = std::max(peak_momentum_, momentum);
-  return alive < 2 || speed < settings_.restart_speed * settings_.speed * alive ||
-         momentum < settings_.restart_momentum * peak_momentum_ ||
-         quiet_ > settings_.restart_quiet || cycle_step_ >= settings_.cycle_steps;
+  return motion;
 }
 
 bool RasterTectonics::advance() {
   if (over_) return false;
-  if (is_over()) {
+  if (cycle_.is_over(settings_.limits(), motion())) {
     if (budget_.cycles >= settings_.cycles) {
       over_ = true;
       return false;
     }
-    divide(map(false).crust);
+    divide(map().crust);
     return true;
   }
   ++budget_.steps;
-  ++cycle_step_;
+  cycle_.begin_step();
   move();
 #pragma omp parallel for schedule(dynamic, 1) if (pays_)
   for (int p = 0; p < static_cast<int>(plates_.size()); ++p) {
@@ -152,7 +139,7 @@ void RasterTectonics::move() {
     RasterPlate& plate = plates_[p];
     if (!plate.alive) continue;
     const auto period = static_cast<std::int64_t>(
-        own(p, &RasterPlateSettings::erosion_steps, settings_.erosion_steps));
+        settings_.of(p, &RasterPlateSettings::erosion_steps, settings_.erosion_steps));
     if (period > 0 && budget_.steps % period == 0) plate.erode(settings_.erosion);
     if (budget_.steps % kTighten == 0) plate.tighten();
     // With a spin, the path bends as the plate turns: motion about a pole.
@@ -173,21 +160,14 @@ std::int32_t RasterTectonics::arc_place(const Subduction& event, int row,
                                         const RandomStream& random) const {
   const RasterPlate& below = plates_[event.below];
   const RasterPlate& above = plates_[event.above];
-  const auto scatter = [](std::uint32_t word) {
-    const double u = 2.0 * word * 0x1.0p-32 - 1.0;
-    return u * u * u;
-  };
-  double dx = below.east, dy = below.north;
-  if (dx * above.east + dy * above.north > 0.0) {
-    dx -= above.east;
-    dy -= above.north;
-  }
   const double reach = settings_.speed > 0.0 ? settings_.arc_cells / settings_.speed : 0.0;
+  const auto offset = raster_arc_offset<2>({below.east, below.north}, {above.east, above.north},
+                                           reach);
   const auto words = random.words(budget_.steps, row * settings_.world.columns + event.column);
-  const double sx = settings_.arc_scatter_cells * scatter(words[0]);
-  const double sy = settings_.arc_scatter_cells * scatter(words[1]);
-  return above.find(static_cast<int>(std::floor(event.column + reach * dx + sx)),
-                    static_cast<int>(std::floor(row + reach * dy + sy)));
+  const double sx = settings_.arc_scatter_cells * raster_scatter(words[0]);
+  const double sy = settings_.arc_scatter_cells * raster_scatter(words[1]);
+  return above.find(static_cast<int>(std::floor(event.column + offset[0] + sx)),
+                    static_cast<int>(std::floor(row + offset[1] + sy)));
 }
 
 /// Takes what went down off the books and lets its magma rise; where the upper plate has no crust
@@ -254,14 +234,12 @@ void RasterTectonics::slow_down() {
   }
   for (std::size_t p = 0; p < plates_.size(); ++p) {
     RasterPlate& plate = plates_[p];
-    const double speed = std::hypot(plate.east, plate.north);
-    if (!(plate.mass > 0.0) || speed == 0.0) continue;
-    const double loss = settings_.friction * settings_.speed * folded[p] / plate.mass;
-    const double left = std::max(0.0, 1.0 - loss / speed);
+    const double left = raster_speed_left(std::hypot(plate.east, plate.north), folded[p],
+                                          plate.mass, settings_.friction, settings_.speed);
     plate.east *= left;
     plate.north *= left;
   }
-  quiet_ = met ? 0 : quiet_ + 1;
+  cycle_.note(met);
   merge_continents(overlaps);
 }
 
@@ -273,7 +251,7 @@ void RasterTectonics::merge_continents(std::span<const Overlap> overlaps) {
     const std::int32_t area = small.area[overlap.continent_a];
     if (area == 0 || large.area[overlap.continent_b] == 0) continue;
     const double relative =
-        own(overlap.a, &RasterPlateSettings::overlap_relative, settings_.overlap_relative);
+        settings_.of(overlap.a, &RasterPlateSettings::overlap_relative, settings_.overlap_relative);
     if (static_cast<double>(overlap.cells) >= settings_.overlap_cells ||
         static_cast<double>(overlap.cells) >= relative * area) {
       merge(overlap);
@@ -359,7 +337,7 @@ double RasterTectonics::mass() const {
 }
 
 double RasterTectonics::progress() const {
-  const double cycle = static_cast<double>(cycle_step_) / std::max(1, settings_.cycle_steps);
+  const double cycle = static_cast<double>(cycle_.steps()) / std::max(1, settings_.cycle_steps);
   return std::min(1.0, (budget_.cycles - 1 + cycle) / settings_.cycles);
 }
 

@@ -63,7 +63,8 @@ RasterSettings settings_of(const PlatesParameters& parameters, double width_km) 
   return s;
 }
 
-void report(const RasterTectonics& model, Budget& budget) {
+template <class Model>
+void report(const Model& model, Budget& budget) {
   const RasterBudget& sums = model.budget();
   const double mass = model.mass();
   budget["raster_steps"] = static_cast<double>(sums.steps);
@@ -75,8 +76,18 @@ void report(const RasterTectonics& model, Budget& budget) {
   budget["raster_crust_subducted"] = sums.subducted;
   budget["raster_crust_melted"] = sums.melted;
   budget["raster_crust_folded"] = sums.folded;
-  budget["raster_crust_closing_error"] =
-      (mass - sums.start - sums.created + sums.subducted - sums.melted) / mass;
+  budget["raster_crust_resampled"] = sums.resampled;
+  budget["raster_crust_closing_error"] = (mass - sums.balance()) / mass;
+}
+
+template <class Model>
+void run_cycles(Model& model, Context& context) {
+  while (model.advance()) {
+    constexpr int kTold = 32;
+    if (model.steps() % kTold == 0) context.advance(0.8 * model.progress());
+  }
+  report(model, context.budget);
+  context.advance(0.8);
 }
 
 }  // namespace
@@ -94,20 +105,23 @@ void collide_rasters(const PlatesParameters& parameters, StageIo& io, Context& c
   const bool on_torus = grid.topology() == Topology::torus;
   const double width_km = on_torus ? 1e-3 * grid.nx() * grid.spacing_east_m(0)
                                    : 2e-3 * std::numbers::pi * grid.figure().radius_m;
-  RasterTectonics model(settings_of(parameters, width_km), context.seed);
-  while (model.advance()) {
-    constexpr int kTold = 32;
-    if (model.steps() % kTold == 0) context.advance(0.8 * model.progress());
-  }
-  report(model, context.budget);
   RasterScale scale;
   scale.cell_km = width_km / static_cast<double>(parameters.raster.columns);
   scale.step_myr = parameters.sphere.law.step_myr;
   scale.summit_km = parameters.sphere.law.summit_km;
   scale.oldest_floor_myr = parameters.oldest_floor_myr;
-  context.advance(0.8);
-  on_torus ? lay_on_torus(parameters, model, scale, io, context)
-           : lay_on_sphere(parameters, model, scale, io, context);
+  RasterSettings settings = settings_of(parameters, width_km);
+  if (on_torus) {
+    RasterTectonics model(settings, context.seed);
+    run_cycles(model, context);
+    return lay_on_torus(parameters, model, scale, io, context);
+  }
+  const FibonacciSphere samples(raster_samples(settings.world.columns));
+  const SphereMesh mesh(samples);
+  settings.overlap_cells = parameters.raster.overlap_absolute * samples.size();
+  RasterSphere model(mesh, settings, context.seed);
+  run_cycles(model, context);
+  lay_on_sphere(parameters, model, scale, io, context);
 }
 
 }  // namespace geo

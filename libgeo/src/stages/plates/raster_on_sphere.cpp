@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
+#include <utility>
 
-#include "geo/kernels/noise.hpp"
+#include "geo/core/field.hpp"
 #include "geo/kernels/sphere_tectonics.hpp"
 #include "raster.hpp"
 #include "sphere_on_grid.hpp"
@@ -13,260 +13,190 @@
 namespace geo {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-enum Chart : int { kBelt, kNorth, kSouth };
-constexpr int kCharts = 3;
-
-/// A place of the tile and the directions of its x and y on the planet.
-struct ChartPlace {
-  double column, row;
-  Vector3 x, y;
+/// The model's world in the vocabulary of the planet, one value for each of its samples.
+struct World {
+  std::vector<float> height, age_myr, orogeny_age_myr;
+  std::vector<std::int8_t> orogeny;
+  std::vector<std::int16_t> plate;
+  std::vector<std::array<float, 3>> fold, ridge;  // along contours of land and of the floor's age
 };
 
-class Charts {
- public:
-  Charts(const RasterWorld& world, double polar_circle_deg, std::uint64_t seed)
-      : world_(world),
-        per_radian_(world.columns / (2.0 * kPi)),
-        circle_rad_(polar_circle_deg * kPi / 180.0),
-        bend_(seed, "raster.polar_circle") {}
-
-  /// The row of the tile that lies on the equator.
-  void shift(double row) { middle_ = row; }
-
-  /// How much of a place is the cap's, 0 to 1.
-  [[nodiscard]] double cap_share(const Vector3& at) const {
-    constexpr double kBend_rad = 0.16, kHalfWidth_rad = 0.06;
-    const double latitude = std::asin(std::clamp(at[2], -1.0, 1.0));
-    const double circle = circle_rad_ + kBend_rad * bend_.fbm(at, 2.5, 5, 0.55) / 0.35;
-    const double s =
-        std::clamp(0.5 + 0.5 * (std::abs(latitude) - circle) / kHalfWidth_rad, 0.0, 1.0);
-    return s * s * (3.0 - 2.0 * s);
-  }
-
-  [[nodiscard]] ChartPlace place(int chart, const Vector3& at) const {
-    const double longitude = std::atan2(at[1], at[0]);
-    const double c = std::cos(longitude), s = std::sin(longitude);
-    const Vector3 east{-s, c, 0.0}, north = cross(at, east);
-    if (chart == kBelt) {
-      return {0.5 * world_.columns + longitude * per_radian_,
-              middle_ + std::asin(std::clamp(at[2], -1.0, 1.0)) * per_radian_, east, north};
+/// Unit vectors across the gradient of a field about each sample, or zero.
+std::vector<std::array<float, 3>> along_contours(const SphereMesh& mesh,
+                                                 const std::vector<float>& field) {
+  std::vector<Vector3> slope(mesh.size());
+#pragma omp parallel for schedule(static)
+  for (std::int32_t i = 0; i < mesh.size(); ++i) {
+    for (const std::int32_t j : mesh.neighbours(i)) {
+      slope[i] = add(slope[i], add(mesh.samples().position(j), mesh.samples().position(i), -1.0),
+                     field[j] - field[i]);
     }
-    // Seen from above the pole; turned about at the south, so that the tile is not mirrored.
-    const double side = chart == kNorth ? 1.0 : -1.0;
-    const double far = std::sqrt(2.0 * std::max(0.0, 1.0 - side * at[2])) * per_radian_;
-    const Vector3 out = scaled(north, -side), around = scaled(east, side);
-    return {(chart == kNorth ? 0.25 : 0.75) * world_.columns + far * c,
-            middle_ + 0.5 * world_.rows + side * far * s, add(scaled(out, c), around, -side * s),
-            add(scaled(out, side * s), around, c)};
+  }
+  std::vector<std::array<float, 3>> along(mesh.size());
+#pragma omp parallel for schedule(static)
+  for (std::int32_t i = 0; i < mesh.size(); ++i) {
+    Vector3 mean = slope[i];  // over the ring, as one cell's is rough
+    for (const std::int32_t j : mesh.neighbours(i)) mean = add(mean, slope[j]);
+    const Vector3 way = normalised(cross(mesh.samples().position(i), mean));
+    for (int c = 0; c < 3; ++c) along[i][c] = static_cast<float>(way[c]);
+  }
+  return along;
+}
+
+World world_of(const RasterSphere& model, RasterMap map, const RasterScale& scale) {
+  const std::size_t n = map.crust.size();
+  const auto now = static_cast<double>(model.steps());
+  World world;
+  world.plate = std::move(map.plate);
+  world.height.resize(n);
+  world.age_myr.resize(n);
+  world.orogeny_age_myr.resize(n);
+  world.orogeny.resize(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    const RasterCrust& crust = map.crust[k];
+    world.height[k] = crust.height;
+    world.age_myr[k] = static_cast<float>(raster_age_myr(now - crust.born, scale));
+    const RasterOrogeny orogeny = raster_orogeny(crust, now, scale);
+    world.orogeny[k] = static_cast<std::int8_t>(orogeny.type);
+    world.orogeny_age_myr[k] = static_cast<float>(orogeny.age_myr);
+  }
+  world.fold = along_contours(model.mesh(), world.height);
+  world.ridge = along_contours(model.mesh(), world.age_myr);
+  return world;
+}
+
+/// Values about a place as smooth as a cubic spline through cells: the samples within two spacings,
+/// weighted with (1 - (r / 2)^2)^3.
+class Smooth {
+ public:
+  Smooth(const SphereMesh& mesh, const Vector3& place, std::int32_t nearest) {
+    add_sample(mesh, place, nearest);
+    for (const std::int32_t ring : mesh.neighbours(nearest)) {
+      add_sample(mesh, place, ring);
+      for (const std::int32_t beyond : mesh.neighbours(ring)) add_sample(mesh, place, beyond);
+    }
+  }
+  [[nodiscard]] double of(const std::vector<float>& values) const {
+    double sum = 0.0, all = 0.0;
+    for (int k = 0; k < count_; ++k) {
+      sum += weight_[k] * values[sample_[k]];
+      all += weight_[k];
+    }
+    return sum / all;
   }
 
  private:
-  RasterWorld world_;
-  double per_radian_, circle_rad_, middle_ = 0.0;
-  Noise bend_;
-};
-
-/// Rotation, rad/Myr, whose velocities come nearest to some tangent vectors.
-class RotationFit {
- public:
-  void add_velocity(const Vector3& at, const Vector3& velocity) {
-    const Vector3 moment = cross(at, velocity);
-    for (int a = 0; a < 3; ++a) {
-      moment_[a] += moment[a];
-      for (int b = 0; b < 3; ++b) matrix_[a][b] += (a == b ? 1.0 : 0.0) - at[a] * at[b];
+  void add_sample(const SphereMesh& mesh, const Vector3& place, std::int32_t sample) {
+    if (count_ == kMost || std::find(sample_.begin(), sample_.begin() + count_, sample) !=
+                               sample_.begin() + count_) {
+      return;
     }
-    ++count_;
+    constexpr double kReach = 2.0;
+    const double far =
+        length(add(mesh.samples().position(sample), place, -1.0)) / mesh.samples().spacing();
+    const double left = 1.0 - far * far / (kReach * kReach);
+    if (left <= 0.0) return;
+    sample_[count_] = sample;
+    weight_[count_++] = left * left * left;
   }
-  [[nodiscard]] bool empty() const { return count_ == 0; }
-  [[nodiscard]] Vector3 rotation() const {
-    // A plate of a few samples says little about turns about itself.
-    auto m = matrix_;
-    for (int a = 0; a < 3; ++a) m[a][a] += 1e-6 * count_;
-    const double determinant = dot(m[0], cross(m[1], m[2]));
-    const Vector3 a = cross(m[1], m[2]), b = cross(m[2], m[0]), c = cross(m[0], m[1]);
-    return scaled(add(add(scaled(a, moment_[0]), b, moment_[1]), c, moment_[2]), 1.0 / determinant);
-  }
-
- private:
-  std::array<Vector3, 3> matrix_{};
-  Vector3 moment_{};
+  static constexpr int kMost = 40;
+  std::array<std::int32_t, kMost> sample_{};
+  std::array<double, kMost> weight_{};
   int count_ = 0;
 };
 
+/// Lays the model's world on the lattice that the planet is drawn from.
 class Laying {
  public:
-  Laying(const PlatesParameters& p, const RasterTectonics& model, const RasterScale& scale,
-         const Grid& grid, const SphereMesh& mesh, const Context& context)
-      : model_(model),
-        scale_(scale),
-        grid_(grid),
-        mesh_(mesh),
-        charts_(model.settings().world, p.raster.polar_circle_deg, context.seed) {
-    relief_ = raster_relief(model, scale_);
-    shift_tile(wanted_ocean(context));
-    fit_scale(heights(1), wanted_ocean(context), p.raster.median_land_m, scale_);
-    relief_ = raster_relief(model, scale_);
+  Laying(const PlatesParameters& p, const RasterSphere& model, const RasterScale& scale,
+         const SphereMesh& mesh, const Context& context)
+      : model_(model), scale_(scale), mesh_(mesh) {
+    RasterMap map = model.map();
+    std::vector<float> heights;
+    for (const RasterCrust& crust : map.crust) heights.push_back(crust.height);
+    height_.resize(mesh.size());
+    nearest_.resize(mesh.size());
+#pragma omp parallel for schedule(static)
+    for (std::int32_t i = 0; i < mesh_.size(); ++i) {
+      nearest_[i] = model_.mesh().samples().nearest(mesh_.samples().position(i));
+      height_[i] = static_cast<float>(around(i).of(heights));
+    }
+    fit_scale(height_, wanted_ocean(context), p.raster.median_land_m, scale_);
+    world_ = world_of(model, std::move(map), scale_);
   }
 
   [[nodiscard]] SphereState state() const {
     SphereState state;
     state.crust.resize(mesh_.size());
-    const auto plates = static_cast<int>(model_.plates().size());
 #pragma omp parallel for schedule(static)
     for (std::int32_t i = 0; i < mesh_.size(); ++i) lay(i, state.crust);
-    set_plates(kCharts * plates, state);
+    set_plates(state);
     return state;
   }
 
  private:
-  /// The planet shows a part of the tile: the one, along y, whose share of land is nearest to what
-  /// is wanted.
-  void shift_tile(double ocean_share) {
-    constexpr int kShifts = 32, kStride = 41;
-    double best = 2.0;
-    int choice = 0;
-    for (int k = 0; k < kShifts; ++k) {
-      charts_.shift(static_cast<double>(k) * model_.settings().world.rows / kShifts);
-      const std::vector<float> some = heights(kStride);
-      const auto sea = std::count_if(some.begin(), some.end(), [](float h) { return h < 1.0F; });
-      const double off = std::abs(static_cast<double>(sea) / static_cast<double>(some.size()) -
-                                  std::min(ocean_share, 0.71));
-      if (off >= best) continue;
-      best = off;
-      choice = k;
-    }
-    charts_.shift(static_cast<double>(choice) * model_.settings().world.rows / kShifts);
-  }
-  /// Of the map, blended, at every so many samples.
-  [[nodiscard]] std::vector<float> heights(int stride) const {
-    std::vector<float> heights(mesh_.size() / stride);
-#pragma omp parallel for schedule(static)
-    for (std::size_t k = 0; k < heights.size(); ++k) {
-      const Vector3 at =
-          grid_.to_axis(mesh_.samples().position(static_cast<std::int32_t>(k) * stride));
-      heights[k] = static_cast<float>(blended(relief_.height, at, charts_.cap_share(at)));
-    }
-    return heights;
-  }
-  [[nodiscard]] double blended(const std::vector<float>& values, const Vector3& at,
-                               double cap) const {
-    double sum = 0.0;
-    for (const int chart :
-         {static_cast<int>(kBelt), static_cast<int>(at[2] > 0.0 ? kNorth : kSouth)}) {
-      const double weight = chart == kBelt ? 1.0 - cap : cap;
-      if (weight <= 0.0) continue;
-      const ChartPlace place = charts_.place(chart, at);
-      sum += weight * smooth_value(model_.settings().world, values, place.column, place.row);
-    }
-    return sum;
+  [[nodiscard]] Smooth around(std::int32_t i) const {
+    return {model_.mesh(), mesh_.samples().position(i), nearest_[i]};
   }
 
   void lay(std::int32_t i, SphereCrust& crust) const {
     constexpr double kContinental_m = 12e3;
-    const Vector3 at = grid_.to_axis(mesh_.samples().position(i));
-    const double cap = charts_.cap_share(at);
-    const int polar = at[2] > 0.0 ? kNorth : kSouth;
-    const int main = cap > 0.5 ? polar : kBelt;
+    const Smooth about = around(i);
+    const std::int32_t cell = nearest_[i];
     // Metres from the smooth height, not smooth metres: shores stay where the height is the sea's.
-    const double height = blended(relief_.height, at, cap);
-    const double age = blended(relief_.age_myr, at, cap);
+    const double height = height_[i], age = about.of(world_.age_myr);
     const double ocean_crust = model_.settings().ocean_crust;
-    const double elevation = raster_elevation_m(height, age, ocean_crust, scale_);
     const double thickness = raster_thickness_m(height, ocean_crust, scale_);
-    const ChartPlace place = charts_.place(main, at);
-    const std::size_t cell = cell_of(place);
-    crust.plate[i] = static_cast<std::int16_t>(main * static_cast<int>(model_.plates().size()) +
-                                               relief_.plate[cell]);
-    crust.elevation_m[i] = static_cast<float>(elevation);
+    crust.plate[i] = world_.plate[cell];
+    crust.elevation_m[i] =
+        static_cast<float>(raster_elevation_m(height, age, ocean_crust, scale_));
     crust.thickness_m[i] = static_cast<float>(thickness);
     crust.continental[i] = thickness >= kContinental_m ? 1 : 0;
-    crust.orogeny[i] = crust.continental[i] != 0 ? relief_.orogeny[cell] : std::int8_t{0};
-    crust.age_myr[i] =
-        static_cast<float>(smooth_value(relief_.world, relief_.age_myr, place.column, place.row));
-    crust.orogeny_age_myr[i] =
-        crust.continental[i] != 0
-            ? static_cast<float>(
-                  smooth_value(relief_.world, relief_.orogeny_age_myr, place.column, place.row))
-            : 0.0F;
-    const auto on_planet = [&](float x, float y) {
-      const Vector3 way = add(scaled(place.x, x), place.y, y);
-      return std::array<float, 3>{static_cast<float>(way[0]), static_cast<float>(way[1]),
-                                  static_cast<float>(way[2])};
-    };
+    crust.age_myr[i] = static_cast<float>(age);
     if (crust.continental[i] != 0) {
-      crust.fold[i] = on_planet(relief_.fold_x[cell], relief_.fold_y[cell]);
+      crust.orogeny[i] = world_.orogeny[cell];
+      crust.orogeny_age_myr[i] = static_cast<float>(about.of(world_.orogeny_age_myr));
+      crust.fold[i] = world_.fold[cell];
     } else {
-      crust.ridge[i] = on_planet(relief_.ridge_x[cell], relief_.ridge_y[cell]);
+      crust.ridge[i] = world_.ridge[cell];
     }
   }
 
-  void set_plates(int count, SphereState& state) const {
-    const auto plates = static_cast<int>(model_.plates().size());
-    const double rate = scale_.cell_km / scale_.step_myr / (1e-3 * grid_.figure().radius_m);
-    std::vector<RotationFit> fits(count);
-    for (std::int32_t i = 0; i < mesh_.size(); ++i) {
-      const int plate = state.crust.plate[i];
-      const Vector3 at = grid_.to_axis(mesh_.samples().position(i));
-      const ChartPlace place = charts_.place(plate / plates, at);
-      const RasterVelocity v =
-          raster_velocity(model_.plates()[plate % plates], relief_.world, place.column, place.row);
-      fits[plate].add_velocity(at, scaled(add(scaled(place.x, v.x), place.y, v.y), rate));
-    }
-    // Numbers without holes; the frame of the samples, which may be turned against the axis.
-    std::vector<std::int16_t> number(count, -1);
-    for (int plate = 0; plate < count; ++plate) {
-      if (fits[plate].empty()) continue;
-      number[plate] = static_cast<std::int16_t>(state.plates.size());
-      const Vector3 rotation = from_axis(fits[plate].rotation());
+  void set_plates(SphereState& state) const {
+    // Numbers without holes: plates may have gone.
+    std::vector<std::int16_t> number(model_.plates().size(), -1);
+    for (const std::int16_t plate : state.crust.plate) number[plate] = 0;
+    for (std::size_t p = 0; p < number.size(); ++p) {
+      if (number[p] < 0) continue;
+      number[p] = static_cast<std::int16_t>(state.plates.size());
+      const Vector3& rotation = model_.plates()[p].rotation;
       SpherePlate& rigid = state.plates.emplace_back();
-      rigid.speed_rad_myr = length(rotation);
+      rigid.speed_rad_myr = length(rotation) / scale_.step_myr;
       if (rigid.speed_rad_myr > 0.0) rigid.axis = normalised(rotation);
     }
     for (std::int16_t& plate : state.crust.plate) plate = number[plate];
-    for (auto* field : {&state.crust.fold, &state.crust.ridge}) {
-      for (auto& way : *field) {
-        const Vector3 turned = from_axis({way[0], way[1], way[2]});
-        for (int c = 0; c < 3; ++c) way[c] = static_cast<float>(turned[c]);
-      }
-    }
     state.pairs.assign(state.plates.size() * state.plates.size(), {});
   }
 
-  /// The inverse of Grid::to_axis, whose rows are the images of the axes.
-  [[nodiscard]] Vector3 from_axis(const Vector3& v) const {
-    const Vector3 x = grid_.to_axis({1.0, 0.0, 0.0}), y = grid_.to_axis({0.0, 1.0, 0.0}),
-                  z = grid_.to_axis({0.0, 0.0, 1.0});
-    return {dot(x, v), dot(y, v), dot(z, v)};
-  }
-
-  [[nodiscard]] std::size_t cell_of(const ChartPlace& place) const {
-    const RasterWorld& world = relief_.world;
-    return static_cast<std::size_t>(world.row(static_cast<int>(std::floor(place.row)))) *
-               world.columns +
-           world.column(static_cast<int>(std::floor(place.column)));
-  }
-
-  const RasterTectonics& model_;
+  const RasterSphere& model_;
   RasterScale scale_;
-  const Grid& grid_;
   const SphereMesh& mesh_;
-  RasterRelief relief_;
-  Charts charts_;
+  World world_;
+  std::vector<float> height_;
+  std::vector<std::int32_t> nearest_;
 };
 
 }  // namespace
 
-void lay_on_sphere(const PlatesParameters& parameters, const RasterTectonics& model,
+void lay_on_sphere(const PlatesParameters& parameters, const RasterSphere& model,
                    RasterScale scale, StageIo& io, const Context& context) {
   const FibonacciSphere samples(static_cast<std::int32_t>(parameters.samples));
   const SphereMesh mesh(samples);
   SphereSettings settings = parameters.sphere;
   settings.radius_km = 1e-3 * io.grid().figure().radius_m;
   SphereTectonics planet(mesh, settings,
-                         Laying(parameters, model, scale, io.grid(), mesh, context).state(),
-                         context.seed);
-  // Small pieces that charts and grid cut off join their neighbours.
+                         Laying(parameters, model, scale, mesh, context).state(), context.seed);
+  // Pieces too small to be plates join their neighbours.
   planet.finish();
   constexpr double kWhole_m = 22e3;  // its plains are low and their crust thin
   SphereOnGrid(parameters, planet, io, context, kWhole_m).draw(io);

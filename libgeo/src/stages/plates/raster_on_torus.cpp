@@ -82,7 +82,7 @@ void lay_on_torus(const PlatesParameters& parameters, const RasterTectonics& mod
                   RasterScale scale, StageIo& io, const Context& context) {
   const Grid& grid = io.grid();
   std::vector<float> heights;
-  for (const RasterCrust& crust : model.map(false).crust) heights.push_back(crust.height);
+  for (const RasterCrust& crust : model.map().crust) heights.push_back(crust.height);
   fit_scale(std::move(heights), wanted_ocean(context), parameters.raster.median_land_m, scale);
   const RasterRelief relief = raster_relief(model, scale);
   const RasterWorld& world = relief.world;

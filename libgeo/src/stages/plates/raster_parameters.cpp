@@ -6,9 +6,9 @@ std::vector<Parameter> raster_declarations(RasterParameters& p) {
   RasterSettings& model = p.model;
   return {
       integer("plates.map_columns", p.columns, "1", 16, 8192,
-              "raster: cells along the map's width, which goes once round the planet",
+              "raster: cells along the tile's width, or once round the planet's equator",
               "viitanen2012"),
-      integer("plates.map_rows", p.rows, "1", 16, 8192, "raster: cells along the map's height",
+      integer("plates.map_rows", p.rows, "1", 16, 8192, "raster: cells along a tile's height",
               "viitanen2012"),
       integer("plates.map_plates", p.plates, "1", 2, 1000, "raster: plates of each cycle",
               "viitanen2012"),
@@ -69,9 +69,6 @@ std::vector<Parameter> raster_declarations(RasterParameters& p) {
            "viitanen2012"),
       real("plates.median_land_m", p.median_land_m, "m", 10.0, 5000.0,
            "raster: median elevation of land, which gives heights their metres", "design"),
-      real("plates.polar_circle_deg", p.polar_circle_deg, "degree", 30.0, 80.0,
-           "raster: latitude from which the planet's caps are parts of the map of their own",
-           "design"),
   };
 }
 
