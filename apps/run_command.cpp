@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 /// The command line of `run` as it was typed.
 struct RunOptions {
-  std::string config, folder = "out", preset, seed, grid, dem, exemplars, from, to, threads;
+  std::string config, folder = "out", preset, seed, grid, topology, dem, exemplars, from, to, threads;
   std::vector<std::string> assignments;
   bool resume = false, overwrite = false, dry_run = false;
   bool quiet = false, log_json = false, no_vtk = false, no_maps = false;
@@ -50,6 +50,19 @@ void set_option(const Configuration& configuration, std::string_view option, std
   }
 }
 
+/// Refuses stages that a torus has no meaning for, before anything is computed.
+void check_topology(const Configuration& configuration) {
+  if (configuration.settings.topology != "torus") return;
+  using Wanted = std::pair<std::string_view, std::string>;
+  for (const auto& [name, value] :
+       {Wanted{"plates.model", "raster"}, Wanted{"isostasy.crust", "simulated"}}) {
+    const geo::Parameter* row = geo::find_parameter(configuration.parameters(), name);
+    if (row->value() == geo::ParameterValue(value)) continue;
+    throw geo::ConfigurationError(
+        fmt::format("run.topology = torus: {} must be {}, as in preset raster", name, value));
+  }
+}
+
 /// Defaults, then preset, then file, then the command line. A run that goes on in a folder starts
 /// from the configuration which that folder holds, unless another is given. Returns whether it did.
 bool configure(Configuration& configuration, const RunOptions& options) {
@@ -62,8 +75,11 @@ bool configure(Configuration& configuration, const RunOptions& options) {
   if (takes_kept) file = kept;
   // A real relief on the command line is taken as it is, not worn down as a new one, unless a
   // preset or the file says so.
-  const bool bare_relief = options.preset.empty() && !options.dem.empty() && !takes_kept;
-  const std::string preset = bare_relief ? "earth-dem" : options.preset;
+  const bool bare = options.preset.empty() && !takes_kept;
+  const bool bare_relief = bare && !options.dem.empty();
+  // A torus has one model of plates.
+  const bool bare_torus = bare && file.empty() && options.topology == "torus";
+  const std::string preset = bare_relief ? "earth-dem" : bare_torus ? "raster" : options.preset;
   if (!preset.empty()) {
     geo::io::apply_toml(geo::io::find_preset(preset).toml, "preset " + preset, parameters,
                         &settings.events);
@@ -87,6 +103,8 @@ bool configure(Configuration& configuration, const RunOptions& options) {
   anchor_paths(settings, fs::current_path());
   set_option(configuration, "--seed", "run.seed", options.seed);
   set_option(configuration, "--grid", "run.grid", options.grid);
+  set_option(configuration, "--topology", "run.topology", options.topology);
+  check_topology(configuration);
   if (options.no_vtk) settings.vtk = false;
   if (options.no_maps) settings.maps = false;
   return takes_kept;
@@ -172,6 +190,11 @@ void add_run_command(CLI::App& program, Action& action) {
       ->take_all()
       ->allow_extra_args(false);  // a configuration may follow
   command->add_option("--grid", o.grid, "Cells of the grid")->type_name("WIDTHxHEIGHT");
+  command
+      ->add_option("--topology", o.topology,
+                   "sphere, or torus: a tile whose opposite sides meet; without --preset and a "
+                   "file, preset raster")
+      ->type_name("sphere|torus");
   command
       ->add_option("--dem", o.dem,
                    "A real relief takes the place of plates and isostasy; without --preset, preset "

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "geo/core/error.hpp"
@@ -372,16 +373,25 @@ bool RunSession::needs_relief() const {
   return false;
 }
 
-/// The sphere on which the first stage starts from the seed alone.
+/// The sphere, or the torus of square cells, on which the first stage starts from the seed alone.
 void RunSession::begin_with_bare_planet() {
-  constexpr GridSize kDefault{4096, 2048};
-  const auto [nx, ny] = settings_.grid_is_automatic() ? kDefault : parse_grid_size(settings_.grid);
+  const bool is_torus = settings_.topology == "torus";
+  const GridSize usual = is_torus ? GridSize{1024, 1024} : GridSize{4096, 2048};
+  const auto [nx, ny] = settings_.grid_is_automatic() ? usual : parse_grid_size(settings_.grid);
   settings_.grid = fmt::format("{}x{}", nx, ny);
-  state_.emplace(std::make_shared<const Grid>(Grid::sphere(nx, ny, planet_.figure())));
+  const double cell_m = 2.0 * std::numbers::pi * planet_.figure().radius_m / std::max(1, nx);
+  state_.emplace(std::make_shared<const Grid>(is_torus ? Grid::torus(nx, ny, cell_m, cell_m)
+                                                       : Grid::sphere(nx, ny, planet_.figure())));
   folder_.check_writable(prediction().disk_bytes);
 }
 
 void RunSession::read_initial_relief() {
+  if (settings_.topology != "sphere") {
+    throw ConfigurationError(
+        fmt::format("run.topology = {}: {} starts from a relief here, which brings its own grid: "
+                    "must be sphere, or the run must start with {}",
+                    settings_.topology, name_of(first_), name_of(0)));
+  }
   if (settings_.dem_file.empty()) {
     throw ConfigurationError(fmt::format(
         "{} needs a relief to start from: give one with --dem FILE[:VARIABLE], a NetCDF file of "
@@ -413,12 +423,14 @@ void RunSession::leave_out_island() {
   if (last_ < begin_ || !pipeline_.stages()[last_]->info().own_grid) return;
   if (grid().topology() == Topology::sphere) return;
   const std::string name(name_of(last_));
+  const std::string_view what = grid().topology() == Topology::torus
+                                    ? "a torus is none"
+                                    : "the relief covers a part of one";
   if (settings_.to == name || last_ == begin_) {
-    throw ConfigurationError(
-        fmt::format("stage {} needs a whole planet: the relief covers a part of one", name));
+    throw ConfigurationError(fmt::format("stage {} needs a whole planet: {}", name, what));
   }
   --last_;
-  note_ = fmt::format("no {}: the relief covers a part of a planet, not the whole", name);
+  note_ = fmt::format("no {}: it needs a whole planet, {}", name, what);
 }
 
 /// Whether the run as a whole has the stage in which events change the relief.

@@ -24,8 +24,13 @@ std::vector<Parameter> RunSettings::parameters() {
       integer("run.seed", seed, "1", 0, std::numeric_limits<std::int64_t>::max(),
               "seed of every random number", "design"),
       text("run.grid", grid,
-           "cells as WIDTHxHEIGHT; auto takes the relief's own size, 4096x2048 without one",
+           "cells as WIDTHxHEIGHT; auto takes the relief's own size, without one 4096x2048, of a torus "
+           "1024x1024",
            "design"),
+      choice("run.topology", topology, {"sphere", "torus"},
+             "a whole planet, or a tile as wide as the planet's girth whose opposite sides meet, "
+             "for plates.model = raster",
+             "design"),
       text("run.from", from, "first stage to run; empty is the first there is", "design"),
       text("run.to", to, "last stage to run; empty is the last there is", "design"),
       text("dem.file", dem_file,

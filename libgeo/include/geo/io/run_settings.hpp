@@ -22,6 +22,7 @@ struct GridSize {
 struct RunSettings {
   std::int64_t seed = 1;
   std::string grid = "auto";
+  std::string topology = "sphere";
   std::string from;
   std::string to;
 

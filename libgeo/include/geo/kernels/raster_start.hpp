@@ -20,9 +20,11 @@ std::vector<float> seamless_noise(const RasterWorld& world, double cells_across,
 std::vector<RasterCrust> start_raster(const RasterWorld& world, double sea_share,
                                       double ocean_crust, double cells_across, std::uint64_t seed);
 
-/// Plates grown at random (Viitanen 2012, 7.4): from `plates` different cells at once, each takes
-/// in turn the free neighbours of one of its border cells, until all is taken. Returns the plate of
-/// each cell. `round` tells the cycles of one seed apart.
+/// Plates grown at random (Viitanen 2012, 7.4): from `plates` different places at once, each takes
+/// in turn the free neighbours of one of its border cells, until all is taken. They grow on a
+/// lattice of a fixed size, seen by each cell through a warp that bends outlines at scales below
+/// it: plates belong to places, and a finer map has the same. Returns the plate of each cell.
+/// `round` tells the cycles of one seed apart.
 std::vector<std::int16_t> grow_raster_plates(const RasterWorld& world, int plates,
                                              std::uint64_t seed, std::uint64_t round);
 

@@ -85,7 +85,7 @@ class RasterTectonics {
   [[nodiscard]] RasterCycle::Motion motion() const;
   void meet_along(int world_row);
   void meet(const Meeting& meeting, int world_row, Row& events);
-  void subduct(int below, int above, std::int32_t place, int column, int row, Row& events);
+  void subduct(int below, int above, std::int32_t place, int column, Row& events);
   void fold(int a, std::int32_t place_a, int b, std::int32_t place_b, int column, int row,
             Row& events);
   [[nodiscard]] std::int32_t arc_place(const Subduction& event, int row,

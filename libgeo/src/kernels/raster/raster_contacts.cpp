@@ -74,11 +74,11 @@ void RasterTectonics::meet(const Meeting& meeting, int world_row, Row& events) {
   const RasterCrust& top = plates_[other].crust(other_place);
   switch (raster_meeting(top, crust)) {
     case RasterMeeting::second_sinks:
-      subduct(plate, other, place, column, world_row, events);
+      subduct(plate, other, place, column, events);
       if (!(crust.height > 0.0F)) return;
       break;
     case RasterMeeting::first_sinks:
-      subduct(other, plate, other_place, column, world_row, events);
+      subduct(other, plate, other_place, column, events);
       if (!(top.height > 0.0F)) {
         owner = plate;
         return;
@@ -89,8 +89,7 @@ void RasterTectonics::meet(const Meeting& meeting, int world_row, Row& events) {
   fold(plate, place, other, other_place, column, world_row, events);
 }
 
-void RasterTectonics::subduct(int below, int above, std::int32_t place, int column, int row,
-                              Row& events) {
+void RasterTectonics::subduct(int below, int above, std::int32_t place, int column, Row& events) {
   RasterCrust crust = plates_[below].crust(place);
   const float before = crust.height;
   const auto [after, melt] =

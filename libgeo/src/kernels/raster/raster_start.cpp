@@ -53,7 +53,9 @@ std::vector<float> seamless_noise(const RasterWorld& world, double cells_across,
                                   int octaves, std::uint64_t seed) {
   const RandomStream random(seed, "raster.terrain");
   std::vector<float> noise(world.size(), 0.0F);
+  // Over what all octaves may reach, also those too fine for this map: a finer one has them, too.
   double amplitude = 1.0, sum = 0.0;
+  for (int k = 0; k < octaves; ++k) sum += std::pow(gain, k);
   for (int k = 0; k < octaves; ++k, amplitude *= gain) {
     const double across = cells_across * std::exp2(k);
     const int nx = std::max(1, static_cast<int>(std::lround(across)));
@@ -68,7 +70,6 @@ std::vector<float> seamless_noise(const RasterWorld& world, double cells_across,
           v, world.columns, static_cast<float>(amplitude),
           std::span(noise).subspan(static_cast<std::size_t>(row) * world.columns, world.columns));
     }
-    sum += amplitude;
   }
   for (float& value : noise) value = static_cast<float>(value / sum);
   return noise;
@@ -98,18 +99,17 @@ std::vector<RasterCrust> start_raster(const RasterWorld& world, double sea_share
   return crust;
 }
 
-std::vector<std::int16_t> grow_raster_plates(const RasterWorld& world, int plates,
-                                             std::uint64_t seed, std::uint64_t round) {
-  if (plates < 1 || plates > 32767 || plates > world.size()) {
-    throw ConfigurationError("raster plates: 1 to 32767, no more than cells, not " +
-                             std::to_string(plates));
-  }
+namespace {
+
+/// Grows plates on a lattice from random places of it.
+std::vector<std::int16_t> grow(const RasterWorld& lattice, int plates, std::uint64_t seed,
+                               std::uint64_t round) {
   const RandomStream random(seed, "raster.growth");
   std::uint64_t draw = 0;
   const auto below = [&](std::size_t count) {
     return static_cast<std::size_t>((std::uint64_t{random.words(draw++, round)[0]} * count) >> 32);
   };
-  std::vector<std::int16_t> plate(world.size(), -1);
+  std::vector<std::int16_t> plate(lattice.size(), -1);
   std::vector<std::vector<std::int32_t>> border(plates);
   for (int p = 0; p < plates; ++p) {
     std::int32_t cell = 0;
@@ -128,11 +128,11 @@ std::vector<std::int16_t> grow_raster_plates(const RasterWorld& world, int plate
       const std::int32_t cell = border[p][pick];
       border[p][pick] = border[p].back();
       border[p].pop_back();
-      const int x = cell % world.columns, y = cell / world.columns;
-      const std::int32_t row = y * world.columns;
+      const int x = cell % lattice.columns, y = cell / lattice.columns;
+      const std::int32_t row = y * lattice.columns;
       for (const std::int32_t next :
-           {world.row(y + 1) * world.columns + x, world.row(y - 1) * world.columns + x,
-            row + world.column(x - 1), row + world.column(x + 1)}) {
+           {lattice.row(y + 1) * lattice.columns + x, lattice.row(y - 1) * lattice.columns + x,
+            row + lattice.column(x - 1), row + lattice.column(x + 1)}) {
         if (plate[next] >= 0) continue;
         plate[next] = static_cast<std::int16_t>(p);
         border[p].push_back(next);
@@ -140,6 +140,47 @@ std::vector<std::int16_t> grow_raster_plates(const RasterWorld& world, int plate
     }
   }
   return plate;
+}
+
+}  // namespace
+
+std::vector<std::int16_t> grow_raster_plates(const RasterWorld& world, int plates,
+                                             std::uint64_t seed, std::uint64_t round) {
+  if (plates < 1 || plates > 32767 || plates > world.size()) {
+    throw ConfigurationError("raster plates: 1 to 32767, no more than cells, not " +
+                             std::to_string(plates));
+  }
+  constexpr double kPlaces = 9000.0, kPlacesOfAPlate = 60.0;
+  const double shape = static_cast<double>(world.rows) / world.columns;
+  const double places = std::max(kPlaces, kPlacesOfAPlate * plates);
+  const int across = std::max(1, static_cast<int>(std::lround(std::sqrt(places / shape))));
+  const RasterWorld lattice{across,
+                            std::max(1, static_cast<int>(std::lround(places / across)))};
+  const std::vector<std::int16_t> plate = grow(lattice, plates, seed, round);
+  // Outlines bend at scales below the lattice's.
+  constexpr double kMost = 2.2, kWavelength = 9.0;  // cells of the lattice
+  constexpr int kOctaves = 6;
+  constexpr double kGain = 0.55;
+  const RandomStream random(seed, "raster.bend");
+  const auto bend = [&](std::uint64_t component) {
+    const auto words = random.words(component);
+    return seamless_noise(world, lattice.columns / kWavelength, kGain, kOctaves,
+                          std::uint64_t{words[0]} << 32 | words[1]);
+  };
+  const std::vector<float> east = bend(0), north = bend(1);
+  std::vector<std::int16_t> seen(world.size());
+#pragma omp parallel for schedule(static)
+  for (int y = 0; y < world.rows; ++y) {
+    for (int x = 0; x < world.columns; ++x) {
+      const std::size_t cell = static_cast<std::size_t>(y) * world.columns + x;
+      const double u = (x + 0.5) * lattice.columns / world.columns + kMost * east[cell];
+      const double v = (y + 0.5) * lattice.rows / world.rows + kMost * north[cell];
+      seen[cell] = plate[static_cast<std::size_t>(lattice.row(static_cast<int>(std::floor(v)))) *
+                             lattice.columns +
+                         lattice.column(static_cast<int>(std::floor(u)))];
+    }
+  }
+  return seen;
 }
 
 }  // namespace geo

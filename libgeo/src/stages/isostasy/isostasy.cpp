@@ -10,6 +10,7 @@
 #include "given_crust.hpp"
 #include "land_detail.hpp"
 #include "sea_floor_fabric.hpp"
+#include "torus_crust.hpp"
 
 namespace geo {
 namespace {
@@ -133,10 +134,12 @@ class IsostasyStage final : public Stage {
   [[nodiscard]] std::vector<Parameter> parameters() override { return parameters_.declarations(); }
 
   void run(StageIo& io, Context& context) const override {
-    if (io.grid().topology() != Topology::sphere) {
-      throw InputError("isostasy: the grid must be a whole sphere");
+    const bool on_torus = io.grid().topology() == Topology::torus;
+    if (io.grid().topology() == Topology::plane) {
+      throw InputError("isostasy: the grid must be a whole sphere or a torus");
     }
     const Crust<float> crust = open_crust(parameters_, io, context);
+    if (on_torus) return settle_torus(crust, context);
     const CoarseGrid coarse(crust.grid);
     float_crust(crust, coarse, context);
     context.advance(0.8);
@@ -152,6 +155,15 @@ class IsostasyStage final : public Stage {
   }
 
  private:
+  static void settle_torus(const Crust<float>& crust, Context& context) {
+    take_torus_crust(crust);
+    context.advance(0.8);
+    const float level_m = level_of_sea_m(crust);
+    fill_sea(crust, level_m);
+    context.budget["sea_level_shift_m"] = level_m;
+    classify_rock(crust);
+    report(crust, context.budget);
+  }
   [[nodiscard]] bool follows_exemplars() const { return parameters_.detail == "exemplars"; }
 
   static void detail_land_like_exemplars(const Crust<float>& crust, const CoarseGrid& coarse,

@@ -63,6 +63,17 @@ RasterSettings settings_of(const PlatesParameters& parameters, double width_km) 
   return s;
 }
 
+/// A tile is not stretched.
+void check_shape(const Grid& grid, const RasterParameters& p) {
+  const double height = grid.ny() * grid.step_north_m() / (grid.nx() * grid.spacing_east_m(0));
+  const double rows = height * static_cast<double>(p.columns);
+  if (std::abs(rows - static_cast<double>(p.rows)) < 0.5) return;
+  throw ConfigurationError("plates.map_rows = " + std::to_string(p.rows) +
+                           ": must be as high over plates.map_columns = " +
+                           std::to_string(p.columns) + " as the torus, " +
+                           std::to_string(std::lround(rows)) + " for this grid");
+}
+
 template <class Model>
 void report(const Model& model, Budget& budget) {
   const RasterBudget& sums = model.budget();
@@ -105,6 +116,7 @@ void collide_rasters(const PlatesParameters& parameters, StageIo& io, Context& c
   const bool on_torus = grid.topology() == Topology::torus;
   const double width_km = on_torus ? 1e-3 * grid.nx() * grid.spacing_east_m(0)
                                    : 2e-3 * std::numbers::pi * grid.figure().radius_m;
+  if (on_torus) check_shape(grid, parameters.raster);
   RasterScale scale;
   scale.cell_km = width_km / static_cast<double>(parameters.raster.columns);
   scale.step_myr = parameters.sphere.law.step_myr;
