@@ -118,7 +118,9 @@ TEST(RasterSphere, PlatesFillTheSphere) {
 TEST(RasterSphere, IsTheSameForAnyNumberOfThreads) {
   const auto run = [](int threads) {
     omp_set_num_threads(threads);
-    World world(small(), 5);
+    RasterSettings settings = small(400);  // large enough for threads to share steps
+    settings.cycle_steps = 12;
+    World world(settings, 5);
     world.run();
     return heights(world.model);
   };

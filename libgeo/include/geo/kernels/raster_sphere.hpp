@@ -134,6 +134,7 @@ class RasterSphere {
   RasterBudget budget_;
   RasterCycle cycle_;
   bool over_ = false;
+  bool pays_ = true;  // to wait for other threads in each step: not on small lattices
 };
 
 }  // namespace geo

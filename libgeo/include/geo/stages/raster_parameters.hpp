@@ -8,7 +8,7 @@
 namespace geo {
 
 /// Settings of plates.model = "raster" beyond those that models share. Lengths are shares of the
-/// width of the map, so that a finer map shows the same world.
+/// width of the map.
 struct RasterParameters {
   RasterSettings model;
   std::int64_t columns = 512, rows = 512;

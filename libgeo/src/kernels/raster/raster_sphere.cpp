@@ -43,6 +43,8 @@ RasterSphere::RasterSphere(const SphereMesh& mesh, const RasterSettings& setting
       cell_rad_(2.0 * kPi / settings.world.columns),
       page_(pages_.count()) {
   check(settings_);
+  constexpr std::int32_t kPays = 50'000;  // samples
+  pays_ = mesh.size() >= kPays;
   std::vector<RasterCrust> crust =
       start_raster_sphere(mesh.samples(), settings_.sea_share, settings_.ocean_crust,
                           settings_.continents_across, seed_);
@@ -127,7 +129,7 @@ bool RasterSphere::advance() {
 
 void RasterSphere::move() {
   constexpr int kTighten = 32;
-#pragma omp parallel for schedule(dynamic, 1)
+#pragma omp parallel for schedule(dynamic, 1) if (pays_)
   for (int p = 0; p < static_cast<int>(plates_.size()); ++p) {
     RasterSpherePlate& plate = plates_[p];
     if (!plate.alive) continue;
@@ -199,7 +201,7 @@ void RasterSphere::meet() {
   std::swap(owner_, previous_);
   std::vector<std::vector<Crowd>> crowds(pages_.count());
   std::vector<std::vector<std::int32_t>> gaps(pages_.count());
-#pragma omp parallel for schedule(dynamic, 8)
+#pragma omp parallel for schedule(dynamic, 8) if (pays_)
   for (std::int32_t number = 0; number < pages_.count(); ++number) {
     const auto samples = pages_.samples(number);
     Page& page = page_[number];

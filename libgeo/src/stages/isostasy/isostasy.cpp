@@ -1,5 +1,8 @@
 #include "geo/stages/isostasy.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "../guided_by_folds.hpp"
 #include "blueprint_crust.hpp"
 #include "geo/core/error.hpp"
@@ -89,6 +92,34 @@ void settle(const Crust<float>& crust, Budget& budget) {
   }
 }
 
+/// Whether continents settle about a floor that lies as deep as its age: plates that made the crust
+/// have put it there, and the sea covers a share of the area.
+bool settles_about_floor(const IsostasyParameters& p, const Planet& planet) {
+  return p.crust == "simulated" && p.ocean_depth_m <= 0.0 && planet.sea_level == "fraction";
+}
+
+/// All continental crust rises or sinks until the sea that covers its share stands at the datum
+/// from which the floor's depth counts.
+void settle_about_floor(const Crust<float>& crust, Budget& budget) {
+  constexpr int kMost = 8;
+  constexpr float kMet_m = 1.0F;
+  const auto density = crust.densities();
+  const double thickening = 1.0 / (1.0 - density.continental_crust / density.mantle);
+  double& all_m = budget["continental_rise_m"];
+  for (int time = 0; time < kMost; ++time) {
+    const float rise_m = -level_of_sea_m(crust);
+    if (std::abs(rise_m) < kMet_m) break;
+    all_m += rise_m;
+#pragma omp parallel for schedule(static)
+    for (Index cell = 0; cell < crust.grid.size(); ++cell) {
+      const float share = crust.fraction[cell];
+      crust.elevation_m[cell] += rise_m * share;
+      crust.thickness_m[cell] = static_cast<float>(
+          std::clamp(crust.thickness_m[cell] + thickening * rise_m * share, 3e3, 80e3));
+    }
+  }
+}
+
 void report(const Crust<float>& crust, Budget& budget) {
   const Grid& grid = crust.grid;
   double continental = 0.0, volume = 0.0, all_crust = 0.0;
@@ -144,6 +175,7 @@ class IsostasyStage final : public Stage {
     float_crust(crust, coarse, context);
     context.advance(0.8);
     if (settles_continents(parameters_, crust.planet)) settle(crust, context.budget);
+    if (settles_about_floor(parameters_, crust.planet)) settle_about_floor(crust, context.budget);
     const float level_m = level_of_sea_m(crust);
     fill_sea(crust, level_m);
     context.budget["sea_level_shift_m"] = level_m;
