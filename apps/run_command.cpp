@@ -27,7 +27,8 @@ namespace fs = std::filesystem;
 
 /// The command line of `run` as it was typed.
 struct RunOptions {
-  std::string config, folder = "out", preset, seed, grid, topology, dem, exemplars, from, to, threads;
+  std::string config, folder = "out", preset, seed, grid, topology, dem, exemplars, from, to,
+                      threads;
   std::vector<std::string> assignments;
   bool resume = false, overwrite = false, dry_run = false;
   bool quiet = false, log_json = false, no_vtk = false, no_maps = false;

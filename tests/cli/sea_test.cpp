@@ -55,13 +55,15 @@ class Sea : public testing::Test {
   /// Runs to biomes with a table of heights; says the sea of each relief on the way.
   std::vector<double> seas(const char* table, const Words& more) {
     std::ofstream(folder_ / "heights.csv") << table;
-    Words arguments{"run",       "--preset",     "hypsography",
-                    "-o",        out_.string(),  "--to",
-                    "biomes",    "--grid",       "96x48",
-                    "--no-maps", "--no-vtk",     "--quiet",
-                    "--set",     "erosion.steps=8", "--set",
-                    "climate.resolution_deg=10", "--set",
-                    "fields.hypsography=" + (folder_ / "heights.csv").string()};
+    Words arguments{"run",         "--preset",
+                    "hypsography", "-o",
+                    out_.string(), "--to",
+                    "biomes",      "--grid",
+                    "96x48",       "--no-maps",
+                    "--no-vtk",    "--quiet",
+                    "--set",       "erosion.steps=8",
+                    "--set",       "climate.resolution_deg=10",
+                    "--set",       "fields.hypsography=" + (folder_ / "heights.csv").string()};
     for (const std::string& setting : more) arguments.insert(arguments.end(), {"--set", setting});
     const Outcome outcome = terrane(arguments);
     EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -111,9 +113,9 @@ TEST_F(Sea, IsNotWhereATableHasNone) {
     // Life and weather go on without a sea: all that is land has a biome, and numbers are numbers.
     for (const char* name : {"temperature", "precipitation"}) {
       const auto values = values_of(out_ / "04-climate.nc", name);
-      EXPECT_TRUE(std::all_of(values.begin(), values.end(),
-                              [](float value) { return std::isfinite(value); }))
-          << name;
+      EXPECT_TRUE(std::all_of(values.begin(), values.end(), [](float value) {
+        return std::isfinite(value);
+      })) << name;
     }
     const auto biome = values_of(out_ / "06-biomes.nc", "biome");
     EXPECT_TRUE(std::none_of(biome.begin(), biome.end(), [](float id) { return id == 0.0F; }));

@@ -1,9 +1,9 @@
 // The rules of plates as height maps (Viitanen 2012, 7.4), each by itself.
+#include "geo/kernels/raster_rules.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
-
-#include "geo/kernels/raster_rules.hpp"
 
 namespace geo {
 namespace {

@@ -1,4 +1,6 @@
 // Plates as height maps on a sphere.
+#include "geo/kernels/raster_sphere.hpp"
+
 #include <gtest/gtest.h>
 #include <omp.h>
 
@@ -8,7 +10,6 @@
 #include <numeric>
 
 #include "geo/core/error.hpp"
-#include "geo/kernels/raster_sphere.hpp"
 
 namespace geo {
 namespace {
@@ -227,7 +228,8 @@ Belts belts_of(const World& world) {
     for (const std::int32_t j : world.mesh.neighbours(i)) {
       all[belt] += 1.0;
       belts.plates[belt] += map.plate[i] != map.plate[j] ? 1.0 : 0.0;
-      belts.coasts[belt] += (map.crust[i].height < 1.0F) != (map.crust[j].height < 1.0F) ? 1.0 : 0.0;
+      belts.coasts[belt] +=
+          (map.crust[i].height < 1.0F) != (map.crust[j].height < 1.0F) ? 1.0 : 0.0;
     }
   }
   for (std::size_t belt = 0; belt < 6; ++belt) {

@@ -93,12 +93,11 @@ Shore shore_of(const Hypsography& curve) {
 
 /// Moves a curve up or down so that a share of the area lies below 0.
 void move_shore(Hypsography& curve, double share) {
-  const auto above =
-      std::upper_bound(curve.fraction.begin() + 1, curve.fraction.end() - 1, share);
+  const auto above = std::upper_bound(curve.fraction.begin() + 1, curve.fraction.end() - 1, share);
   const auto k = above - curve.fraction.begin();
-  const double level_m = std::lerp(
-      curve.elevation_m[k - 1], curve.elevation_m[k],
-      (share - curve.fraction[k - 1]) / (curve.fraction[k] - curve.fraction[k - 1]));
+  const double level_m =
+      std::lerp(curve.elevation_m[k - 1], curve.elevation_m[k],
+                (share - curve.fraction[k - 1]) / (curve.fraction[k] - curve.fraction[k - 1]));
   for (double& height_m : curve.elevation_m) height_m -= level_m;
 }
 

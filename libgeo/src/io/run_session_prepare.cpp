@@ -423,9 +423,8 @@ void RunSession::leave_out_island() {
   if (last_ < begin_ || !pipeline_.stages()[last_]->info().own_grid) return;
   if (grid().topology() == Topology::sphere) return;
   const std::string name(name_of(last_));
-  const std::string_view what = grid().topology() == Topology::torus
-                                    ? "a torus is none"
-                                    : "the relief covers a part of one";
+  const std::string_view what =
+      grid().topology() == Topology::torus ? "a torus is none" : "the relief covers a part of one";
   if (settings_.to == name || last_ == begin_) {
     throw ConfigurationError(fmt::format("stage {} needs a whole planet: {}", name, what));
   }

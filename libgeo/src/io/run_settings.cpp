@@ -24,7 +24,8 @@ std::vector<Parameter> RunSettings::parameters() {
       integer("run.seed", seed, "1", 0, std::numeric_limits<std::int64_t>::max(),
               "seed of every random number", "design"),
       text("run.grid", grid,
-           "cells as WIDTHxHEIGHT; auto takes the relief's own size, without one 4096x2048, of a torus "
+           "cells as WIDTHxHEIGHT; auto takes the relief's own size, without one 4096x2048, of a "
+           "torus "
            "1024x1024",
            "design"),
       choice("run.topology", topology, {"sphere", "torus"},
@@ -54,7 +55,8 @@ std::vector<Parameter> RunSettings::parameters() {
       choice(
           "fields.hypsography_ocean", hypsography_ocean, {"planet", "curve"},
           "its parts below and above 0 are mixed so that planet.ocean_fraction lies below (where "
-          "planet.sea_level is fraction), or it is taken as it stands and its 0 is the sea of all stages",
+          "planet.sea_level is fraction), or it is taken as it stands and its 0 is the sea of all "
+          "stages",
           "davidson2013"),
       text("fields.ranking", ranking,
            "FILE[:VARIABLE] of any unit, a mask or a relief, that orders places by height where "

@@ -28,8 +28,8 @@ enum class RasterMeeting { first_sinks, second_sinks, both_stay };
   return first.height < 1.0F ? RasterMeeting::first_sinks : RasterMeeting::both_stay;
 }
 
-/// What a step takes from crust that goes down: `floor` at most. Of it r (1 - h) melts: water on top
-/// is what melts the mantle, so that the deeper what goes down, the more comes up.
+/// What a step takes from crust that goes down: `floor` at most. Of it r (1 - h) melts: water on
+/// top is what melts the mantle, so that the deeper what goes down, the more comes up.
 struct RasterSinking {
   float after, melt;
 };
@@ -81,10 +81,10 @@ inline void raster_fold(RasterCrust& smaller, RasterCrust& larger, double ratio,
 class RasterCycle {
  public:
   struct Limits {
-    double speed;         ///< mean speed that is too little
-    double momentum;      ///< share of the peak of the sum of momenta that is too little
-    int quiet;            ///< steps without continents meeting that are too many
-    int steps;            ///< most
+    double speed;     ///< mean speed that is too little
+    double momentum;  ///< share of the peak of the sum of momenta that is too little
+    int quiet;        ///< steps without continents meeting that are too many
+    int steps;        ///< most
   };
   struct Motion {
     double speed = 0.0, momentum = 0.0;  ///< sums over plates

@@ -34,9 +34,9 @@ std::vector<std::int16_t> grow_raster_sphere_plates(const FibonacciSphere& sampl
 /// where plates turn about poles instead of sliding over a torus, so that no place and no latitude
 /// is another's edge.
 ///
-/// Each plate has a lattice of its own that turns with it. What a plate has at a sample of the world
-/// is what it has at its own sample nearest to that place: plates that part never overlap, and
-/// plates that meet do so where they do. `world.columns` cells go once round the equator, which
+/// Each plate has a lattice of its own that turns with it. What a plate has at a sample of the
+/// world is what it has at its own sample nearest to that place: plates that part never overlap,
+/// and plates that meet do so where they do. `world.columns` cells go once round the equator, which
 /// gives the lattice its size and lengths their scale; `world.rows` means nothing here.
 ///
 /// Mass is conserved but for new floor, what is subducted and does not rise, and what reading all

@@ -135,7 +135,7 @@ class RasterSpherePlate {
   }
 
   const LatticePages* pages_;
-  std::vector<std::int32_t> base_;  ///< of each page, or -1
+  std::vector<std::int32_t> base_;   ///< of each page, or -1
   std::vector<std::int32_t> empty_;  ///< cells of each open page without crust
   std::vector<std::int32_t> over_;   ///< page of the world at which each was last
   std::vector<std::int32_t> open_;

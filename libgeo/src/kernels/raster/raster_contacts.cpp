@@ -84,7 +84,8 @@ void RasterTectonics::meet(const Meeting& meeting, int world_row, Row& events) {
         return;
       }
       break;
-    case RasterMeeting::both_stay: break;
+    case RasterMeeting::both_stay:
+      break;
   }
   fold(plate, place, other, other_place, column, world_row, events);
 }
@@ -92,8 +93,7 @@ void RasterTectonics::meet(const Meeting& meeting, int world_row, Row& events) {
 void RasterTectonics::subduct(int below, int above, std::int32_t place, int column, Row& events) {
   RasterCrust crust = plates_[below].crust(place);
   const float before = crust.height;
-  const auto [after, melt] =
-      raster_sinking(before, settings_.ocean_crust, settings_.melting_ratio);
+  const auto [after, melt] = raster_sinking(before, settings_.ocean_crust, settings_.melting_ratio);
   crust.height = after;
   plates_[below].set(place, crust);
   events.subductions.push_back({column, static_cast<std::int16_t>(below),
@@ -118,10 +118,10 @@ void RasterTectonics::fold(int a, std::int32_t place_a, int b, std::int32_t plac
   RasterPlate& to = plates_[large.plate];
   RasterCrust source = from.crust(small.place), target = to.crust(large.place);
   const float before = source.height, other_before = target.height;
-  raster_fold(source, target,
-              settings_.of(small.plate, &RasterPlateSettings::folding_ratio,
-                           settings_.folding_ratio),
-              budget_.steps);
+  raster_fold(
+      source, target,
+      settings_.of(small.plate, &RasterPlateSettings::folding_ratio, settings_.folding_ratio),
+      budget_.steps);
   const float after = source.height, other_after = target.height;
   from.set(small.place, source);
   to.set(large.place, target);

@@ -74,8 +74,8 @@ void RasterSphere::divide(std::vector<RasterCrust> crust) {
                          settings_.of(p, &RasterPlateSettings::speed, 1.0) *
                          random.uniform(p, draw + 1, 1.0 - spread, 1.0 + spread);
     // Any direction across the centre is the axis of a motion there.
-    const Vector3 side = std::abs(plate.centre[2]) < 0.9 ? Vector3{0.0, 0.0, 1.0}
-                                                         : Vector3{1.0, 0.0, 0.0};
+    const Vector3 side =
+        std::abs(plate.centre[2]) < 0.9 ? Vector3{0.0, 0.0, 1.0} : Vector3{1.0, 0.0, 0.0};
     const Vector3 axis = rotated(normalised(cross(plate.centre, side)),
                                  scaled(plate.centre, 2.0 * kPi * random.uniform(p, draw)));
     plate.rotation = add(scaled(axis, speed), plate.centre,
@@ -167,9 +167,8 @@ bool RasterSphere::is_calm(std::int32_t page) const {
   const std::int16_t plate = page_[page].plates.front();
   const Vector3 middle = back(turn_[plate], pages_.middles().position(page));
   bool is_full = true;
-  pages_.pages_about(middle, pages_.middles().nearest(middle), [&](std::int32_t own) {
-    is_full = is_full && plates_[plate].is_full(own);
-  });
+  pages_.pages_about(middle, pages_.middles().nearest(middle),
+                     [&](std::int32_t own) { is_full = is_full && plates_[plate].is_full(own); });
   return is_full;
 }
 
@@ -264,7 +263,8 @@ void RasterSphere::meet_at(const Crowd& crowd) {
           continue;
         }
         break;
-      case RasterMeeting::both_stay: break;
+      case RasterMeeting::both_stay:
+        break;
     }
     const auto area = [&](const Seat& seat) {
       const RasterSpherePlate& plate = plates_[seat.plate];
@@ -318,11 +318,12 @@ void RasterSphere::raise_arcs() {
     const Vector3 offset = raster_arc_offset(cross(plates_[arc.below].rotation, place),
                                              cross(plates_[arc.above].rotation, place), reach);
     const auto words = random.words(budget_.steps, arc.at);
-    const Vector3 aside = std::abs(place[2]) < 0.9 ? Vector3{0.0, 0.0, 1.0} : Vector3{1.0, 0.0, 0.0};
+    const Vector3 aside =
+        std::abs(place[2]) < 0.9 ? Vector3{0.0, 0.0, 1.0} : Vector3{1.0, 0.0, 0.0};
     const Vector3 x = normalised(cross(aside, place)), y = cross(place, x);
-    const Vector3 target = normalised(
-        add(add(add(place, offset), x, scatter * raster_scatter(words[0])), y,
-            scatter * raster_scatter(words[1])));
+    const Vector3 target =
+        normalised(add(add(add(place, offset), x, scatter * raster_scatter(words[0])), y,
+                       scatter * raster_scatter(words[1])));
     RasterSpherePlate& above = plates_[arc.above];
     const std::int32_t sample = own_sample(arc.above, target, arc.from);
     RasterCrust crust = above.crust(sample);
@@ -339,9 +340,9 @@ void RasterSphere::slow_down() {
   for (std::size_t p = 0; p < plates_.size(); ++p) {
     RasterSpherePlate& plate = plates_[p];
     if (!plate.alive || folded_[p] == 0.0) continue;
-    plate.rotation = scaled(
-        plate.rotation, raster_speed_left(plate.speed() / cell_rad_, folded_[p], plate.mass,
-                                          settings_.friction, settings_.speed));
+    plate.rotation =
+        scaled(plate.rotation, raster_speed_left(plate.speed() / cell_rad_, folded_[p], plate.mass,
+                                                 settings_.friction, settings_.speed));
   }
   cycle_.note(met_);
 }
@@ -477,7 +478,8 @@ RasterMap RasterSphere::map() const {
   // Where all that was there has just gone down or moved on there is new floor, as in a gap.
   for (RasterCrust& crust : map.crust) {
     if (crust.height > 0.0F) continue;
-    crust = {static_cast<float>(settings_.ocean_crust), static_cast<std::int16_t>(budget_.steps), 0};
+    crust = {static_cast<float>(settings_.ocean_crust), static_cast<std::int16_t>(budget_.steps),
+             0};
   }
   return map;
 }

@@ -19,7 +19,8 @@ double cos_inner(const SphereMesh& mesh) {
   double least = 1.0;
   for (std::int32_t i = 0; i < mesh.size(); ++i) {
     for (const std::int32_t j : mesh.neighbours(i)) {
-      least = std::min(least, angle_between(mesh.samples().position(i), mesh.samples().position(j)));
+      least =
+          std::min(least, angle_between(mesh.samples().position(i), mesh.samples().position(j)));
     }
   }
   return std::cos(0.5 * least);
@@ -77,8 +78,8 @@ void LatticePages::list_pages_about(double distance) {
   }
 }
 
-std::int32_t LatticePages::nearest_in(const SphereMesh& mesh, double cos_inner,
-                                      const Vector3& unit, std::int32_t from) {
+std::int32_t LatticePages::nearest_in(const SphereMesh& mesh, double cos_inner, const Vector3& unit,
+                                      std::int32_t from) {
   const FibonacciSphere& samples = mesh.samples();
   double best = dot(samples.position(from), unit);
   for (std::int32_t at = from; best < cos_inner; from = at) {

@@ -154,8 +154,7 @@ std::vector<std::int16_t> grow_raster_plates(const RasterWorld& world, int plate
   const double shape = static_cast<double>(world.rows) / world.columns;
   const double places = std::max(kPlaces, kPlacesOfAPlate * plates);
   const int across = std::max(1, static_cast<int>(std::lround(std::sqrt(places / shape))));
-  const RasterWorld lattice{across,
-                            std::max(1, static_cast<int>(std::lround(places / across)))};
+  const RasterWorld lattice{across, std::max(1, static_cast<int>(std::lround(places / across)))};
   const std::vector<std::int16_t> plate = grow(lattice, plates, seed, round);
   // Outlines bend at scales below the lattice's.
   constexpr double kMost = 2.2, kWavelength = 9.0;  // cells of the lattice

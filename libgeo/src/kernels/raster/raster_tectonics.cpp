@@ -161,8 +161,8 @@ std::int32_t RasterTectonics::arc_place(const Subduction& event, int row,
   const RasterPlate& below = plates_[event.below];
   const RasterPlate& above = plates_[event.above];
   const double reach = settings_.speed > 0.0 ? settings_.arc_cells / settings_.speed : 0.0;
-  const auto offset = raster_arc_offset<2>({below.east, below.north}, {above.east, above.north},
-                                           reach);
+  const auto offset =
+      raster_arc_offset<2>({below.east, below.north}, {above.east, above.north}, reach);
   const auto words = random.words(budget_.steps, row * settings_.world.columns + event.column);
   const double sx = settings_.arc_scatter_cells * raster_scatter(words[0]);
   const double sy = settings_.arc_scatter_cells * raster_scatter(words[1]);

@@ -40,7 +40,8 @@ std::vector<Parameter> IsostasyParameters::declarations() {
            "thickness of undisturbed continental crust", "laske2013"),
       real("isostasy.ocean_depth_m", ocean_depth_m, "m", 0.0, 20000.0,
            "mean depth of a sea given by its share, to which continental crust thickens or thins; "
-           "0: it is as thick as continental_km says, or, simulated, settles about a floor as deep as "
+           "0: it is as thick as continental_km says, or, simulated, settles about a floor as deep "
+           "as "
            "its age",
            "wise1974"),
       real("isostasy.oceanic_km", oceanic_km, "km", 1.0, 30.0, "thickness of oceanic crust",

@@ -32,8 +32,8 @@ void deform(const Crust<float>& crust, BoundaryType type, double length_km,
   for (Index cell = 0; cell < grid.size(); ++cell) {
     constexpr float kNone = 1e-6F;
     const float about = strength[cell] / std::max(count[cell], kNone);
-    deformation[cell] = std::clamp(
-        about * std::exp(-far_km[cell] / static_cast<float>(length_km)), 0.0F, 1.0F);
+    deformation[cell] =
+        std::clamp(about * std::exp(-far_km[cell] / static_cast<float>(length_km)), 0.0F, 1.0F);
   }
 }
 

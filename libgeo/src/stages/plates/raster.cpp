@@ -68,10 +68,10 @@ void check_shape(const Grid& grid, const RasterParameters& p) {
   const double height = grid.ny() * grid.step_north_m() / (grid.nx() * grid.spacing_east_m(0));
   const double rows = height * static_cast<double>(p.columns);
   if (std::abs(rows - static_cast<double>(p.rows)) < 0.5) return;
-  throw ConfigurationError("plates.map_rows = " + std::to_string(p.rows) +
-                           ": must be as high over plates.map_columns = " +
-                           std::to_string(p.columns) + " as the torus, " +
-                           std::to_string(std::lround(rows)) + " for this grid");
+  throw ConfigurationError(
+      "plates.map_rows = " + std::to_string(p.rows) +
+      ": must be as high over plates.map_columns = " + std::to_string(p.columns) +
+      " as the torus, " + std::to_string(std::lround(rows)) + " for this grid");
 }
 
 template <class Model>

@@ -87,8 +87,8 @@ class Smooth {
 
  private:
   void add_sample(const SphereMesh& mesh, const Vector3& place, std::int32_t sample) {
-    if (count_ == kMost || std::find(sample_.begin(), sample_.begin() + count_, sample) !=
-                               sample_.begin() + count_) {
+    if (count_ == kMost ||
+        std::find(sample_.begin(), sample_.begin() + count_, sample) != sample_.begin() + count_) {
       return;
     }
     constexpr double kReach = 2.0;
@@ -148,8 +148,7 @@ class Laying {
     const double ocean_crust = model_.settings().ocean_crust;
     const double thickness = raster_thickness_m(height, ocean_crust, scale_);
     crust.plate[i] = world_.plate[cell];
-    crust.elevation_m[i] =
-        static_cast<float>(raster_elevation_m(height, age, ocean_crust, scale_));
+    crust.elevation_m[i] = static_cast<float>(raster_elevation_m(height, age, ocean_crust, scale_));
     crust.thickness_m[i] = static_cast<float>(thickness);
     crust.continental[i] = thickness >= kContinental_m ? 1 : 0;
     crust.age_myr[i] = static_cast<float>(age);
@@ -188,14 +187,14 @@ class Laying {
 
 }  // namespace
 
-void lay_on_sphere(const PlatesParameters& parameters, const RasterSphere& model,
-                   RasterScale scale, StageIo& io, const Context& context) {
+void lay_on_sphere(const PlatesParameters& parameters, const RasterSphere& model, RasterScale scale,
+                   StageIo& io, const Context& context) {
   const FibonacciSphere samples(static_cast<std::int32_t>(parameters.samples));
   const SphereMesh mesh(samples);
   SphereSettings settings = parameters.sphere;
   settings.radius_km = 1e-3 * io.grid().figure().radius_m;
-  SphereTectonics planet(mesh, settings,
-                         Laying(parameters, model, scale, mesh, context).state(), context.seed);
+  SphereTectonics planet(mesh, settings, Laying(parameters, model, scale, mesh, context).state(),
+                         context.seed);
   // Pieces too small to be plates join their neighbours.
   planet.finish();
   constexpr double kWhole_m = 22e3;  // its plains are low and their crust thin
