@@ -2,14 +2,28 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "geo/core/error.hpp"
-#include "geo/kernels/convergent_margins.hpp"
+#include "geo/kernels/distance_to_coast.hpp"
 #include "geo/kernels/smoothing.hpp"
 
 namespace geo {
 namespace {
+
+/// Distance to the nearest marked cell, km; very far where there is none.
+std::vector<float> distance_to_km(const Grid& grid, std::span<const std::uint8_t> marked) {
+  constexpr float kNone_km = 1e9F;
+  std::vector<float> distance(grid.size(), kNone_km), side(grid.size());
+  if (std::find(marked.begin(), marked.end(), 1) == marked.end()) return distance;
+  for (Index cell = 0; cell < grid.size(); ++cell) side[cell] = marked[cell] != 0 ? -1.0F : 1.0F;
+  distance_to_coast(grid, side, distance);
+  for (Index cell = 0; cell < grid.size(); ++cell) {
+    distance[cell] = marked[cell] != 0 ? 0.0F : 1e-3F * distance[cell];
+  }
+  return distance;
+}
 
 /// Strength of the boundaries of one type about each place, dying away over a length.
 void deform(const Crust<float>& crust, BoundaryType type, double length_km,
@@ -22,10 +36,7 @@ void deform(const Crust<float>& crust, BoundaryType type, double length_km,
     count[cell] = marked[cell];
     strength[cell] = marked[cell] != 0 ? crust.in.boundary_strength[cell] : 0.0F;
   }
-  if (std::find(marked.begin(), marked.end(), 1) == marked.end()) {
-    return std::fill(deformation.begin(), deformation.end(), 0.0F);
-  }
-  const std::vector<float> far_km = distance_to_marked_km(grid, marked);
+  const std::vector<float> far_km = distance_to_km(grid, marked);
   smooth(grid, count, 1e3 * length_km);
   smooth(grid, strength, 1e3 * length_km);
 #pragma omp parallel for schedule(static)
@@ -53,7 +64,7 @@ void take_torus_crust(const Crust<float>& crust) {
   for (Index cell = 0; cell < grid.size(); ++cell) {
     boundary[cell] = crust.in.boundary_type[cell] != 0;
   }
-  const std::vector<float> far_km = distance_to_marked_km(grid, boundary);
+  const std::vector<float> far_km = distance_to_km(grid, boundary);
   const auto weakness_km = static_cast<float>(p.weakness_length_km);
 #pragma omp parallel for schedule(static)
   for (Index cell = 0; cell < grid.size(); ++cell) {
