@@ -320,10 +320,24 @@ TEST(RasterTile, IsNotStretched) {
   EXPECT_THROW(laid(Grid::torus(128, 64, 80e3, 80e3), 4, quick()), ConfigurationError);
 }
 
-TEST(RasterTile, WritesAllThatItDeclaresAndHasNoSeam) {
+/// Mean over seeds of the steps at a column, against the mean of all columns.
+double mean_seam(int column) {
+  constexpr int kSeeds = 12;
+  double mean = 0.0;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    mean += seam(laid(Grid::torus(128, 128, 80e3, 80e3), seed, quick()), column) / kSeeds;
+  }
+  return mean;
+}
+
+TEST(RasterTile, HasNoSeamWhereItsSidesMeet) {
+  // One world has a coast there and another has not: as far from 1 as for planets' date line.
+  EXPECT_LT(mean_seam(0), 1.5);
+}
+
+TEST(RasterTile, WritesAllThatItDeclares) {
   const State state = laid(Grid::torus(128, 128, 80e3, 80e3), 4, quick());
   expect_sound(state);
-  EXPECT_LT(seam(state, 0), 2.0);
   const auto z = state.read(field::crust_elevation);
   const auto sea = std::count_if(z.begin(), z.end(), [](float value) { return value < 0.0F; });
   EXPECT_NEAR(static_cast<double>(sea) / static_cast<double>(z.size()), 0.71, 0.03);
