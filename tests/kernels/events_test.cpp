@@ -161,7 +161,7 @@ TEST(Rift, DistanceFromALineOfGreatCircles) {
     const double b = latitude_deg * kDegree, l = longitude_deg * kDegree;
     return {std::cos(b) * std::cos(l), std::cos(b) * std::sin(l), std::sin(b)};
   };
-  const GreatCircleLine line({at(0, 170), at(0, -160), at(40, -160)});
+  const GreatCirclePath line({at(0, 170), at(0, -160), at(40, -160)});
   EXPECT_NEAR(line.length(), 70.0 * kDegree, 1e-12);
   const auto beside = line.nearest(at(7, 179), 0.5);
   EXPECT_NEAR(beside.distance, 7.0 * kDegree, 1e-12);

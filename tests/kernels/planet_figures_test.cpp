@@ -287,7 +287,7 @@ TEST(DrainageFigures, LongestWayAndBasinsAreThoseOfAStraightRiver) {
     basin[c] = sea ? 0 : row == 2 ? (column < 8 ? 3 : 4) : row + 1;
     area[c] = 2e6 * (column + 1);
   }
-  const Drainage drainage{z, receiver, area};
+  const DrainedPlanet drainage{z, receiver, area};
   const auto length = longest_upstream_m(grid, drainage);
   EXPECT_FLOAT_EQ(length[grid.cell(10, 0)], 10000.0F);
   EXPECT_FLOAT_EQ(length[grid.cell(4, 2)], 4000.0F);

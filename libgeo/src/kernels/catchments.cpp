@@ -5,6 +5,7 @@
 #include <atomic>
 #include <limits>
 
+#include "geo/core/parallel_errors.hpp"
 #include "wide.hpp"
 
 namespace geo::detail {
@@ -227,17 +228,20 @@ std::vector<Pass> spanning_passes(const Grid& grid, std::span<const float> eleva
   if (catchments.pits.empty()) return {};
   const std::int32_t* leaf = catchments.leaf_of_cell.data();
   std::vector<PassKey> keys;
+  ParallelErrors errors;
 #pragma omp parallel
   {
     std::vector<PassKey> own;
-    std::vector<std::int32_t> code(grid.nx());
+    auto code = errors.make<std::vector<std::int32_t>>(grid.nx());
 #pragma omp for schedule(static)
     for (int j = 0; j < grid.ny(); ++j) {
-      passes_of_row(grid, elevation_m.data(), outlets.data(), leaf, j, code, own);
+      errors.guard(
+          [&] { passes_of_row(grid, elevation_m.data(), outlets.data(), leaf, j, code, own); });
     }
 #pragma omp critical
-    keys.insert(keys.end(), own.begin(), own.end());
+    errors.guard([&] { keys.insert(keys.end(), own.begin(), own.end()); });
   }
+  errors.rethrow();
   sort_keys(keys);
 
   std::vector<Pass> passes;

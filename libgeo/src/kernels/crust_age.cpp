@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "geo/core/parallel_errors.hpp"
 #include "wide.hpp"
 
 namespace geo {
@@ -170,17 +171,20 @@ std::vector<float> ocean_age_myr(const CubedSphere& mesh, std::span<const std::i
   std::vector<Ridges> ridges;
   for (auto& own : points) ridges.emplace_back(std::move(own));
   std::vector<float> age(mesh.size());
+  ParallelErrors errors;
 #pragma omp parallel
   {
     // Where the floor of the cell before came from: a guess that leaves out most of the rest.
-    std::vector<std::size_t> origin(plates, 0);
+    auto origin = errors.make<std::vector<std::size_t>>(plates, 0);
 #pragma omp for schedule(dynamic, 1024)
     for (std::int32_t cell = 0; cell < mesh.size(); ++cell) {
+      if (errors.any()) continue;
       const Ridges& own = ridges[plate[cell]];
       const double time = std::sqrt(least_time2(own, mesh.position(cell), origin[plate[cell]]));
       age[cell] = static_cast<float>(oldest_myr * std::tanh(time / oldest_myr));
     }
   }
+  errors.rethrow();
   return age;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "geo/core/error.hpp"
+#include "geo/core/parallel_errors.hpp"
 #include "tridiagonal.hpp"
 #include "zonal_waves.hpp"
 
@@ -40,15 +41,20 @@ class SplitDiffusion {
       (is_weak_along_row(row, strength) ? weak : strong).push_back(row);
     }
     const int count = static_cast<int>(strong.size());
+    ParallelErrors errors;
 #pragma omp parallel if (worth_threads())
     {
 #pragma omp for schedule(static) nowait
       for (std::size_t r = 0; r < weak.size(); ++r) exchange_along_row(weak[r], strength);
       const bool uniform = periodic && !has_marks();
-      TridiagonalBlock system(nx, periodic, uniform ? Couplings::lanes : Couplings::all);
-      std::vector<double> value(std::size_t(nx) * kLanes), stage(value.size());
+      auto made =
+          errors.make<TridiagonalBlock>(nx, periodic, uniform ? Couplings::lanes : Couplings::all);
+      auto value = errors.make<std::vector<double>>(std::size_t(nx) * kLanes);
+      auto stage = errors.make<std::vector<double>>(value.size());
 #pragma omp for schedule(static)
       for (int first = 0; first < count; first += kLanes) {
+        if (errors.any()) continue;
+        TridiagonalBlock& system = *made;
         std::array<int, kLanes> row;  // behind the last it is written again, alike
         std::array<Real*, kLanes> z;
         for (int k = 0; k < kLanes; ++k) {
@@ -65,6 +71,7 @@ class SplitDiffusion {
         }
       }
     }
+    errors.rethrow();
   }
 
   void solve_columns(double dt_yr) {
@@ -72,17 +79,24 @@ class SplitDiffusion {
     const bool periodic = grid_.topology() == Topology::torus;
     const double strength = stage_strength(dt_yr);
     if (is_weak_along_columns(strength)) return exchange_along_columns(strength);
+    ParallelErrors errors;
 #pragma omp parallel if (worth_threads())
     {
       const bool alike = !periodic && !has_marks();
-      TridiagonalBlock system(ny, periodic, alike ? Couplings::unknowns : Couplings::all);
+      auto made =
+          errors.make<TridiagonalBlock>(ny, periodic, alike ? Couplings::unknowns : Couplings::all);
       const std::size_t block = std::size_t(ny) * kLanes;
-      std::vector<double> values(kPanel / kLanes * block), stage(block);
+      auto values = errors.make<std::vector<double>>(kPanel / kLanes * block);
+      auto stage = errors.make<std::vector<double>>(block);
       const auto value = [&](int k) { return &values[k / kLanes * block + k % kLanes]; };
       // Without marked cells all columns are one and the same system.
-      if (!has_marks()) couple_columns(system, 0, strength);
+      errors.guard([&] {
+        if (!has_marks()) couple_columns(*made, 0, strength);
+      });
 #pragma omp for schedule(static)
       for (int p = 0; p < panels; ++p) {
+        if (errors.any()) continue;
+        TridiagonalBlock& system = *made;
         const int column = p * kPanel, width = std::min(kPanel, nx - column);
         for (int j = 0; j < ny; ++j) {
           const Real* from = &field_[std::size_t(j) * nx + column];
@@ -100,6 +114,7 @@ class SplitDiffusion {
         }
       }
     }
+    errors.rethrow();
   }
 
  private:

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <vector>
 
+#include "geo/core/parallel_errors.hpp"
+
 namespace geo {
 namespace {
 
@@ -26,15 +28,18 @@ class CoastLevels {
         levels_(2 * grid.ny() + 1),
         offset_(static_cast<std::size_t>(levels_) * grid.nx()),
         filled_(levels_, 0) {
+    ParallelErrors errors;
 #pragma omp parallel
     {
-      std::vector<std::uint8_t> coast(2 * grid.nx());
+      auto coast = errors.make<std::vector<std::uint8_t>>(2 * grid.nx());
 #pragma omp for schedule(static)
       for (int level = 0; level < levels_; ++level) {
+        if (errors.any()) continue;
         mark(level, elevation, coast);
         measure(level, coast);
       }
     }
+    errors.rethrow();
   }
 
   [[nodiscard]] int levels() const { return levels_; }
@@ -201,13 +206,16 @@ void transform(const Grid& grid, const Metric& metric, std::span<const float> el
   const int nx = grid.nx(), ny = grid.ny(), levels = coast.levels();
   constexpr int kBlock = 32;  // columns that share cache lines
   const int blocks = (nx + kBlock - 1) / kBlock;
+  ParallelErrors errors;
 #pragma omp parallel
   {
-    std::vector<Offset> offsets(static_cast<std::size_t>(levels) * kBlock);
-    std::vector<float> found(static_cast<std::size_t>(ny) * kBlock);
-    Hull hull(static_cast<std::size_t>(levels) * metric.copies());
+    auto offsets = errors.make<std::vector<Offset>>(static_cast<std::size_t>(levels) * kBlock);
+    auto found = errors.make<std::vector<float>>(static_cast<std::size_t>(ny) * kBlock);
+    auto made = errors.make<Hull>(static_cast<std::size_t>(levels) * metric.copies());
 #pragma omp for schedule(dynamic, 1)
     for (int block = 0; block < blocks; ++block) {
+      if (errors.any()) continue;
+      Hull& hull = *made;
       const int first = block * kBlock, width = std::min(kBlock, nx - first);
       for (int level = 0; level < levels; ++level) {
         if (!coast.filled(level)) continue;
@@ -237,6 +245,7 @@ void transform(const Grid& grid, const Metric& metric, std::span<const float> el
       }
     }
   }
+  errors.rethrow();
 }
 
 template <class Metric>

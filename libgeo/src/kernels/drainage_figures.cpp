@@ -22,7 +22,7 @@ void check_shape(const Grid& grid, std::size_t size, const char* what) {
   }
 }
 
-void check_shapes(const Grid& grid, const Drainage& drainage) {
+void check_shapes(const Grid& grid, const DrainedPlanet& drainage) {
   check_shape(grid, drainage.elevation_m.size(), "elevation");
   check_shape(grid, drainage.receiver.size(), "flow_receiver");
   check_shape(grid, drainage.area_m2.size(), "drainage_area");
@@ -37,17 +37,17 @@ double step_m(const Grid& grid, Index from, Index to) {
             std::to_string(from));
 }
 
-bool is_land(const Drainage& drainage, Index c) { return drainage.elevation_m[c] >= 0.0F; }
+bool is_land(const DrainedPlanet& drainage, Index c) { return drainage.elevation_m[c] >= 0.0F; }
 
 /// The last cell on land on the way to the sea, or the bottom of an endorheic basin.
-bool is_mouth(const Drainage& drainage, Index c) {
+bool is_mouth(const DrainedPlanet& drainage, Index c) {
   const Index to = drainage.receiver[c];
   return is_land(drainage, c) && (to == c || !is_land(drainage, to));
 }
 
 }  // namespace
 
-std::vector<float> longest_upstream_m(const Grid& grid, const Drainage& drainage) {
+std::vector<float> longest_upstream_m(const Grid& grid, const DrainedPlanet& drainage) {
   check_shapes(grid, drainage);
   std::vector<float> length(grid.size(), 0.0F);
   for (const Index c : downstream_order(drainage.receiver)) {
@@ -58,7 +58,7 @@ std::vector<float> longest_upstream_m(const Grid& grid, const Drainage& drainage
   return length;
 }
 
-double hack_exponent(const Grid& grid, const Drainage& drainage, double least_area_m2) {
+double hack_exponent(const Grid& grid, const DrainedPlanet& drainage, double least_area_m2) {
   const auto length = longest_upstream_m(grid, drainage);
   std::vector<double> log_area, log_length;
   for (Index c = 0; c < grid.size(); ++c) {
@@ -71,7 +71,7 @@ double hack_exponent(const Grid& grid, const Drainage& drainage, double least_ar
   return log_area.size() < kFewest ? kNaN : regression_slope(log_area, log_length);
 }
 
-HortonRatios horton_ratios(const Grid& grid, const Drainage& drainage,
+HortonRatios horton_ratios(const Grid& grid, const DrainedPlanet& drainage,
                            std::span<const std::int8_t> stream_order) {
   check_shapes(grid, drainage);
   check_shape(grid, stream_order.size(), "stream_order");
@@ -99,7 +99,7 @@ HortonRatios horton_ratios(const Grid& grid, const Drainage& drainage,
           std::exp(regression_slope(orders, area))};
 }
 
-Basins measure_basins(const Grid& grid, const Drainage& drainage,
+Basins measure_basins(const Grid& grid, const DrainedPlanet& drainage,
                       std::span<const std::int32_t> basin_id) {
   check_shapes(grid, drainage);
   check_shape(grid, basin_id.size(), "basin_id");

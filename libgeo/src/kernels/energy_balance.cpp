@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geo/core/error.hpp"
+#include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/insolation.hpp"
 #include "geo/kernels/thermodynamics.hpp"
 
@@ -177,11 +178,14 @@ template void solve_heat(const Grid&, const HeatProblem<std::complex<double>>&, 
 void gyre_heat(const Grid& grid, const EnergyBalance& model, std::span<const double> latitude_deg,
                std::span<const float> land_fraction, std::span<double> heat_w_m2) {
   const int nx = grid.nx();
+  ParallelErrors errors;
 #pragma omp parallel
   {
-    std::vector<double> west(nx), east(nx);
+    auto west = errors.make<std::vector<double>>(nx);
+    auto east = errors.make<std::vector<double>>(nx);
 #pragma omp for schedule(static)
     for (int j = 0; j < grid.ny(); ++j) {
+      if (errors.any()) continue;
       const double keep = std::exp(-grid.spacing_east_m(j) / (1000.0 * model.gyre_reach_km));
       const auto land = [&](int i) { return land_fraction[grid.cell(i, j)]; };
       double from_west = 0.0, from_east = 0.0;
@@ -200,6 +204,7 @@ void gyre_heat(const Grid& grid, const EnergyBalance& model, std::span<const dou
       }
     }
   }
+  errors.rethrow();
 }
 
 void solve_energy_balance(const Grid& grid, const EnergyBalance& model,

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "geo/core/error.hpp"
+#include "geo/core/parallel_errors.hpp"
 #include "geo/core/random.hpp"
 #include "wide.hpp"
 
@@ -140,26 +141,30 @@ void great_circle_noise(const Grid& grid, const GreatCircles& circles, std::span
       tiles.push_back({column, row, std::min(columns, grid.nx() - column), rows});
     }
   }
+  ParallelErrors errors;
 #pragma omp parallel
   {
     std::vector<Vector3> places;
-    std::vector<float> in_tile(kBlock);
+    auto in_tile = errors.make<std::vector<float>>(kBlock);
 #pragma omp for schedule(dynamic, 16)
     for (std::size_t t = 0; t < tiles.size(); ++t) {
-      const Tile& tile = tiles[t];
-      places.clear();
-      for (int j = tile.row; j < tile.row + tile.rows; ++j) {
-        for (int i = tile.column; i < tile.column + tile.columns; ++i) {
-          places.push_back(grid.unit_vector(i, j));
+      errors.guard([&] {
+        const Tile& tile = tiles[t];
+        places.clear();
+        for (int j = tile.row; j < tile.row + tile.rows; ++j) {
+          for (int i = tile.column; i < tile.column + tile.columns; ++i) {
+            places.push_back(grid.unit_vector(i, j));
+          }
         }
-      }
-      circles.read(places, std::span(in_tile).first(places.size()));
-      for (int j = 0; j < tile.rows; ++j) {
-        std::copy_n(in_tile.begin() + static_cast<std::ptrdiff_t>(j) * tile.columns, tile.columns,
-                    values.begin() + grid.cell(tile.column, tile.row + j));
-      }
+        circles.read(places, std::span(in_tile).first(places.size()));
+        for (int j = 0; j < tile.rows; ++j) {
+          std::copy_n(in_tile.begin() + static_cast<std::ptrdiff_t>(j) * tile.columns, tile.columns,
+                      values.begin() + grid.cell(tile.column, tile.row + j));
+        }
+      });
     }
   }
+  errors.rethrow();
 }
 
 std::vector<float> great_circle_noise_at(const GreatCircles& circles,

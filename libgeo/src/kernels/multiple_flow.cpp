@@ -4,7 +4,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <exception>
 #include <functional>
 #include <memory>
 #include <string>
@@ -12,6 +11,7 @@
 
 #include "flow_weights.hpp"
 #include "geo/core/error.hpp"
+#include "geo/core/parallel_errors.hpp"
 
 namespace geo {
 namespace {
@@ -129,24 +129,15 @@ void walk_down(const Grid& grid, const FlowWeights& weights, const Shares& share
 /// thrown when both are done.
 template <class First, class Second>
 void run_side_by_side(First&& first, Second&& second) {
-  std::array<std::exception_ptr, 2> failure;
-  const auto guarded = [&](int piece, auto&& work) {
-    try {
-      work();
-    } catch (...) {
-      failure[piece] = std::current_exception();
-    }
-  };
+  std::array<ParallelErrors, 2> errors;
 #pragma omp parallel sections
   {
 #pragma omp section
-    guarded(0, first);
+    errors[0].guard(first);
 #pragma omp section
-    guarded(1, second);
+    errors[1].guard(second);
   }
-  for (const auto& thrown : failure) {
-    if (thrown) std::rethrow_exception(thrown);
-  }
+  for (const ParallelErrors& thrown : errors) thrown.rethrow();
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "geo/core/error.hpp"
+#include "geo/core/parallel_errors.hpp"
 #include "geo/core/random.hpp"
 #include "geo/core/tangent_frame.hpp"
 #include "geo/core/vector3.hpp"
@@ -228,28 +229,33 @@ void add_oriented_noise(const Grid& grid, const Grid& on, const Orientation& cre
   });
   const auto waves = static_cast<float>(band.width_km / band.wavelength_km);
   const CubicRows rows(on, grid);
+  ParallelErrors errors;
 #pragma omp parallel
   {
-    Row row(grid.nx());
+    auto made = errors.make<Row>(grid.nx());
     std::vector<float> scratch;
 #pragma omp for schedule(dynamic, 1)
     for (std::size_t b = 0; b < bands.size(); ++b) {
-      for (int j = bands.begin(b); j < bands.end(b); ++j) {
-        rows.read(crests.cosine, j, std::span<float>(row.crest[0]), scratch);
-        rows.read(crests.sine, j, std::span<float>(row.crest[1]), scratch);
-        row.stand_at(grid, j);
-        const Parallel parallel(grid, j);
-        for (const std::int32_t number : bands[b]) {
-          each_span(parallel, groups[number], reach, [&](int first, int last) {
-            add_group(row, groups[number], waves, first, last);
-          });
+      errors.guard([&] {
+        Row& row = *made;
+        for (int j = bands.begin(b); j < bands.end(b); ++j) {
+          rows.read(crests.cosine, j, std::span<float>(row.crest[0]), scratch);
+          rows.read(crests.sine, j, std::span<float>(row.crest[1]), scratch);
+          row.stand_at(grid, j);
+          const Parallel parallel(grid, j);
+          for (const std::int32_t number : bands[b]) {
+            each_span(parallel, groups[number], reach, [&](int first, int last) {
+              add_group(row, groups[number], waves, first, last);
+            });
+          }
+          for (int i = 0; i < grid.nx(); ++i) {
+            values[grid.cell(i, j)] += static_cast<float>(seen * row.sum[i]);
+          }
         }
-        for (int i = 0; i < grid.nx(); ++i) {
-          values[grid.cell(i, j)] += static_cast<float>(seen * row.sum[i]);
-        }
-      }
+      });
     }
   }
+  errors.rethrow();
 }
 
 }  // namespace geo

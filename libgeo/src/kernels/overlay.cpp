@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "geo/core/error.hpp"
+#include "geo/core/parallel_errors.hpp"
 
 namespace geo {
 namespace {
@@ -102,11 +103,14 @@ void Overlay::for_overlaps(int coarse_row, Visit&& visit) const {
 }
 
 void Overlay::average(std::span<const float> values, std::span<float> mean) const {
+  ParallelErrors errors;
 #pragma omp parallel
   {
-    std::vector<double> sum(coarse_.nx()), weight(coarse_.nx());
+    auto sum = errors.make<std::vector<double>>(coarse_.nx());
+    auto weight = errors.make<std::vector<double>>(coarse_.nx());
 #pragma omp for schedule(static)
     for (int row = 0; row < coarse_.ny(); ++row) {
+      if (errors.any()) continue;
       std::fill(sum.begin(), sum.end(), 0.0);
       std::fill(weight.begin(), weight.end(), 0.0);
       for_overlaps(row, [&](int at, int i, int j, double overlap) {
@@ -120,15 +124,20 @@ void Overlay::average(std::span<const float> values, std::span<float> mean) cons
       }
     }
   }
+  errors.rethrow();
 }
 
 void Overlay::average_relief(std::span<const float> elevation, std::span<float> land_fraction,
                              std::span<float> height_m, std::span<float> coverage) const {
+  ParallelErrors errors;
 #pragma omp parallel
   {
-    std::vector<double> land(coarse_.nx()), height(coarse_.nx()), weight(coarse_.nx());
+    auto land = errors.make<std::vector<double>>(coarse_.nx());
+    auto height = errors.make<std::vector<double>>(coarse_.nx());
+    auto weight = errors.make<std::vector<double>>(coarse_.nx());
 #pragma omp for schedule(static)
     for (int row = 0; row < coarse_.ny(); ++row) {
+      if (errors.any()) continue;
       std::fill(land.begin(), land.end(), 0.0);
       std::fill(height.begin(), height.end(), 0.0);
       std::fill(weight.begin(), weight.end(), 0.0);
@@ -147,6 +156,7 @@ void Overlay::average_relief(std::span<const float> elevation, std::span<float> 
       }
     }
   }
+  errors.rethrow();
 }
 
 Interpolator::Taps Interpolator::taps(double position, int count, bool wraps) {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "geo/core/error.hpp"
+#include "geo/core/parallel_errors.hpp"
 
 namespace geo {
 namespace {
@@ -124,19 +125,22 @@ class Histogram {
 
   template <class BinOf>
   void count(std::vector<Share>& bins, BinOf bin_of) const {
+    ParallelErrors errors;
 #pragma omp parallel if (cells_.grid.size() > 16384)
     {
-      std::vector<Share> own(bins.size(), 0);
+      auto own = errors.make<std::vector<Share>>(bins.size(), 0);
 #pragma omp for schedule(static) nowait
       for (int j = 0; j < cells_.grid.ny(); ++j) {
+        if (errors.any()) continue;
         cells_.for_row(j, [&](float value) {
           const std::uint32_t bin = bin_of(to_key(value));
           if (bin < own.size()) own[bin] += share_[j];
         });
       }
 #pragma omp critical(geo_quantiles)
-      for (std::size_t b = 0; b < bins.size(); ++b) bins[b] += own[b];
+      for (std::size_t b = 0; b < own.size(); ++b) bins[b] += own[b];
     }
+    errors.rethrow();
   }
 
   Cells cells_;

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "geo/core/error.hpp"
+#include "geo/core/parallel_errors.hpp"
 
 namespace geo {
 namespace {
@@ -194,11 +195,13 @@ void resample_raster(const Raster& source_raster, std::span<const float> source,
   const int nx = source_raster.columns.size(), ny = target_raster.rows.size();
   const int target_nx = target_raster.columns.size();
 
+  ParallelErrors errors;
 #pragma omp parallel
   {
-    std::vector<double> blended(nx);
+    auto blended = errors.make<std::vector<double>>(nx);
 #pragma omp for schedule(static)
     for (int j = 0; j < ny; ++j) {
+      if (errors.any()) continue;
       const Share& rows = row_shares[j];
       std::fill(blended.begin(), blended.end(), 0.0);
       for (std::size_t k = 0; k < rows.weights.size(); ++k) {
@@ -226,6 +229,7 @@ void resample_raster(const Raster& source_raster, std::span<const float> source,
       }
     }
   }
+  errors.rethrow();
 }
 
 }  // namespace geo

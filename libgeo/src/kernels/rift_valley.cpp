@@ -18,7 +18,7 @@ double rift_profile_m(const RiftSection& section, double distance_m) {
   return wall * section.shoulder_m - (1.0 - wall) * section.depth_m;
 }
 
-GreatCircleLine::GreatCircleLine(std::vector<Vector3> places) {
+GreatCirclePath::GreatCirclePath(std::vector<Vector3> places) {
   for (std::size_t i = 1; i < places.size(); ++i) {
     Arc arc{.from = places[i - 1], .to = places[i], .begins = length_};
     arc.angle = angle_between(arc.from, arc.to);
@@ -29,7 +29,7 @@ GreatCircleLine::GreatCircleLine(std::vector<Vector3> places) {
   }
 }
 
-GreatCircleLine::Nearest GreatCircleLine::nearest(const Vector3& place, double reach) const {
+GreatCirclePath::Nearest GreatCirclePath::nearest(const Vector3& place, double reach) const {
   Nearest best{4.0, 0.0};
   const double far = std::sin(std::min(reach, 1.5));
   for (const Arc& arc : arcs_) {

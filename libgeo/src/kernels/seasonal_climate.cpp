@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/evaporation.hpp"
 #include "geo/kernels/insolation.hpp"
 #include "geo/kernels/thermodynamics.hpp"
@@ -111,8 +112,7 @@ SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& m
   }
 
   std::vector<Month> months(kMonths);
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int m = 0; m < kMonths; ++m) {
+  const auto compute_month = [&](int m) {
     Month& month = months[m];
     const auto phase = std::polar(1.0, month_solar_longitude_deg(m) * kRadians);
     std::vector<double> temperature_c(size);
@@ -174,7 +174,11 @@ SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& m
           converging[cell] * static_cast<float>(model.ascent_time_d * kSecondsPerDay);
       month.eddies[cell] *= std::exp(std::clamp(ascent, -kMost, kMost));
     }
-  }
+  };
+  ParallelErrors errors;
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int m = 0; m < kMonths; ++m) errors.guard([&] { compute_month(m); });
+  errors.rethrow();
 
   std::vector<MoistureSeason> seasons;
   for (Month& month : months) {
@@ -185,10 +189,12 @@ SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& m
   constexpr int kTogether = SteadyMoisture::kSeasons;
   static_assert(kMonths % kTogether == 0);
   std::vector<std::optional<SteadyMoisture>> budgets(kMonths / kTogether);
-#pragma omp parallel for schedule(dynamic, 1)
-  for (std::size_t k = 0; k < budgets.size(); ++k) {
+  const auto start_budget = [&](std::size_t k) {
     budgets[k].emplace(grid, model.moisture, std::span(seasons).subspan(k * kTogether, kTogether));
-  }
+  };
+#pragma omp parallel for schedule(dynamic, 1)
+  for (std::size_t k = 0; k < budgets.size(); ++k) errors.guard([&] { start_budget(k); });
+  errors.rethrow();
 
   // Land returns what Budyko's curve says of the rain that the last round gave it.
   constexpr int kRounds = 4;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "geo/core/error.hpp"
+#include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/diffusion.hpp"
 #include "geo/kernels/overlay.hpp"
 
@@ -52,14 +53,17 @@ void smooth_broadly(const Grid& grid, std::span<float> field, double length_m) {
   const double added_m2 = (1.0 + 4.0) / 12.0 * cell_m * cell_m;
   smooth(coarse, mean, std::sqrt(length_m * length_m - added_m2));
   const Interpolator smoothed(overlay, mean);
+  ParallelErrors errors;
 #pragma omp parallel
   {
-    std::vector<float> scratch(smoothed.scratch_size());
+    auto scratch = errors.make<std::vector<float>>(smoothed.scratch_size());
 #pragma omp for schedule(static)
     for (int j = 0; j < grid.ny(); ++j) {
+      if (errors.any()) continue;
       smoothed.row(j, field.subspan(grid.cell(0, j), grid.nx()), scratch);
     }
   }
+  errors.rethrow();
 }
 void smooth_broadly(const Grid& grid, std::span<double> field, double length_m) {
   smooth(grid, field, length_m);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "geo/core/error.hpp"
+#include "geo/core/parallel_errors.hpp"
 
 namespace geo {
 namespace {
@@ -129,31 +130,39 @@ void filter_degrees_in(const Grid& grid, std::span<Real> field, std::span<const 
   }
   const std::vector<double> weight = fejer_weights(ny);
   std::vector<Complex> spectrum(static_cast<std::size_t>(orders) * ny);
+  ParallelErrors errors;
 #pragma omp parallel
   {
     Eigen::FFT<double> fourier;
     fourier.SetFlag(Eigen::FFT<double>::HalfSpectrum);
-    std::vector<double> row(nx);
-    std::vector<Complex> waves(nx / 2 + 1);
+    auto row = errors.make<std::vector<double>>(nx);
+    auto waves = errors.make<std::vector<Complex>>(nx / 2 + 1);
 #pragma omp for schedule(static)
     for (int j = 0; j < ny; ++j) {
-      for (int i = 0; i < nx; ++i) row[i] = field[grid.cell(i, j)];
-      fourier.fwd(waves.data(), row.data(), nx);
-      for (int m = 0; m < orders; ++m) spectrum[static_cast<std::size_t>(m) * ny + j] = waves[m];
+      errors.guard([&] {
+        for (int i = 0; i < nx; ++i) row[i] = field[grid.cell(i, j)];
+        fourier.fwd(waves.data(), row.data(), nx);
+        for (int m = 0; m < orders; ++m) spectrum[static_cast<std::size_t>(m) * ny + j] = waves[m];
+      });
     }
 #pragma omp for schedule(dynamic, 1)
     for (int m = 0; m < orders; ++m) {
-      filter_order(m, std::span(spectrum).subspan(static_cast<std::size_t>(m) * ny, ny), gain,
-                   weight, sine, cosine);
+      errors.guard([&] {
+        filter_order(m, std::span(spectrum).subspan(static_cast<std::size_t>(m) * ny, ny), gain,
+                     weight, sine, cosine);
+      });
     }
 #pragma omp for schedule(static)
     for (int j = 0; j < ny; ++j) {
-      std::fill(waves.begin(), waves.end(), Complex{});
-      for (int m = 0; m < orders; ++m) waves[m] = spectrum[static_cast<std::size_t>(m) * ny + j];
-      fourier.inv(row.data(), waves.data(), nx);
-      for (int i = 0; i < nx; ++i) field[grid.cell(i, j)] = static_cast<Real>(row[i]);
+      errors.guard([&] {
+        std::fill(waves.begin(), waves.end(), Complex{});
+        for (int m = 0; m < orders; ++m) waves[m] = spectrum[static_cast<std::size_t>(m) * ny + j];
+        fourier.inv(row.data(), waves.data(), nx);
+        for (int i = 0; i < nx; ++i) field[grid.cell(i, j)] = static_cast<Real>(row[i]);
+      });
     }
   }
+  errors.rethrow();
 }
 
 }  // namespace

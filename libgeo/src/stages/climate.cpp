@@ -6,6 +6,7 @@
 
 #include "climate_events.hpp"
 #include "climate_frame.hpp"
+#include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/circulation.hpp"
 #include "geo/kernels/distance_to_coast.hpp"
 #include "geo/kernels/evaporation.hpp"
@@ -105,16 +106,19 @@ std::vector<float> relief_lift(const ClimateFrame& frame, const SeasonalFields& 
                              Interpolator::Kind::vector_component);
   const Interpolator north_of(frame.relief_on_planet(), fields.wind_north,
                               Interpolator::Kind::vector_component);
+  ParallelErrors errors;
 #pragma omp parallel
   {
-    std::vector<float> scratch(east_of.scratch_size());
+    auto scratch = errors.make<std::vector<float>>(east_of.scratch_size());
 #pragma omp for schedule(static)
     for (int j = 0; j < relief.ny(); ++j) {
+      if (errors.any()) continue;
       const std::size_t begin = static_cast<std::size_t>(j) * relief.nx();
       east_of.row(j, std::span(east).subspan(begin, relief.nx()), scratch);
       north_of.row(j, std::span(north).subspan(begin, relief.nx()), scratch);
     }
   }
+  errors.rethrow();
   upwind_lift(relief, height_m, east, north, 1000.0 * reach_km, lift);
   return lift;
 }
@@ -205,13 +209,19 @@ class ClimateStage final : public Stage {
     const auto per_lift = static_cast<float>(1.0 / p_.lift_height_m);
     const auto cooling = static_cast<float>(dimmed.cooling_k);
     const auto rain_left = static_cast<float>(dimmed.rain_left);
+    ParallelErrors errors;
 #pragma omp parallel
     {
       const auto nx = static_cast<std::size_t>(grid.nx());
-      std::vector<float> scratch(std::max(planet.rain.scratch_size(), lift_of.scratch_size()));
-      std::vector<float> cosine(nx), sine(nx), lifted(nx), humidity(nx);
+      auto scratch = errors.make<std::vector<float>>(
+          std::max(planet.rain.scratch_size(), lift_of.scratch_size()));
+      auto cosine = errors.make<std::vector<float>>(nx);
+      auto sine = errors.make<std::vector<float>>(nx);
+      auto lifted = errors.make<std::vector<float>>(nx);
+      auto humidity = errors.make<std::vector<float>>(nx);
 #pragma omp for schedule(static)
       for (int j = 0; j < grid.ny(); ++j) {
+        if (errors.any()) continue;
         const std::size_t begin = static_cast<std::size_t>(j) * nx;
         const auto row = [&](std::span<float> field) { return field.subspan(begin, nx); };
         const auto temperature = row(out.temperature), rain = row(out.precipitation);
@@ -241,6 +251,7 @@ class ClimateStage final : public Stage {
                            row(out.evaporation));
       }
     }
+    errors.rethrow();
   }
 
   void finish_blueprint(const ClimateFrame& frame, const SeasonalClimate& model,
@@ -252,13 +263,18 @@ class ClimateStage final : public Stage {
     const Interpolator relief_of(frame.on_relief(), relief_rain);
     const ClimateNoise noise(p_, grid, context.seed);
     const double pressure_bar = context.planet.pressure_bar;
+    ParallelErrors errors;
 #pragma omp parallel
     {
       const auto nx = static_cast<std::size_t>(grid.nx());
-      std::vector<float> scratch(std::max(planet.rain.scratch_size(), relief_of.scratch_size()));
-      std::vector<float> cosine(nx), sine(nx), humidity(nx);
+      auto scratch = errors.make<std::vector<float>>(
+          std::max(planet.rain.scratch_size(), relief_of.scratch_size()));
+      auto cosine = errors.make<std::vector<float>>(nx);
+      auto sine = errors.make<std::vector<float>>(nx);
+      auto humidity = errors.make<std::vector<float>>(nx);
 #pragma omp for schedule(static)
       for (int j = 0; j < grid.ny(); ++j) {
+        if (errors.any()) continue;
         const std::size_t begin = static_cast<std::size_t>(j) * nx;
         const auto row = [&](std::span<float> field) { return field.subspan(begin, nx); };
         const auto temperature = row(out.temperature), rain = row(out.precipitation);
@@ -290,6 +306,7 @@ class ClimateStage final : public Stage {
                            row(out.evaporation));
       }
     }
+    errors.rethrow();
   }
 
   ClimateParameters p_;

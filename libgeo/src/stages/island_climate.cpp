@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/blueprint_climate.hpp"
 #include "geo/kernels/catmull_rom.hpp"
 #include "geo/kernels/distance_to_coast.hpp"
@@ -233,11 +234,14 @@ void island_climate(const PlanetCells& cells, const ClimateParameters& climate,
   const Overlay overlay(fine, air);
   const auto lift = extra_lift(fine, overlay, heights, to.wind_east, to.wind_north, reach_m);
   const Interpolator lift_of(overlay, lift);
+  ParallelErrors errors;
 #pragma omp parallel
   {
-    std::vector<float> scratch(lift_of.scratch_size()), lifted(fine.nx());
+    auto scratch = errors.make<std::vector<float>>(lift_of.scratch_size());
+    auto lifted = errors.make<std::vector<float>>(fine.nx());
 #pragma omp for schedule(static)
     for (int j = 0; j < fine.ny(); ++j) {
+      if (errors.any()) continue;
       lift_of.row(j, lifted, scratch);
       for (int i = 0; i < fine.nx(); ++i) {
         const double ramp = edge_ramp(fine, i, j, cells.planet().face_east_m(0));
@@ -249,6 +253,7 @@ void island_climate(const PlanetCells& cells, const ClimateParameters& climate,
       }
     }
   }
+  errors.rethrow();
   smooth(fine, to.temperature, 1000.0 * p.climate_smoothing_km);
   smooth(fine, to.precipitation, 1000.0 * p.climate_smoothing_km);
 }

@@ -235,7 +235,7 @@ void ReliefEvents::apply(const Rift& rift, const std::string& /*label*/, EventRe
                             .flexure_m = 1e3 * rift.shoulder_km};
   std::vector<Vector3> places;
   for (const Centre& place : rift.path) places.push_back(unit_vector_of(place));
-  const GreatCircleLine line(std::move(places));
+  const GreatCirclePath line(std::move(places));
   const double planet_m = grid_.figure().radius_m;
   constexpr double kFadesAfter = 6.0;  // flexural parameters from the crest
   const RiftCourse course(context_.seed, rift, planet_m);

@@ -9,7 +9,7 @@
 namespace geo {
 
 /// A drained planet, one value per cell.
-struct Drainage {
+struct DrainedPlanet {
   std::span<const float> elevation_m;      ///< sea below zero
   std::span<const std::int32_t> receiver;  ///< itself at the end of the way
   std::span<const double> area_m2;         ///< upstream, the cell included
@@ -17,12 +17,12 @@ struct Drainage {
 
 /// Length of the longest way of water to each cell from upstream, m: centre to centre along
 /// receivers. Sea cells end ways. Throws Bug on a cycle. Cost: linear.
-std::vector<float> longest_upstream_m(const Grid& grid, const Drainage& drainage);
+std::vector<float> longest_upstream_m(const Grid& grid, const DrainedPlanet& drainage);
 
 /// Exponent h of L ~ A^h (Hack 1957) over the basins that drain at least `least_area_m2`, each
 /// once, at its mouth (the last land cell), by least squares in logarithms. NaN when there are
 /// fewer than ten.
-double hack_exponent(const Grid& grid, const Drainage& drainage, double least_area_m2);
+double hack_exponent(const Grid& grid, const DrainedPlanet& drainage, double least_area_m2);
 
 /// Ratios (Horton 1945) from one Strahler order to the next.
 struct HortonRatios {
@@ -30,7 +30,7 @@ struct HortonRatios {
 };
 /// Numbers, mean lengths and mean areas of streams by order, as straight lines in the logarithm.
 /// Orders with fewer than five streams do not count; NaN with fewer than three orders left.
-HortonRatios horton_ratios(const Grid& grid, const Drainage& drainage,
+HortonRatios horton_ratios(const Grid& grid, const DrainedPlanet& drainage,
                            std::span<const std::int8_t> stream_order);
 
 /// Areas of the basins on land by number (`basin_id`, 1 the first; position 0 unused), and whether
@@ -39,7 +39,7 @@ struct Basins {
   std::vector<double> area_m2;
   std::vector<std::uint8_t> is_endorheic;
 };
-Basins measure_basins(const Grid& grid, const Drainage& drainage,
+Basins measure_basins(const Grid& grid, const DrainedPlanet& drainage,
                       std::span<const std::int32_t> basin_id);
 
 /// Area-weighted mean of a field over the land of each basin, by number; NaN where it has none.

@@ -22,10 +22,10 @@ struct RiftSection {
 [[nodiscard]] double rift_profile_m(const RiftSection& section, double distance_m);
 
 /// A line of arcs of great circles on the unit sphere.
-class GreatCircleLine {
+class GreatCirclePath {
  public:
   /// At least two unit vectors; none the antipode of the next.
-  explicit GreatCircleLine(std::vector<Vector3> places);
+  explicit GreatCirclePath(std::vector<Vector3> places);
 
   struct Nearest {
     double distance;  ///< from the line, radians

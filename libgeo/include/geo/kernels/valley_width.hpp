@@ -9,6 +9,7 @@
 
 #include "geo/core/grid.hpp"
 #include "geo/core/numeric.hpp"
+#include "geo/core/parallel_errors.hpp"
 
 namespace geo {
 
@@ -47,56 +48,64 @@ void widen_valleys(const Grid& grid, std::span<const V> before_m,
   if (grid.topology() != Topology::sphere) return;
   constexpr double kLeast_m = 1e-3;  // of lowering that makes a valley
   const int nx = grid.nx();
+  ParallelErrors errors;
 #pragma omp parallel
   {
-    std::vector<double> before(nx), after(nx), lowest(nx), bell;
-    std::vector<int> source(nx);
+    auto before = errors.make<std::vector<double>>(nx);
+    auto after = errors.make<std::vector<double>>(nx);
+    auto lowest = errors.make<std::vector<double>>(nx);
+    std::vector<double> bell;
+    auto source = errors.make<std::vector<int>>(nx);
 #pragma omp for schedule(dynamic, 8)
     for (int j = 0; j < grid.ny(); ++j) {
-      const double width = grid.spacing_east_m(j), height = grid.face_east_m(j);
-      if (width >= height) continue;
-      const Index begin = grid.cell(0, j);
-      for (int i = 0; i < nx; ++i) {
-        before[i] = value_of(before_m[begin + i]);
-        lowest[i] = after[i] = value_of(elevation_m[begin + i]);
-        source[i] = i;
-      }
-      bell.clear();
-      for (int k = 1; k * width < height && 2 * k < nx; ++k) {
-        const double c = std::cos(0.5 * std::numbers::pi * k * width / height);
-        bell.push_back(c * c);
-      }
-      const auto lowered = [&](int i) { return before[i] - after[i]; };
-      for (int s = 0; s < nx; ++s) {
-        const double cut = lowered(s);
-        if (fixed[begin + s] != 0 || cut < kLeast_m) continue;
-        if (cut < lowered(s > 0 ? s - 1 : nx - 1) || cut < lowered(s + 1 < nx ? s + 1 : 0))
-          continue;
-        for (const int side : {-1, 1}) {
-          int i = s;
-          for (const double share : bell) {
-            i += side;
-            if (i < 0) i = nx - 1;
-            if (i == nx) i = 0;
-            if (fixed[begin + i] != 0) break;
-            const double to = std::max(before[i] - share * cut, after[s]);
-            if (to >= lowest[i]) continue;
-            lowest[i] = to;
-            source[i] = s;
+      errors.guard([&] {
+        const double width = grid.spacing_east_m(j), height = grid.face_east_m(j);
+        if (width >= height) return;
+        const Index begin = grid.cell(0, j);
+        for (int i = 0; i < nx; ++i) {
+          before[i] = value_of(before_m[begin + i]);
+          lowest[i] = after[i] = value_of(elevation_m[begin + i]);
+          source[i] = i;
+        }
+        bell.clear();
+        for (int k = 1; k * width < height && 2 * k < nx; ++k) {
+          const double c = std::cos(0.5 * std::numbers::pi * k * width / height);
+          bell.push_back(c * c);
+        }
+        const auto lowered = [&](int i) { return before[i] - after[i]; };
+        for (int s = 0; s < nx; ++s) {
+          const double cut = lowered(s);
+          if (fixed[begin + s] != 0 || cut < kLeast_m) continue;
+          if (cut < lowered(s > 0 ? s - 1 : nx - 1) || cut < lowered(s + 1 < nx ? s + 1 : 0))
+            continue;
+          for (const int side : {-1, 1}) {
+            int i = s;
+            for (const double share : bell) {
+              i += side;
+              if (i < 0) i = nx - 1;
+              if (i == nx) i = 0;
+              if (fixed[begin + i] != 0) break;
+              const double to = std::max(before[i] - share * cut, after[s]);
+              if (to >= lowest[i]) continue;
+              lowest[i] = to;
+              source[i] = s;
+            }
           }
         }
-      }
-      // Beds first come as they are; then what they took from others, from the same step's values.
-      std::vector<V> beds(elevation_m.begin() + begin, elevation_m.begin() + begin + nx);
-      for (int i = 0; i < nx; ++i) {
-        const int s = source[i];
-        if (s == i) continue;
-        const int apart = std::min((s - i + nx) % nx, (i - s + nx) % nx);
-        const V taken(bell[apart - 1] * (before_m[begin + s] - beds[s]));
-        elevation_m[begin + i] = greater(V(before_m[begin + i] - taken), beds[s]);
-      }
+        // Beds first come as they are; then what they took from others, from the same step's
+        // values.
+        std::vector<V> beds(elevation_m.begin() + begin, elevation_m.begin() + begin + nx);
+        for (int i = 0; i < nx; ++i) {
+          const int s = source[i];
+          if (s == i) continue;
+          const int apart = std::min((s - i + nx) % nx, (i - s + nx) % nx);
+          const V taken(bell[apart - 1] * (before_m[begin + s] - beds[s]));
+          elevation_m[begin + i] = greater(V(before_m[begin + i] - taken), beds[s]);
+        }
+      });
     }
   }
+  errors.rethrow();
 }
 
 }  // namespace geo

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/sphere_tectonics.hpp"
 #include "sample_sums.hpp"
 #include "sphere_flood.hpp"
@@ -30,8 +31,7 @@ void SphereTectonics::collide() {
   const double needed_km = settings_.merge_plates ? 0.0 : settings_.penetration_km;
   constexpr std::int32_t kChunk = 1024;
   std::vector<std::vector<std::int32_t>> found((count + kChunk - 1) / kChunk);
-#pragma omp parallel for schedule(dynamic)
-  for (std::size_t chunk = 0; chunk < found.size(); ++chunk) {
+  const auto search = [&](std::size_t chunk) {
     const auto from = static_cast<std::int32_t>(chunk) * kChunk;
     for (std::int32_t k = from; k < std::min(count, from + kChunk); ++k) {
       const std::int32_t i = contacts_[k], above = partner_[i];
@@ -41,7 +41,11 @@ void SphereTectonics::collide() {
       if (distance_km(above, fronts_[front].sample) < needed_km) continue;
       found[chunk].push_back(i);
     }
-  }
+  };
+  ParallelErrors errors;
+#pragma omp parallel for schedule(dynamic)
+  for (std::size_t chunk = 0; chunk < found.size(); ++chunk) errors.guard([&] { search(chunk); });
+  errors.rethrow();
   bool changed = false;
   for (const std::int32_t i : joined(found)) {
     // Consumed or detached by a collision before it in this step.

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/sphere_tectonics.hpp"
 #include "sample_sums.hpp"
 
@@ -17,8 +18,7 @@ void SphereTectonics::find_contacts() {
   std::fill(partner_.begin(), partner_.end(), -1);
   constexpr std::int32_t kChunk = 64;
   std::vector<std::vector<std::int32_t>> found((block_count + kChunk - 1) / kChunk);
-#pragma omp parallel for schedule(dynamic)
-  for (std::size_t chunk = 0; chunk < found.size(); ++chunk) {
+  const auto search = [&](std::size_t chunk) {
     const auto from = static_cast<std::int32_t>(chunk) * kChunk;
     for (std::int32_t b = from; b < std::min(block_count, from + kChunk); ++b) {
       const auto& block = blocks[b];
@@ -37,7 +37,11 @@ void SphereTectonics::find_contacts() {
         }
       }
     }
-  }
+  };
+  ParallelErrors errors;
+#pragma omp parallel for schedule(dynamic)
+  for (std::size_t chunk = 0; chunk < found.size(); ++chunk) errors.guard([&] { search(chunk); });
+  errors.rethrow();
   contacts_ = joined(found);
 }
 
@@ -120,8 +124,7 @@ void SphereTectonics::find_fronts() {
   }
   constexpr std::int32_t kChunk = 1024;
   std::vector<std::vector<Front>> found((count + kChunk - 1) / kChunk);
-#pragma omp parallel for schedule(dynamic)
-  for (std::size_t chunk = 0; chunk < found.size(); ++chunk) {
+  const auto search = [&](std::size_t chunk) {
     const auto from = static_cast<std::int32_t>(chunk) * kChunk;
     for (std::int32_t k = from; k < std::min(count, from + kChunk); ++k) {
       const std::int32_t i = contacts_[k];
@@ -143,7 +146,11 @@ void SphereTectonics::find_fronts() {
       if (dot(relative, outward) >= 0.0) continue;  // they part
       found[chunk].push_back({i, lower, crust.elevation_m[below]});
     }
-  }
+  };
+  ParallelErrors errors;
+#pragma omp parallel for schedule(dynamic)
+  for (std::size_t chunk = 0; chunk < found.size(); ++chunk) errors.guard([&] { search(chunk); });
+  errors.rethrow();
   fronts_ = joined(found);
 }
 

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "geo/core/parallel_errors.hpp"
 #include "geo/core/random.hpp"
 #include "geo/kernels/sphere_boundaries.hpp"
 #include "geo/kernels/sphere_tectonics.hpp"
@@ -25,8 +26,7 @@ std::vector<std::int32_t> SphereTectonics::old_margins() const {
   const SphereCrust& crust = state_.crust;
   constexpr std::int32_t kChunk = 8192;
   std::vector<std::vector<std::int32_t>> found((crust.size() + kChunk - 1) / kChunk);
-#pragma omp parallel for schedule(static)
-  for (std::size_t chunk = 0; chunk < found.size(); ++chunk) {
+  const auto search = [&](std::size_t chunk) {
     const auto from = static_cast<std::int32_t>(chunk) * kChunk;
     for (std::int32_t i = from; i < std::min(crust.size(), from + kChunk); ++i) {
       if (crust.plate[i] < 0 || crust.continental[i] != 0 || hidden_[i] != 0) continue;
@@ -37,7 +37,11 @@ std::vector<std::int32_t> SphereTectonics::old_margins() const {
       });
       if (is_margin) found[chunk].push_back(i);
     }
-  }
+  };
+  ParallelErrors errors;
+#pragma omp parallel for schedule(static)
+  for (std::size_t chunk = 0; chunk < found.size(); ++chunk) errors.guard([&] { search(chunk); });
+  errors.rethrow();
   return joined(found);
 }
 

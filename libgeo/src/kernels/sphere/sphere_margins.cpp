@@ -2,6 +2,7 @@
 #include <cmath>
 #include <optional>
 
+#include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/sphere_boundaries.hpp"
 #include "geo/kernels/sphere_tectonics.hpp"
 
@@ -62,15 +63,18 @@ class Breaks {
     const double reach2 = std::pow(2.0 * std::sin(0.5 * std::min(length_rad, 3.1)), 2);
     const auto count = static_cast<std::int32_t>(sample_.size());
     std::vector<std::vector<Link>> links(count);
-#pragma omp parallel for schedule(dynamic, 64)
-    for (std::int32_t k = 0; k < count; ++k) {
+    const auto link = [&](std::int32_t k) {
       for (std::int32_t m = 0; m < count; ++m) {
         if (owner[sample_[m]] != owner[sample_[k]]) continue;
         const Vector3 way = add(at(k), at(m), -1.0);
         const double s = 1.0 - dot(way, way) / reach2;
         if (s > 0.0) links[k].push_back({m, s * s});
       }
-    }
+    };
+    ParallelErrors errors;
+#pragma omp parallel for schedule(dynamic, 64)
+    for (std::int32_t k = 0; k < count; ++k) errors.guard([&] { link(k); });
+    errors.rethrow();
     for (std::int32_t k = 0; k < count; ++k) {
       first_[k + 1] = first_[k] + static_cast<std::int32_t>(links[k].size());
       link_.insert(link_.end(), links[k].begin(), links[k].end());

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geo/core/error.hpp"
+#include "geo/core/parallel_errors.hpp"
 
 namespace geo {
 namespace {
@@ -104,21 +105,17 @@ SphereMesh::SphereMesh(const FibonacciSphere& samples) : samples_(&samples) {
   const std::int32_t blocks = (n + kBlock - 1) / kBlock;
   std::vector<std::vector<std::int32_t>> found(blocks);
   first_.assign(static_cast<std::size_t>(n) + 1, 0);
-  bool failed = false;
-#pragma omp parallel for schedule(dynamic)
-  for (std::int32_t block = 0; block < blocks; ++block) {
-    try {
-      for (std::int32_t i = block * kBlock; i < std::min(n, (block + 1) * kBlock); ++i) {
-        const auto star = Star(samples, i).wind();
-        first_[i + 1] = static_cast<std::int32_t>(star.size());
-        found[block].insert(found[block].end(), star.begin(), star.end());
-      }
-    } catch (const Bug&) {
-#pragma omp atomic write
-      failed = true;
+  const auto wind = [&](std::int32_t block) {
+    for (std::int32_t i = block * kBlock; i < std::min(n, (block + 1) * kBlock); ++i) {
+      const auto star = Star(samples, i).wind();
+      first_[i + 1] = static_cast<std::int32_t>(star.size());
+      found[block].insert(found[block].end(), star.begin(), star.end());
     }
-  }
-  if (failed) throw Bug("a star of the Fibonacci lattice does not close");
+  };
+  ParallelErrors errors;
+#pragma omp parallel for schedule(dynamic)
+  for (std::int32_t block = 0; block < blocks; ++block) errors.guard([&] { wind(block); });
+  errors.rethrow();
   for (std::int32_t i = 0; i < n; ++i) first_[i + 1] += first_[i];
   neighbour_.reserve(first_[n]);
   for (const auto& part : found) neighbour_.insert(neighbour_.end(), part.begin(), part.end());

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geo/core/parallel_errors.hpp"
+
 namespace geo {
 namespace {
 
@@ -35,8 +37,7 @@ SpherePartition::SpherePartition(const SphereMesh& mesh)
   const double cell = 0.72 * coarse_.spacing();
   reach_ = 3.0 * cell + samples.spacing();
   std::vector<std::vector<std::int32_t>> around(m);
-#pragma omp parallel for schedule(dynamic, 64)
-  for (std::int32_t g = 0; g < m; ++g) {
+  const auto look_around = [&](std::int32_t g) {
     const double lowest = std::cos(std::min(reach_, 3.0));
     // Indices of the lattice descend in z.
     const double z = coarse_.position(g)[2], colatitude = std::acos(std::clamp(z, -1.0, 1.0));
@@ -49,7 +50,11 @@ SpherePartition::SpherePartition(const SphereMesh& mesh)
     for (std::int32_t h = from; h <= to; ++h) {
       if (dot(coarse_.position(g), coarse_.position(h)) >= lowest) around[g].push_back(h);
     }
-  }
+  };
+  ParallelErrors errors;
+#pragma omp parallel for schedule(dynamic, 64)
+  for (std::int32_t g = 0; g < m; ++g) errors.guard([&] { look_around(g); });
+  errors.rethrow();
   around_first_.assign(1, 0);
   for (const auto& places : around) {
     around_.insert(around_.end(), places.begin(), places.end());

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/ocean_depth.hpp"
 #include "geo/kernels/sphere_tectonics.hpp"
 
@@ -77,8 +78,7 @@ void SphereTectonics::add_uplifts(const FrontUplift& uplift) {
   };
 #pragma omp parallel for schedule(static)
   for (std::int32_t i = 0; i < mesh_->size(); ++i) forget(i);
-#pragma omp parallel for schedule(dynamic, 1)
-  for (std::size_t p = 0; p < plates; ++p) {
+  const auto raise_plate = [&](std::size_t p) {
     std::vector<std::int32_t> reached;
     for (std::size_t q = 0; q < plates; ++q) {
       reached.clear();
@@ -89,7 +89,11 @@ void SphereTectonics::add_uplifts(const FrontUplift& uplift) {
         forget(i);
       }
     }
-  }
+  };
+  ParallelErrors errors;
+#pragma omp parallel for schedule(dynamic, 1)
+  for (std::size_t p = 0; p < plates; ++p) errors.guard([&] { raise_plate(p); });
+  errors.rethrow();
 }
 
 /// Uplift of overriding plates, erosion, damping, accretion, ageing: all that goes on everywhere.

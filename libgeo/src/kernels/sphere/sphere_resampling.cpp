@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/ocean_depth.hpp"
 #include "geo/kernels/sphere_tectonics.hpp"
 #include "sample_sums.hpp"
@@ -68,8 +69,7 @@ void SphereTectonics::resample() {
   std::vector<int> root(plates);
   for (int p = 0; p < plates; ++p) root[p] = state_.root(p);
   const std::int32_t places = partition_.coarse().size();
-#pragma omp parallel for schedule(dynamic, 16)
-  for (std::int32_t g = 0; g < places; ++g) {
+  const auto resample_place = [&](std::int32_t g) {
     std::vector<int> candidates;
     for (int p = 0; p < plates; ++p) {
       if (!state_.plates[p].alive) continue;
@@ -115,7 +115,11 @@ void SphereTectonics::resample() {
         now.orogeny_age_myr[i] = 0.0F;
       }
     }
-  }
+  };
+  ParallelErrors errors;
+#pragma omp parallel for schedule(dynamic, 16)
+  for (std::int32_t g = 0; g < places; ++g) errors.guard([&] { resample_place(g); });
+  errors.rethrow();
   const auto oceanic = [&](const SphereCrust& crust) {
     return sample_km2() * sum_over(n, [&](std::int32_t i) {
              return crust.plate[i] >= 0 && crust.continental[i] == 0 ? 1.0 : 0.0;

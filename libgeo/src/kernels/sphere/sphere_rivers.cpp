@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/sphere_tectonics.hpp"
 #include "geo/kernels/surface_rivers.hpp"
 #include "sample_sums.hpp"
@@ -59,8 +60,7 @@ class SphereTectonics::MovingSurface {
     const std::int32_t n = m_.mesh_->size();
     constexpr std::int32_t kChunk = 2048;
     std::vector<std::vector<Crossing>> found((n + kChunk - 1) / kChunk);
-#pragma omp parallel for schedule(dynamic)
-    for (std::size_t chunk = 0; chunk < found.size(); ++chunk) {
+    const auto search = [&](std::size_t chunk) {
       const auto from = static_cast<std::int32_t>(chunk) * kChunk;
       for (std::int32_t i = from; i < std::min(n, from + kChunk); ++i) {
         if (graph_.is_there[i] == 0) continue;
@@ -79,7 +79,11 @@ class SphereTectonics::MovingSurface {
           found[chunk].push_back({other, i, far_m});
         }
       }
-    }
+    };
+    ParallelErrors errors;
+#pragma omp parallel for schedule(dynamic)
+    for (std::size_t chunk = 0; chunk < found.size(); ++chunk) errors.guard([&] { search(chunk); });
+    errors.rethrow();
     crossings_ = joined(found);
     std::sort(crossings_.begin(), crossings_.end());
     const auto same = [](const Crossing& a, const Crossing& b) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/cubic_rows.hpp"
 #include "geo/kernels/noise.hpp"
 #include "geo/kernels/smoothing.hpp"
@@ -44,20 +45,24 @@ void read_deformation(const Crust<float>& crust, const CoarseGrid& coarse,
                       const Tectonics<float>& t) {
   const Grid& grid = crust.grid;
   const CubicRows rows(coarse.grid(), grid);
+  ParallelErrors errors;
 #pragma omp parallel
   {
     std::vector<float> scratch;
 #pragma omp for schedule(static)
     for (int j = 0; j < grid.ny(); ++j) {
-      const auto read = [&](const std::vector<float>& from, std::span<float> to) {
-        rows.read(from, j, to.subspan(grid.cell(0, j), grid.nx()), scratch);
-      };
-      read(t.convergent, crust.convergent);
-      read(t.divergent, crust.divergent);
-      read(t.transform, crust.transform);
-      read(t.weakness, crust.weakness);
+      errors.guard([&] {
+        const auto read = [&](const std::vector<float>& from, std::span<float> to) {
+          rows.read(from, j, to.subspan(grid.cell(0, j), grid.nx()), scratch);
+        };
+        read(t.convergent, crust.convergent);
+        read(t.divergent, crust.divergent);
+        read(t.transform, crust.transform);
+        read(t.weakness, crust.weakness);
+      });
     }
   }
+  errors.rethrow();
 }
 
 void draw_thickness(const Crust<float>& crust) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/cubic_rows.hpp"
 #include "geo/kernels/exemplar_detail.hpp"
 #include "geo/kernels/fine_relief.hpp"
@@ -131,20 +132,25 @@ void detail_land(const Crust<float>& crust, const CoarseGrid& coarse, const Orog
   // What detail changes: the mean of it is taken out again.
   std::vector<float> change(grid.size());
   const CubicRows rows(coarse.grid(), grid);
+  ParallelErrors errors;
 #pragma omp parallel
   {
-    std::vector<float> line(grid.nx()), scratch;
+    auto line = errors.make<std::vector<float>>(grid.nx());
+    std::vector<float> scratch;
 #pragma omp for schedule(static)
     for (int j = 0; j < grid.ny(); ++j) {
-      rows.read(deviation, j, std::span<float>(line), scratch);
-      for (int i = 0; i < grid.nx(); ++i) {
-        const Index cell = grid.cell(i, j);
-        detail[cell] *= std::max(0.0F, line[i]);
-        const float own = crust.elevation_m[cell] - base[cell];
-        change[cell] = weight[cell] * (detail[cell] - own);
-      }
+      errors.guard([&] {
+        rows.read(deviation, j, std::span<float>(line), scratch);
+        for (int i = 0; i < grid.nx(); ++i) {
+          const Index cell = grid.cell(i, j);
+          detail[cell] *= std::max(0.0F, line[i]);
+          const float own = crust.elevation_m[cell] - base[cell];
+          change[cell] = weight[cell] * (detail[cell] - own);
+        }
+      });
     }
   }
+  errors.rethrow();
   const std::vector<float> mean = smoothed(grid, std::move(change), 2.0 * blur_of(band));
 #pragma omp parallel for schedule(static)
   for (Index cell = 0; cell < grid.size(); ++cell) {

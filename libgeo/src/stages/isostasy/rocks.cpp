@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/noise_row.hpp"
 #include "geo/kernels/smoothing.hpp"
 
@@ -42,24 +43,28 @@ void classify_rock(const Crust<float>& crust) {
   const Grid& grid = crust.grid;
   const Noise strata(crust.seed, "isostasy.strata");
   const double frequency = crust.radius_km() / 700.0;
+  ParallelErrors errors;
 #pragma omp parallel
   {
     NoiseRow row(grid);
-    std::vector<float> layer(grid.nx());
+    auto layer = errors.make<std::vector<float>>(grid.nx());
 #pragma omp for schedule(dynamic, 4)
     for (int j = 0; j < grid.ny(); ++j) {
-      row.choose(j, [&](int i) { return is_covered(crust, grid.cell(i, j)); });
-      row.fbm(strata, frequency, 4, 0.5, layer);
-      for (int i = 0; i < grid.nx(); ++i) {
-        const Index cell = grid.cell(i, j);
-        const RockType rock = is_covered(crust, cell) ? cover(layer[i]) : basement(crust, cell);
-        crust.rock[cell] = static_cast<std::int8_t>(rock);
-        const float fault = crust.in.boundary_type[cell] != 0 ? 1.5F : 1.0F;
-        // Smoothing must not lose digits: millionths become ones.
-        crust.erodibility[cell] = 1e6F * kErodibility[static_cast<int>(rock)] * fault;
-      }
+      errors.guard([&] {
+        row.choose(j, [&](int i) { return is_covered(crust, grid.cell(i, j)); });
+        row.fbm(strata, frequency, 4, 0.5, layer);
+        for (int i = 0; i < grid.nx(); ++i) {
+          const Index cell = grid.cell(i, j);
+          const RockType rock = is_covered(crust, cell) ? cover(layer[i]) : basement(crust, cell);
+          crust.rock[cell] = static_cast<std::int8_t>(rock);
+          const float fault = crust.in.boundary_type[cell] != 0 ? 1.5F : 1.0F;
+          // Smoothing must not lose digits: millionths become ones.
+          crust.erodibility[cell] = 1e6F * kErodibility[static_cast<int>(rock)] * fault;
+        }
+      });
     }
   }
+  errors.rethrow();
   constexpr double kThreePasses_m = 26e3;
   smooth(grid, crust.erodibility, kThreePasses_m);
 #pragma omp parallel for schedule(static)

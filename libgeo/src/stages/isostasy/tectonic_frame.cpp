@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "geo/core/field.hpp"
+#include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/smoothing.hpp"
 #include "geo/stages/isostasy/tectonics.hpp"
 
@@ -46,23 +47,27 @@ TectonicFrame tectonic_frame(const IsostasyParameters& p, const CoarseGrid& coar
   }
   const bool is_blueprint = p.crust == "blueprint";
   TectonicFrame frame;
+  ParallelErrors errors;
 #pragma omp parallel sections
   {
 #pragma omp section
-    if (is_blueprint) frame.convergent = sources(kConvergent, p.convergent_length_km);
+    errors.guard([&] {
+      if (is_blueprint) frame.convergent = sources(kConvergent, p.convergent_length_km);
+    });
 #pragma omp section
-    frame.divergent = sources(kDivergent, p.divergent_length_km);
+    errors.guard([&] { frame.divergent = sources(kDivergent, p.divergent_length_km); });
 #pragma omp section
-    frame.transform = sources(kTransform, p.transform_length_km);
+    errors.guard([&] { frame.transform = sources(kTransform, p.transform_length_km); });
 #pragma omp section
-    frame.rift_km = distance_to_marked_km(grid, ridge);
+    errors.guard([&] { frame.rift_km = distance_to_marked_km(grid, ridge); });
 #pragma omp section
-    frame.offshore_km = distance_to_marked_km(grid, continent);
+    errors.guard([&] { frame.offshore_km = distance_to_marked_km(grid, continent); });
 #pragma omp section
-    frame.inland_km = distance_to_marked_km(grid, ocean);
+    errors.guard([&] { frame.inland_km = distance_to_marked_km(grid, ocean); });
 #pragma omp section
-    frame.boundary_km = distance_to_marked_km(grid, boundary);
+    errors.guard([&] { frame.boundary_km = distance_to_marked_km(grid, boundary); });
   }
+  errors.rethrow();
   limit(frame.rift_km, 5000.0F);
   limit(frame.offshore_km, 20000.0F);
   limit(frame.inland_km, 20000.0F);

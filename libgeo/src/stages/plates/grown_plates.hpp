@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "geo/core/parallel_errors.hpp"
 #include "geo/core/random.hpp"
 #include "geo/kernels/continents.hpp"
 #include "geo/kernels/crust_age.hpp"
@@ -30,13 +31,17 @@ class GrownPlates {
     plates_ = draw_plates(growth, seed);
     const bool has_cratons = p_.continents == "cratons";
     CratonNoise noise;
+    ParallelErrors errors;
 #pragma omp parallel sections
     {
 #pragma omp section
-      plate_ = grow_plates(growth, mesh_, plates_, seed);
+      errors.guard([&] { plate_ = grow_plates(growth, mesh_, plates_, seed); });
 #pragma omp section
-      if (has_cratons) noise = craton_noise(mesh_, seed);
+      errors.guard([&] {
+        if (has_cratons) noise = craton_noise(mesh_, seed);
+      });
     }
+    errors.rethrow();
     evolve(growth);
     boundaries_ = find_boundaries(mesh_, plate_, rotations(), growth.speed_cm_yr,
                                   p_.boundary_smoothing_km, radius_km);
@@ -53,12 +58,16 @@ class GrownPlates {
 #pragma omp parallel sections
     {
 #pragma omp section
-      nearest_convergent_ = nearest_cells(mesh_, convergent, 2000.0 / radius_km);
+      errors.guard(
+          [&] { nearest_convergent_ = nearest_cells(mesh_, convergent, 2000.0 / radius_km); });
 #pragma omp section
-      if (has_cratons) nearest_ridge = nearest_ridges(cratons, mesh_, boundaries_);
+      errors.guard([&] {
+        if (has_cratons) nearest_ridge = nearest_ridges(cratons, mesh_, boundaries_);
+      });
 #pragma omp section
-      nearest_ = nearest_cells(mesh_, all, 6.0 * mesh_.spacing());
+      errors.guard([&] { nearest_ = nearest_cells(mesh_, all, 6.0 * mesh_.spacing()); });
     }
+    errors.rethrow();
     if (has_cratons) {
       potential_ = craton_potential(cratons, mesh_, plate_, plates_, nearest_ridge, noise, seed_);
     }

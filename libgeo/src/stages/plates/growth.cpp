@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "geo/core/error.hpp"
+#include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/continents.hpp"
 #include "geo/kernels/distance_to_coast.hpp"
 #include "geo/kernels/mesh_sampling.hpp"
@@ -49,17 +50,21 @@ class PlatesOnGrid {
                    io.write(field::boundary_strength), io.write(field::plate_velocity_east),
                    io.write(field::plate_velocity_north)};
     const auto heat = io.write(field::heat_anomaly);
+    ParallelErrors errors;
 #pragma omp parallel
     {
       std::vector<float> scratch;
-      Bends bends(*this);
+      auto made = errors.make<Bends>(*this);
 #pragma omp for schedule(dynamic, 4)
       for (int j = 0; j < grid_.ny(); ++j) {
-        smooth_fields_.heat(j, heat.subspan(grid_.cell(0, j), grid_.nx()), scratch);
-        bends.read(j);
-        for (int i = 0; i < grid_.nx(); ++i) draw_cell(i, j, bends, kAsItLies, to);
+        errors.guard([&] {
+          smooth_fields_.heat(j, heat.subspan(grid_.cell(0, j), grid_.nx()), scratch);
+          made->read(j);
+          for (int i = 0; i < grid_.nx(); ++i) draw_cell(i, j, *made, kAsItLies, to);
+        });
       }
     }
+    errors.rethrow();
     // Bent outlines fold over here and there; what they cut off is its neighbours'.
     const std::vector<Index> handed_over = connect_plates(grid_, to.plate);
     Bends bends(*this);
@@ -76,29 +81,33 @@ class PlatesOnGrid {
     std::vector<float> potential(grid_.size());
     const double frequency = radius_km_ / p_.coast_wavelength_km;
     constexpr double kNormal = 6.2, kSea = -9.0;  // fbm to unit deviation; no noise lifts that
+    ParallelErrors errors;
 #pragma omp parallel
     {
       NoiseRow row(grid_);
-      std::vector<float> noise(grid_.nx()), scratch;
+      auto noise = errors.make<std::vector<float>>(grid_.nx());
+      std::vector<float> scratch;
 #pragma omp for schedule(dynamic, 4)
       for (int j = 0; j < grid_.ny(); ++j) {
-        const auto along = std::span(potential).subspan(grid_.cell(0, j), grid_.nx());
-        smooth_fields_.potential(j, along, scratch);
-        row.choose(j, [&](int i) { return along[i] > kSea; });
-        row.fbm(coast_, frequency, 9, 0.55, noise);
-        for (int i = 0; i < grid_.nx(); ++i) {
-          if (!(along[i] > kSea)) continue;
-          along[i] = static_cast<float>(along[i] + kNormal * p_.coast_roughness * 0.5 * noise[i]);
-        }
+        errors.guard([&] {
+          const auto along = std::span(potential).subspan(grid_.cell(0, j), grid_.nx());
+          smooth_fields_.potential(j, along, scratch);
+          row.choose(j, [&](int i) { return along[i] > kSea; });
+          row.fbm(coast_, frequency, 9, 0.55, noise);
+          for (int i = 0; i < grid_.nx(); ++i) {
+            if (!(along[i] > kSea)) continue;
+            along[i] = static_cast<float>(along[i] + kNormal * p_.coast_roughness * 0.5 * noise[i]);
+          }
+        });
       }
     }
+    errors.rethrow();
     const float edge = level_for_fraction(grid_, potential, 1.0 - p_.cratons.share);
 #pragma omp parallel for schedule(static)
     for (Index cell = 0; cell < grid_.size(); ++cell) potential[cell] -= edge;
     std::vector<float> distance_m(grid_.size());
     distance_to_coast(grid_, potential, distance_m);
-#pragma omp parallel for schedule(dynamic, 4)
-    for (int j = 0; j < grid_.ny(); ++j) {
+    const auto draw_row = [&](int j) {
       std::vector<float> scratch, convergent_km(grid_.nx());
       smooth_fields_.convergent_km(j, convergent_km, scratch);
       for (int i = 0; i < grid_.nx(); ++i) {
@@ -109,7 +118,10 @@ class PlatesOnGrid {
         const double inland_km = (potential[cell] >= 0.0F ? 1e-3 : -1e-3) * distance_m[cell];
         fraction_[cell] = static_cast<float>(std::clamp(0.5 + inland_km / width_km, 0.0, 1.0));
       }
-    }
+    };
+#pragma omp parallel for schedule(dynamic, 4)
+    for (int j = 0; j < grid_.ny(); ++j) errors.guard([&] { draw_row(j); });
+    errors.rethrow();
     // Distances to a frayed edge are creased; margins are not.
     constexpr double kCreases_m = 30e3;
     smooth(grid_, fraction_, kCreases_m);
@@ -140,33 +152,39 @@ class PlatesOnGrid {
     const auto& mesh = grown_.mesh();
     constexpr double kYoungest_myr = 200.0, kOldest_myr = 3200.0;
     const double frequency = radius_km_ / 3500.0;
+    ParallelErrors errors;
 #pragma omp parallel
     {
       NoiseRow row(grid_);
-      std::vector<float> noise(grid_.nx()), convergent_km(grid_.nx()), scratch;
+      auto noise = errors.make<std::vector<float>>(grid_.nx());
+      auto convergent_km = errors.make<std::vector<float>>(grid_.nx());
+      std::vector<float> scratch;
 #pragma omp for schedule(dynamic, 4)
       for (int j = 0; j < grid_.ny(); ++j) {
-        smooth_fields_.convergent_km(j, convergent_km, scratch);
-        row.choose(j, [&](int i) { return fraction_[grid_.cell(i, j)] > 0.0F; });
-        row.fbm(thermal_, frequency, 3, 0.5, noise);
-        for (int i = 0; i < grid_.nx(); ++i) {
-          const Index cell = grid_.cell(i, j);
-          orogeny_[cell] = static_cast<std::int8_t>(OrogenyType::none);
-          if (fraction_[cell] <= 0.0F) continue;
-          const double reached_km = convergent_km[i];
-          const bool reached = reached_km < p_.orogeny_reach_km && fraction_[cell] > 0.3F;
-          const std::int32_t point =
-              reached ? grown_.convergent_point(mesh.locate(grid_.unit_vector(i, j))) : -1;
-          if (point >= 0) {
-            orogeny_[cell] = static_cast<std::int8_t>(orogeny[point]);
+        errors.guard([&] {
+          smooth_fields_.convergent_km(j, convergent_km, scratch);
+          row.choose(j, [&](int i) { return fraction_[grid_.cell(i, j)] > 0.0F; });
+          row.fbm(thermal_, frequency, 3, 0.5, noise);
+          for (int i = 0; i < grid_.nx(); ++i) {
+            const Index cell = grid_.cell(i, j);
+            orogeny_[cell] = static_cast<std::int8_t>(OrogenyType::none);
+            if (fraction_[cell] <= 0.0F) continue;
+            const double reached_km = convergent_km[i];
+            const bool reached = reached_km < p_.orogeny_reach_km && fraction_[cell] > 0.3F;
+            const std::int32_t point =
+                reached ? grown_.convergent_point(mesh.locate(grid_.unit_vector(i, j))) : -1;
+            if (point >= 0) {
+              orogeny_[cell] = static_cast<std::int8_t>(orogeny[point]);
+            }
+            const double old = std::clamp(0.5 + 2.0 * noise[i], 0.0, 1.0);
+            const double far = smooth_step(0.0, 1500.0, reached_km);
+            const double thermal_myr = kYoungest_myr + (kOldest_myr - kYoungest_myr) * old * far;
+            if (fraction_[cell] >= 0.5F) age_[cell] = static_cast<float>(thermal_myr);
           }
-          const double old = std::clamp(0.5 + 2.0 * noise[i], 0.0, 1.0);
-          const double far = smooth_step(0.0, 1500.0, reached_km);
-          const double thermal_myr = kYoungest_myr + (kOldest_myr - kYoungest_myr) * old * far;
-          if (fraction_[cell] >= 0.5F) age_[cell] = static_cast<float>(thermal_myr);
-        }
+        });
       }
     }
+    errors.rethrow();
   }
 
  private:

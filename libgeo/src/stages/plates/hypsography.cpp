@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "geo/core/error.hpp"
+#include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/crust_columns.hpp"
 #include "geo/kernels/great_circles.hpp"
 #include "geo/kernels/noise_row.hpp"
@@ -46,19 +47,23 @@ bool leaves_ties(const CircleCuts& cuts) {
 /// Noise of unit deviation, more or less, in every cell.
 void add_fbm(const Grid& grid, const Noise& noise, double frequency, double factor,
              std::span<float> values) {
+  ParallelErrors errors;
 #pragma omp parallel
   {
     NoiseRow row(grid);
-    std::vector<float> line(grid.nx());
+    auto line = errors.make<std::vector<float>>(grid.nx());
 #pragma omp for schedule(dynamic, 4)
     for (int j = 0; j < grid.ny(); ++j) {
-      row.choose_all(j);
-      row.fbm(noise, frequency, kOctaves, kGain, line);
-      for (int i = 0; i < grid.nx(); ++i) {
-        values[grid.cell(i, j)] += static_cast<float>(factor * line[i]);
-      }
+      errors.guard([&] {
+        row.choose_all(j);
+        row.fbm(noise, frequency, kOctaves, kGain, line);
+        for (int i = 0; i < grid.nx(); ++i) {
+          values[grid.cell(i, j)] += static_cast<float>(factor * line[i]);
+        }
+      });
     }
   }
+  errors.rethrow();
 }
 
 class Order {

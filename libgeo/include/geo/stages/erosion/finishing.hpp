@@ -8,6 +8,7 @@
 
 #include "geo/core/grid.hpp"
 #include "geo/core/numeric.hpp"
+#include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/noise_row.hpp"
 #include "geo/stages/erosion.hpp"
 
@@ -52,6 +53,7 @@ bool warp(const ErosionParameters& p, const Lift<V>& lift, const Grid& grid, std
   const Number wavelength_km = lift(p.warping_km);
   const bool wavelength_matters = carries_derivative(wavelength_km);
   const V amplitude(lift(p.warping_m) / kDeviation);
+  ParallelErrors errors;
 #pragma omp parallel
   {
     NoiseRow row(grid);
@@ -62,28 +64,31 @@ bool warp(const ErosionParameters& p, const Lift<V>& lift, const Grid& grid, std
     std::vector<float> swell, shorter, longer;
 #pragma omp for schedule(dynamic, 4)
     for (int j = 0; j < grid.ny(); ++j) {
-      V* heights = &elevation_m[grid.cell(0, j)];
-      row.choose(j, [&](int i) { return value_of(heights[i]) > 0.0; });
-      draw_swell(p.warping_km, swell);
-      const double step_km = 2e-3 * p.warping_km;
-      if (wavelength_matters) {
-        draw_swell(p.warping_km - step_km, shorter);
-        draw_swell(p.warping_km + step_km, longer);
-      }
-      for (int i = 0; i < grid.nx(); ++i) {
-        V& height = heights[i];
-        if (value_of(height) <= 0.0) continue;
-        V bend(swell[i]);
+      errors.guard([&] {
+        V* heights = &elevation_m[grid.cell(0, j)];
+        row.choose(j, [&](int i) { return value_of(heights[i]) > 0.0; });
+        draw_swell(p.warping_km, swell);
+        const double step_km = 2e-3 * p.warping_km;
         if (wavelength_matters) {
-          const double rate = (longer[i] - shorter[i]) / (2.0 * step_km);
-          bend += V(rate * (wavelength_km - p.warping_km));
+          draw_swell(p.warping_km - step_km, shorter);
+          draw_swell(p.warping_km + step_km, longer);
         }
-        bend *= amplitude;
-        const V part = lesser(V(height / V(kFull_m)), V(1.0F));
-        height = greater(V(height + part * bend), V(V(0.2F) * height));
-      }
+        for (int i = 0; i < grid.nx(); ++i) {
+          V& height = heights[i];
+          if (value_of(height) <= 0.0) continue;
+          V bend(swell[i]);
+          if (wavelength_matters) {
+            const double rate = (longer[i] - shorter[i]) / (2.0 * step_km);
+            bend += V(rate * (wavelength_km - p.warping_km));
+          }
+          bend *= amplitude;
+          const V part = lesser(V(height / V(kFull_m)), V(1.0F));
+          height = greater(V(height + part * bend), V(V(0.2F) * height));
+        }
+      });
     }
   }
+  errors.rethrow();
   return true;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/smoothing.hpp"
 #include "geo/stages/isostasy/tectonics.hpp"
 
@@ -30,23 +31,27 @@ Tectonics<V> deform(const Crust<V>& crust, const CoarseGrid& coarse, const Tecto
     return field;
   };
   Tectonics<V> t;
+  ParallelErrors errors;
 #pragma omp parallel sections
   {
 #pragma omp section
-    if (p.crust == "blueprint") t.convergent = spread(frame.convergent, p.convergent_length_km);
+    errors.guard([&] {
+      if (p.crust == "blueprint") t.convergent = spread(frame.convergent, p.convergent_length_km);
+    });
 #pragma omp section
-    t.divergent = spread(frame.divergent, p.divergent_length_km);
+    errors.guard([&] { t.divergent = spread(frame.divergent, p.divergent_length_km); });
 #pragma omp section
-    t.transform = spread(frame.transform, p.transform_length_km);
+    errors.guard([&] { t.transform = spread(frame.transform, p.transform_length_km); });
 #pragma omp section
-    {
+    errors.guard([&] {
       const Number length_km = crust.lift(p.weakness_length_km);
       t.weakness.resize(grid.size());
       for (Index cell = 0; cell < grid.size(); ++cell) {
         t.weakness[cell] = V(exp(-static_cast<double>(frame.boundary_km[cell]) / length_km));
       }
-    }
+    });
   }
+  errors.rethrow();
   return t;
 }
 
