@@ -2,26 +2,34 @@
 
 namespace geo {
 
-void State::set(const FieldSpec& spec, Values values) {
-  share(spec, std::make_shared<Values>(std::move(values)));
-}
-
-void State::share(const FieldSpec& spec, std::shared_ptr<const Values> values) {
-  const auto size = std::visit([](const auto& array) { return array.size(); }, *values);
+void State::check_fits(const FieldSpec& spec, const Values& values) const {
+  const auto size = std::visit([](const auto& array) { return array.size(); }, values);
   if (size != static_cast<std::size_t>(grid_->size())) {
     throw Bug("field " + std::string(spec.name) + ": array does not fit the grid");
   }
-  if (values->index() != static_cast<std::size_t>(spec.type)) {
+  if (values.index() != static_cast<std::size_t>(spec.type)) {
     throw Bug("field " + std::string(spec.name) + ": array of another type");
   }
-  // No values are made constant: only their sole holder changes them.
-  fields_[spec.name] = {&spec, std::const_pointer_cast<Values>(std::move(values))};
+}
+
+void State::set(const FieldSpec& spec, Values values) {
+  check_fits(spec, values);
+  fields_[spec.name] = HeldValues(std::move(values));
+}
+
+void State::share(const FieldSpec& spec, std::shared_ptr<const Values> values) {
+  check_fits(spec, *values);
+  fields_[spec.name] = HeldValues(std::move(values));
+}
+
+const HeldValues& State::held(const FieldSpec& spec) const {
+  const auto at = fields_.find(spec.name);
+  if (at == fields_.end()) throw Bug("field " + std::string(spec.name) + " is not there");
+  return at->second;
 }
 
 std::shared_ptr<const Values> State::values(const FieldSpec& spec) const {
-  const auto at = fields_.find(spec.name);
-  if (at == fields_.end()) throw Bug("field " + std::string(spec.name) + " is not there");
-  return at->second.values;
+  return held(spec).lend();
 }
 
 std::vector<const FieldSpec*> State::present() const {
