@@ -1,5 +1,4 @@
 #include <fmt/core.h>
-#include <omp.h>
 
 #include <CLI/App.hpp>
 #include <CLI/Formatter.hpp>
@@ -93,10 +92,9 @@ void run(const CalibrateOptions& options) {
     throw geo::ConfigurationError(
         "--target is missing: must be earth, earth-statistical, a CSV file or a NetCDF relief");
   }
-  const int threads = thread_count(options.threads);
+  use_threads(options.threads);
   Configuration configuration;
   const std::string name = configure(configuration, options);
-  omp_set_num_threads(threads);
   Log log(configuration.calibration);
   geo::calibration::Result result;
   try {

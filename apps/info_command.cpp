@@ -11,7 +11,9 @@
 #include "commands.hpp"
 #include "geo/core/error.hpp"
 #include "geo/io/digest.hpp"
+#include "geo/io/recorded_file.hpp"
 #include "geo/io/stage_file.hpp"
+#include "thread_count.hpp"
 
 namespace terrane {
 namespace {
@@ -58,11 +60,32 @@ void print_json(const geo::io::Snapshot& snapshot, const geo::io::Provenance& pr
   fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
+void verify(const std::string& folder, bool json) {
+  const auto found = geo::io::verify_run(folder);
+  if (json) {
+    const nlohmann::ordered_json text{{"run", folder},
+                                      {"files", found.files},
+                                      {"fields", found.fields},
+                                      {"differences", found.differences}};
+    fmt::print("{}\n", text.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  } else {
+    for (const std::string& difference : found.differences) fmt::print("{}\n", difference);
+  }
+  if (found.differences.empty()) {
+    if (!json) fmt::print("{} files with {} fields are as written\n", found.files, found.fields);
+    return;
+  }
+  const std::size_t count = found.differences.size();
+  throw geo::InputError(fmt::format("{}: {} of {} files {} not what manifest.json says: {}{}",
+                                    folder, count, found.files, count == 1 ? "is" : "are",
+                                    found.differences.front(), count == 1 ? "" : " and more"));
+}
+
 }  // namespace
 
 void add_info_command(CLI::App& program, Action& action) {
   struct Options {
-    std::string file;
+    std::string file, run;
     bool json = false;
   };
   CLI::App* command = program.add_subcommand(
@@ -70,8 +93,15 @@ void add_info_command(CLI::App& program, Action& action) {
   const auto options = std::make_shared<Options>();
   command->add_option("FILE", options->file, "A stage file of a run, such as 04-climate.nc");
   command->add_flag("--json", options->json, "As JSON, with digests");
+  command
+      ->add_option("--verify", options->run,
+                   "Recomputes the digests of all files of a run and names what differs from its "
+                   "manifest; exit code 3 then")
+      ->type_name("DIR");
   command->callback([&action, options] {
     action = [options] {
+      use_threads();
+      if (!options->run.empty()) return verify(options->run, options->json);
       if (options->file.empty()) {
         throw geo::ConfigurationError("info: which FILE? Give a stage file, such as 04-climate.nc");
       }

@@ -15,6 +15,7 @@
 #include "log.hpp"
 #include "progress.hpp"
 #include "signals.hpp"
+#include "thread_count.hpp"
 
 namespace terrane {
 namespace {
@@ -42,6 +43,7 @@ void set_size(const Configuration& configuration, const std::string& text) {
 
 void make_island(const IslandOptions& options) {
   set_log_style({.json = false, .quiet = options.quiet});
+  use_threads();
   const geo::io::RunFolder folder(options.folder);
   if (options.folder.empty()) {
     throw geo::ConfigurationError("island: give the folder of a run: terrane island DIR");

@@ -5,6 +5,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -40,6 +41,8 @@ spdlog::logger& logger() {
   return *kLogger;
 }
 
+std::atomic<bool> json{false};
+
 std::string one_line(std::string_view message) {
   std::string line(message);
   std::replace_if(
@@ -50,9 +53,12 @@ std::string one_line(std::string_view message) {
 }  // namespace
 
 void set_log_style(LogStyle style) {
+  json = style.json;
   if (style.json) logger().set_formatter(std::make_unique<JsonFormatter>());
   logger().set_level(style.quiet ? spdlog::level::warn : spdlog::level::info);
 }
+
+bool logs_json() { return json; }
 
 void log_info(std::string_view message) { logger().info("{}", one_line(message)); }
 void log_warning(std::string_view message) {

@@ -13,6 +13,8 @@ struct LogStyle {
 
 /// Sets the style; until then plain text.
 void set_log_style(LogStyle style);
+/// Whether lines are JSON.
+[[nodiscard]] bool logs_json();
 
 void log_info(std::string_view message);
 void log_warning(std::string_view message);

@@ -23,6 +23,7 @@
 #include "log.hpp"
 #include "memory.hpp"
 #include "signals.hpp"
+#include "waiting.hpp"
 
 namespace {
 
@@ -124,7 +125,8 @@ void run_program(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  terrane::keep_freed_memory();
+  terrane::wait_without_spinning(argc, argv);
+  terrane::prepare_memory();
   terrane::keep_standard_streams();
   terrane::prepare_signals();
   try {
@@ -146,7 +148,7 @@ int main(int argc, char** argv) {
     terrane::log_error(system_message(error));
     return static_cast<int>(geo::ErrorKind::io);
   } catch (const std::bad_alloc&) {
-    terrane::log_error("not enough memory for this grid; --dry-run tells how much a run needs");
+    terrane::log_error(terrane::want_of_memory());
     return static_cast<int>(geo::ErrorKind::configuration);
   } catch (...) {
     terrane::log_error(

@@ -11,8 +11,10 @@
 #include "configuration.hpp"
 #include "geo/core/error.hpp"
 #include "geo/io/config.hpp"
+#include "geo/io/recorded_file.hpp"
 #include "geo/io/run_folder.hpp"
 #include "geo/io/run_pictures.hpp"
+#include "thread_count.hpp"
 
 namespace terrane {
 namespace {
@@ -57,7 +59,8 @@ std::filesystem::path folder_for(const MapsOptions& options, const geo::io::RunF
 }
 
 void draw_maps(const MapsOptions& options) {
-  const geo::io::RunFolder folder(options.folder);
+  use_threads();
+  geo::io::RunFolder folder(options.folder);
   if (options.folder.empty() || !std::filesystem::exists(folder.manifest())) {
     throw geo::ConfigurationError(fmt::format("maps: {} holds no run: give the folder of one",
                                               options.folder.empty() ? "nothing" : options.folder));
@@ -79,7 +82,9 @@ void draw_maps(const MapsOptions& options) {
   } else if (options.is_other_view() || !options.output.empty()) {
     drawn = geo::io::draw_view(folder, view, folder_for(options, folder, view));
   } else {
+    folder.open();  // nobody else changes its manifest now
     drawn = geo::io::draw_run(folder, view);
+    geo::io::record_summaries(folder);
   }
   for (const auto& path : drawn) fmt::print("{}\n", path.string());
 }

@@ -1,27 +1,43 @@
 #include "memory.hpp"
 
+#include <dlfcn.h>
+#include <fcntl.h>
 #include <malloc.h>
+#include <pthread.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include <cstddef>
+#include <algorithm>
+#include <array>
+#include <atomic>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <ctime>
 #include <new>
 
+#include "geo/core/error.hpp"
+#include "geo/core/parallel_errors.hpp"
+#include "log.hpp"
+
+// Sanitizers bring a heap of their own, which ends the program by itself.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define TERRANE_FOREIGN_HEAP 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define TERRANE_FOREIGN_HEAP 1
+#endif
+#endif
+
 namespace terrane {
-
-void keep_freed_memory() {
-  mallopt(M_MMAP_MAX, 0);
-  constexpr int kKeptAtTheEnd = 2047 << 20;
-  mallopt(M_TRIM_THRESHOLD, kKeptAtTheEnd);
-}
-
 namespace {
 
-/// Asks for pages of 2 MB within a block: a raster then takes few entries of the processor's table
-/// of addresses, which walks along rivers would else exceed at every step. Where the system has
-/// none, nothing changes.
+std::atomic<std::size_t> wanted_bytes{0};
+
+/// Pages of 2 MB within a block: a raster then takes few entries of the processor's table of
+/// addresses, which walks along rivers would else exceed at every step. Where the system has none,
+/// nothing changes.
 void prefer_large_pages(void* block, std::size_t size) {
   constexpr std::size_t kWorthwhile = std::size_t(4) << 20;
   if (size < kWorthwhile) return;
@@ -31,19 +47,162 @@ void prefer_large_pages(void* block, std::size_t size) {
   madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
 }
 
+/// Address space that the program takes, bytes; 0 if the system does not tell. Allocates nothing.
+double bytes_in_use() {
+  const int file = ::open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
+  if (file < 0) return 0.0;
+  std::array<char, 64> text{};
+  const ssize_t read = ::read(file, text.data(), text.size() - 1);
+  ::close(file);
+  return read > 0 ? std::strtod(text.data(), nullptr) * static_cast<double>(sysconf(_SC_PAGESIZE))
+                  : 0.0;
+}
+
+/// The sentence into a buffer of the caller's, as there may be no memory for another.
+template <std::size_t kSize>
+void say_want(std::array<char, kSize>& text, std::size_t wanted) {
+  constexpr double kMegabyte = 1e6;
+  const double use = bytes_in_use() / kMegabyte;
+  const double more = std::max(0.001, static_cast<double>(wanted) / kMegabyte);
+  std::snprintf(text.data(), text.size(),
+                "not enough memory: %.*f MB more were wanted beyond the %.0f MB in use; a smaller "
+                "--grid takes less, terrane run --dry-run tells how much",
+                more < 10.0 ? 3 : 0, more, use);
+}
+
+/// Ends the program here and now, with one line. Other threads that run out wait for that.
+[[noreturn]] void end_with(const char* message) {
+  static std::atomic_flag said = ATOMIC_FLAG_INIT;
+  if (said.test_and_set()) {
+    while (true) ::pause();
+  }
+  std::array<char, 512> line{};
+  const int length =
+      logs_json()
+          ? std::snprintf(line.data(), line.size(),
+                          R"({"time":%lld.0,"level":"error","message":"terrane: error: %s"})"
+                          "\n",
+                          static_cast<long long>(std::time(nullptr)), message)
+          : std::snprintf(line.data(), line.size(), "terrane: error: %s\n", message);
+  if (length > 0) {
+    const auto size = std::min(line.size() - 1, static_cast<std::size_t>(length));
+    [[maybe_unused]] const ssize_t told = ::write(STDERR_FILENO, line.data(), size);
+  }
+  ::_exit(static_cast<int>(geo::ErrorKind::configuration));
+}
+
+[[noreturn]] void end_for_want_of(std::size_t wanted) {
+  std::array<char, 256> text{};
+  say_want(text, wanted);
+  end_with(text.data());
+}
+
+/// Pages below the stack that main stands on are asked for while there are some: a stack that
+/// cannot grow ends a program by a signal.
+void reserve_stack() {
+  constexpr std::size_t kReserved = std::size_t(1) << 20, kPage = 4096;
+  std::array<volatile char, kReserved> stack;
+  for (std::size_t at = 0; at < kReserved; at += kPage) stack[at] = 0;
+}
+
 }  // namespace
+
+void prepare_memory() {
+  mallopt(M_MMAP_MAX, 0);
+  constexpr int kKeptAtTheEnd = 2047 << 20;
+  mallopt(M_TRIM_THRESHOLD, kKeptAtTheEnd);
+  reserve_stack();
+}
+
+std::string want_of_memory() {
+  std::array<char, 256> text{};
+  say_want(text, wanted_bytes.load());
+  return text.data();
+}
+
 }  // namespace terrane
+
+#ifdef TERRANE_FOREIGN_HEAP
+
+namespace {
+void* allocate(std::size_t size) { return std::malloc(size); }
+}  // namespace
+
+#else
+
+extern "C" {
+// The C library's own, under the names that it keeps for those who put theirs in front.
+void* __libc_malloc(std::size_t size);
+void* __libc_calloc(std::size_t count, std::size_t size);
+void* __libc_realloc(void* block, std::size_t size);
+}
+
+namespace {
+
+void* allocate(std::size_t size) { return __libc_malloc(size); }
+
+/// What the machine could never hold is the fault of who asks, a damaged file perhaps, and for that
+/// one to tell.
+bool is_sensible(std::size_t size) {
+  static const double kMachine_bytes =
+      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  return static_cast<double>(size) < kMachine_bytes;
+}
+
+void* checked(void* block, std::size_t size) {
+  if (block == nullptr && size > 0 && is_sensible(size)) terrane::end_for_want_of(size);
+  return block;
+}
+
+}  // namespace
+
+/// What libraries written in C allocate with: few of them survive a refusal, and none tells it.
+extern "C" void* malloc(std::size_t size) noexcept { return checked(__libc_malloc(size), size); }
+extern "C" void* calloc(std::size_t count, std::size_t size) noexcept {
+  std::size_t bytes = 0;
+  if (__builtin_mul_overflow(count, size, &bytes)) return nullptr;
+  return checked(__libc_calloc(count, size), bytes);
+}
+extern "C" void* realloc(void* block, std::size_t size) noexcept {
+  return checked(__libc_realloc(block, size), size);
+}
+
+/// OpenMP cannot say that a thread could not begin but by its own words and exit code 1.
+extern "C" int pthread_create(pthread_t* thread, const pthread_attr_t* attributes,
+                              void* (*start)(void*), void* argument) noexcept {
+  using Create = int (*)(pthread_t*, const pthread_attr_t*, void* (*)(void*), void*);
+  static const auto kCreate = reinterpret_cast<Create>(::dlsym(RTLD_NEXT, "pthread_create"));
+  const int refused = kCreate(thread, attributes, start, argument);
+  if (refused == 0) return 0;
+  std::size_t stack = 0;
+  if (attributes == nullptr || pthread_attr_getstacksize(attributes, &stack) != 0) {
+    pthread_attr_t usual;
+    if (pthread_getattr_default_np(&usual) == 0) pthread_attr_getstacksize(&usual, &stack);
+  }
+  std::array<char, 256> text{};
+  std::snprintf(text.data(), text.size(),
+                "could not begin a thread (%s): its stack wants %.0f MB of memory; --threads 1 "
+                "needs fewer",
+                std::strerror(refused), static_cast<double>(stack) / 1e6);
+  terrane::end_with(text.data());
+}
+
+#endif
 
 /// What every container of the program allocates with. The array forms come here too.
 void* operator new(std::size_t size) {
   while (true) {
-    if (void* block = std::malloc(size == 0 ? 1 : size)) {
+    if (void* block = allocate(size == 0 ? 1 : size)) {
       terrane::prefer_large_pages(block, size);
       return block;
     }
-    const std::new_handler handler = std::get_new_handler();
-    if (handler == nullptr) throw std::bad_alloc();
-    handler();
+    if (const std::new_handler handler = std::get_new_handler()) {
+      handler();
+      continue;
+    }
+    if (!geo::ParallelErrors::is_carried()) terrane::end_for_want_of(size);
+    terrane::wanted_bytes = size;
+    throw std::bad_alloc();
   }
 }
 void operator delete(void* block) noexcept { std::free(block); }

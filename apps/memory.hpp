@@ -1,10 +1,20 @@
 #pragma once
 
+#include <cstddef>
+#include <string>
+
 namespace terrane {
 
 /// Rasters come and go by the hundred: what one leaves is kept for the next instead of being given
 /// back to the system, which would have to clear it again, page by page. Of what is left at the end
 /// of the heap, more than 2 GB still goes back.
-void keep_freed_memory();
+///
+/// Memory that runs out ends the program with exit code 2 and one line that says how much was
+/// wanted, wherever it happens: std::bad_alloc where it can be carried to `main`, at once where
+/// not: in libraries written in C, in OpenMP's own, in a parallel region without a guard.
+void prepare_memory();
+
+/// What `main` says of std::bad_alloc, which knows no size.
+std::string want_of_memory();
 
 }  // namespace terrane

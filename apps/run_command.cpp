@@ -1,6 +1,5 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
-#include <omp.h>
 
 #include <CLI/App.hpp>
 #include <CLI/Formatter.hpp>
@@ -30,7 +29,7 @@ struct RunOptions {
   std::string config, folder = "out", preset, seed, grid, topology, dem, exemplars, from, to,
                       threads;
   std::vector<std::string> assignments;
-  bool resume = false, overwrite = false, dry_run = false;
+  bool resume = false, allow_other_build = false, overwrite = false, dry_run = false;
   bool quiet = false, log_json = false, no_vtk = false, no_maps = false;
 };
 
@@ -112,7 +111,7 @@ bool configure(Configuration& configuration, const RunOptions& options) {
 }
 
 void print_prediction(const geo::io::RunSession& session, const RunOptions& options, int threads) {
-  const auto prediction = session.prediction();
+  const auto prediction = session.prediction(geo::io::measure_machine(threads));
   const auto& grid = session.grid();
   fmt::print("grid    {} x {}, {} cells\n", grid.nx(), grid.ny(), grid.size());
   fmt::print("stages  {}\n", fmt::join(session.stages_to_run(), " "));
@@ -124,10 +123,9 @@ void print_prediction(const geo::io::RunSession& session, const RunOptions& opti
 
 void run(const RunOptions& options) {
   set_log_style({.json = options.log_json, .quiet = options.quiet});
-  const int threads = thread_count(options.threads);
+  const int threads = use_threads(options.threads);
   Configuration configuration;
   const bool folders_configuration = configure(configuration, options);
-  omp_set_num_threads(threads);
   geo::io::RunSession session(configuration.pipeline, configuration.stage_numbers(),
                               configuration.settings, configuration.planet,
                               configuration.parameters(),
@@ -135,6 +133,7 @@ void run(const RunOptions& options) {
                                .from = options.from,
                                .to = options.to,
                                .resume = options.resume,
+                               .allow_other_build = options.allow_other_build,
                                .folders_configuration = folders_configuration,
                                .overwrite = options.overwrite,
                                .threads = threads});
@@ -213,6 +212,9 @@ void add_run_command(CLI::App& program, Action& action) {
       ->type_name("STAGE");
   command->add_option("--to", o.to, "Last stage")->type_name("STAGE");
   command->add_flag("--resume", o.resume, "Go on after the last complete stage of the folder");
+  command->add_flag("--allow-other-build", o.allow_other_build,
+                    "With --resume or --from: go on behind stages that another build of terrane "
+                    "wrote; the manifest keeps that it was allowed");
   command->add_flag("--overwrite", o.overwrite, "Replace the run that the folder holds");
   command->add_option("--threads", o.threads, "Threads (default: as many as there are cores)")
       ->type_name("N");

@@ -11,6 +11,7 @@
 #include "geo/core/error.hpp"
 #include "geo/io/planet_file.hpp"
 #include "geo/io/scorecard.hpp"
+#include "thread_count.hpp"
 
 namespace terrane {
 namespace {
@@ -75,6 +76,7 @@ void add_score_command(CLI::App& program, Action& action) {
         throw geo::ConfigurationError(
             "score: which planet? Give the folder of a run or an elevation file");
       }
+      use_threads();
       const auto state =
           geo::io::read_planet_or_relief(options->place, geo::io::scorecard_fields());
       const auto card = geo::io::score_planet(state);

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <exception>
 
 #include "geo/core/error.hpp"
+#include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/receiver_distance.hpp"
 
 namespace geo::calibration {
@@ -52,19 +52,16 @@ Objective::Objective(Problem& problem, std::span<const Parameter> configuration,
 template <class Work>
 void Objective::for_seeds(Work&& work) {
   const auto count = static_cast<std::ptrdiff_t>(planets_.size());
-  std::vector<std::exception_ptr> failed(planets_.size());
+  std::vector<ParallelErrors> errors(planets_.size());
 #pragma omp parallel for schedule(dynamic, 1) if (count > 1)
   for (std::ptrdiff_t s = 0; s < count; ++s) {
-    try {
+    errors[s].guard([&] {
       if (stop_ != nullptr && stop_->load(std::memory_order_relaxed)) throw Interrupted();
       work(static_cast<std::size_t>(s));
-    } catch (...) {
-      failed[s] = std::current_exception();
-    }
+    });
   }
-  for (const auto& failure : failed) {
-    if (failure) std::rethrow_exception(failure);
-  }
+  // Whichever came first in time, it is the first seed's that is told.
+  for (const ParallelErrors& of_seed : errors) of_seed.rethrow();
 }
 
 void Objective::hold(std::size_t s, const Relief<double>& relief) {

@@ -40,11 +40,18 @@ void redirect(const std::filesystem::path& file, int descriptor) {
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGXFSZ, SIG_DFL);
   ::unsetenv("SOURCE_DATE_EPOCH");
-  for (const auto& [name, value] : call.environment) ::setenv(name.c_str(), value.c_str(), 1);
+  for (const auto& [name, value] : call.environment) {
+    value.empty() ? ::unsetenv(name.c_str()) : ::setenv(name.c_str(), value.c_str(), 1);
+  }
   if (call.file_size_limit_bytes >= 0) {
     const auto bytes = static_cast<rlim_t>(call.file_size_limit_bytes);
     const rlimit limit{bytes, bytes};
     if (::setrlimit(RLIMIT_FSIZE, &limit) != 0) ::_exit(kCouldNotStart);
+  }
+  if (call.address_space_limit_bytes >= 0) {
+    const auto bytes = static_cast<rlim_t>(call.address_space_limit_bytes);
+    const rlimit limit{bytes, bytes};
+    if (::setrlimit(RLIMIT_AS, &limit) != 0) ::_exit(kCouldNotStart);
   }
   if (!call.working_folder.empty() && ::chdir(call.working_folder.c_str()) != 0) {
     ::_exit(kCouldNotStart);
@@ -109,6 +116,16 @@ Outcome Running::finish() {
 }
 
 std::string Running::err_so_far() const { return text_of(folder_ / "err"); }
+
+long Running::address_space_bytes() const {
+  long pages = 0;
+  std::ifstream("/proc/" + std::to_string(process_) + "/statm") >> pages;
+  return pages * ::sysconf(_SC_PAGESIZE);
+}
+
+std::string Running::environment() const {
+  return text_of("/proc/" + std::to_string(process_) + "/environ");
+}
 
 Outcome terrane(const Call& call) { return Running(call).finish(); }
 Outcome terrane(std::vector<std::string> arguments) {

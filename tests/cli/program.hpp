@@ -19,10 +19,11 @@ struct Outcome {
 /// How `terrane` is called: arguments and circumstances.
 struct Call {
   std::vector<std::string> arguments;
-  std::vector<std::pair<std::string, std::string>> environment;
+  std::vector<std::pair<std::string, std::string>> environment;  ///< an empty value: without it
   std::filesystem::path working_folder;
-  long file_size_limit_bytes = -1;  ///< RLIMIT_FSIZE; negative: none
-  bool as_nobody = false;           ///< without the rights of root
+  long file_size_limit_bytes = -1;      ///< RLIMIT_FSIZE; negative: none
+  bool as_nobody = false;               ///< without the rights of root
+  long address_space_limit_bytes = -1;  ///< RLIMIT_AS; negative: none
 };
 
 /// The program on its way, heard through files in a folder of its own.
@@ -41,6 +42,10 @@ class Running {
   /// Waits for the end.
   Outcome finish();
   [[nodiscard]] std::string err_so_far() const;
+  /// The address space that it takes now; 0 when it has ended.
+  [[nodiscard]] long address_space_bytes() const;
+  /// Its environment as the system shows it, entries parted by zero bytes.
+  [[nodiscard]] std::string environment() const;
 
  private:
   void note(int status);

@@ -1,5 +1,7 @@
 #include "geo/io/background_writer.hpp"
 
+#include <omp.h>
+
 #include <csignal>
 #include <utility>
 
@@ -52,6 +54,8 @@ void BackgroundWriter::rethrow() {
 
 void BackgroundWriter::work() {
   block_signals();
+  // OpenMP would give this thread a team of its own beside that of the stage that computes.
+  omp_set_num_threads(1);
   std::unique_lock lock(mutex_);
   while (true) {
     changed_.wait(lock, [this] { return stopping_ || !jobs_.empty(); });

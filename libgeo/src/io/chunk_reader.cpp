@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "geo/core/parallel_errors.hpp"
 #include "netcdf_file.hpp"
 
 namespace geo::io {
@@ -130,12 +131,17 @@ bool read_chunks(hid_t dataset, std::vector<T>& values, int ny, int nx) {
   }
   const std::size_t bytes = chunk[0] * chunk[1] * sizeof(T);
   std::atomic<bool> good = true;
+  ParallelErrors errors;
 #pragma omp parallel
   {
     const Decompressor decompressor(libdeflate_alloc_decompressor());
-    std::vector<unsigned char> shuffled(bytes);
+    errors.guard([&] {
+      if (!decompressor) throw std::bad_alloc();
+    });
+    auto shuffled = errors.make<std::vector<unsigned char>>(bytes);
 #pragma omp for schedule(dynamic, 1)
     for (std::size_t k = 0; k < packed.size(); ++k) {
+      if (errors.any()) continue;
       const auto& from = packed[k].bytes;
       if (libdeflate_zlib_decompress(decompressor.get(), from.data(), from.size(), shuffled.data(),
                                      bytes, nullptr) != LIBDEFLATE_SUCCESS) {
@@ -145,6 +151,7 @@ bool read_chunks(hid_t dataset, std::vector<T>& values, int ny, int nx) {
       place(packed[k], shuffled, chunk, ny, nx, values);
     }
   }
+  errors.rethrow();
   return good;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstring>
 #include <mutex>
+#include <new>
 #include <string>
 #include <utility>
 #include <vector>
@@ -57,6 +58,7 @@ void write_chunks(hid_t dataset, const std::vector<T>& values, int ny, int nx, C
   std::vector<T> raw(cells);
   std::vector<unsigned char> shuffled(bytes);
   const Compressor compressor(libdeflate_alloc_compressor(level));
+  if (!compressor) throw std::bad_alloc();
   std::vector<unsigned char> packed(libdeflate_zlib_compress_bound(compressor.get(), bytes));
   for (std::size_t row = 0; row < static_cast<std::size_t>(ny); row += chunk.rows) {
     for (std::size_t column = 0; column < static_cast<std::size_t>(nx); column += chunk.columns) {

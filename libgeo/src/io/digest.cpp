@@ -5,15 +5,27 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <limits>
+#include <memory>
+#include <new>
+
+#include "geo/core/error.hpp"
 
 namespace geo::io {
 namespace {
 
-std::string digest_of(const void* data, std::size_t bytes) {
-  const XXH128_hash_t hash = XXH3_128bits(data, bytes);
+std::string text_of(const XXH128_hash_t& hash) {
   return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
+
+std::string digest_of(const void* data, std::size_t bytes) {
+  return text_of(XXH3_128bits(data, bytes));
+}
+
+struct FreeHash {
+  void operator()(XXH3_state_t* state) const { XXH3_freeState(state); }
+};
 
 /// Figures of one row.
 struct RowSummary {
@@ -59,6 +71,20 @@ std::string digest_of(const Values& values) {
   return std::visit(
       [](const auto& array) { return digest_of(array.data(), array.size() * sizeof(array[0])); },
       values);
+}
+
+std::string digest_of_file(const std::filesystem::path& path) {
+  const std::unique_ptr<XXH3_state_t, FreeHash> hash(XXH3_createState());
+  if (!hash) throw std::bad_alloc();
+  XXH3_128bits_reset(hash.get());
+  std::ifstream stream(path, std::ios::binary);
+  std::vector<char> block(std::size_t(1) << 20);
+  while (stream.read(block.data(), static_cast<std::streamsize>(block.size())) ||
+         stream.gcount() > 0) {
+    XXH3_128bits_update(hash.get(), block.data(), static_cast<std::size_t>(stream.gcount()));
+  }
+  if (!stream.eof()) throw IoError(fmt::format("{}: could not be read", path.string()));
+  return text_of(XXH3_128bits_digest(hash.get()));
 }
 
 FieldRecord summarise(const FieldSpec& spec, const Values& values, const Grid& grid) {

@@ -27,12 +27,20 @@ void FrameFiles::write(BackgroundWriter& writer, Frame frame, Provenance provena
   writer.submit([this, snapshot, provenance, stem, time_myr] {
     const std::filesystem::path netcdf = stem.string() + ".nc", vti = stem.string() + ".vti";
     write_netcdf(netcdf, *snapshot, provenance, static_cast<int>(settings_.compression));
+    written_.push_back("frames/" + netcdf.filename().string());
     if (!settings_.vtk) return;
     write_vti(vti, *snapshot, provenance);
+    written_.push_back("frames/" + vti.filename().string());
     listed_.push_back(vti);
     times_.push_back(time_myr);
     write_pvd(folder_ / "plates.pvd", listed_, times_);
   });
+}
+
+std::vector<std::string> FrameFiles::take_written() {
+  std::vector<std::string> written = std::exchange(written_, {});
+  if (!listed_.empty() && !written.empty()) written.emplace_back("plates.pvd");
+  return written;
 }
 
 }  // namespace geo::io

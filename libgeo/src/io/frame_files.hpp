@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "geo/core/checkpoint.hpp"
@@ -19,12 +20,16 @@ class FrameFiles {
 
   /// Queues the files of one frame. Must outlive the queue.
   void write(BackgroundWriter& writer, Frame frame, Provenance provenance);
+  /// Names of what was written since the last call, below the folder of the run. For jobs of the
+  /// queue.
+  [[nodiscard]] std::vector<std::string> take_written();
 
  private:
   std::filesystem::path folder_;
   const RunSettings& settings_;
   std::vector<std::filesystem::path> listed_;
   std::vector<double> times_;
+  std::vector<std::string> written_;
 };
 
 }  // namespace geo::io

@@ -1,9 +1,9 @@
 #include "globe_files.hpp"
 
-#include <algorithm>
 #include <vector>
 
 #include "geo/core/field.hpp"
+#include "geo/io/recorded_file.hpp"
 #include "geo/io/stage_file.hpp"
 
 namespace geo::io {
@@ -28,7 +28,8 @@ bool write_globe_files(const RunFolder& folder, Manifest& manifest, double times
   for (StageRecord& record : manifest.stages) {
     if (is_island(record)) continue;
     const auto netcdf = folder.path() / netcdf_of(record);
-    const Snapshot snapshot = read_netcdf(netcdf);
+    const Snapshot snapshot =
+        read_recorded(folder.path(), record, [](const FieldSpec&) { return true; });
     if (snapshot.grid->topology() != Topology::sphere) return false;
     if (auto newer = heights_of(snapshot)) heights = std::move(newer);
     std::span<const float> elevation_m;
@@ -36,10 +37,7 @@ bool write_globe_files(const RunFolder& folder, Manifest& manifest, double times
     const auto vtp = std::filesystem::path(netcdf).replace_extension(".vtp");
     write_globe(vtp, snapshot, read_provenance(netcdf), elevation_m, times);
     files.push_back(vtp);
-    const std::string name = vtp.filename().string();
-    if (std::find(record.files.begin(), record.files.end(), name) == record.files.end()) {
-      record.files.push_back(name);
-    }
+    record.list(folder.path(), vtp.filename().string());
   }
   write_pvd(folder.globes(), files);
   return true;

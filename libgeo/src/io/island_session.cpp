@@ -11,6 +11,7 @@
 #include "geo/io/build_info.hpp"
 #include "geo/io/config.hpp"
 #include "geo/io/exemplar_files.hpp"
+#include "geo/io/recorded_file.hpp"
 #include "geo/io/run_pictures.hpp"
 #include "geo/io/source_date.hpp"
 #include "geo/io/stage_file.hpp"
@@ -79,15 +80,12 @@ State IslandSession::read_planet() const {
   std::optional<State> state;
   for (const StageRecord& record : manifest_.stages) {
     if (is_island(record)) continue;
-    const auto path = folder_.path() / netcdf_of(record);
-    const Snapshot snapshot = read_netcdf(path);
-    const std::string fault = disagreement(record, snapshot);
-    if (!fault.empty()) {
-      throw InputError(fmt::format("{}: is not what the manifest says: {}", path.string(), fault));
-    }
+    const Snapshot snapshot = read_recorded(folder_.path(), record, [&](const FieldSpec& spec) {
+      return lists(info.reads, spec) || lists(info.optional, spec);
+    });
     if (!state) state.emplace(snapshot.grid);
     for (const auto& [spec, values] : snapshot.fields) {
-      if (lists(info.reads, *spec) || lists(info.optional, *spec)) state->set(*spec, *values);
+      state->set(*spec, *values);
     }
   }
   return std::move(*state);
@@ -132,6 +130,7 @@ std::string IslandSession::execute(const RunEvents& events) {
   context.stop = events.stop;
   StageRecord record;
   record.name = name;
+  record.builder = this_builder();
   FieldsAtHand at_hand;
   Pipeline::Observer observer;
   observer.before = [&](int) {
@@ -147,11 +146,11 @@ std::string IslandSession::execute(const RunEvents& events) {
     }
     const auto netcdf = folder_.stage_file(stage_number_, name, ".nc");
     write_netcdf(netcdf, snapshot, provenance, static_cast<int>(settings_.compression));
-    record.files.push_back(netcdf.filename().string());
+    record.list(folder_.path(), netcdf.filename().string());
     if (settings_.vtk) {
       const auto vti = folder_.stage_file(stage_number_, name, ".vti");
       write_vti(vti, snapshot, provenance);
-      record.files.push_back(vti.filename().string());
+      record.list(folder_.path(), vti.filename().string());
     }
     record.budget = told.budget;
     record.warnings = told.warnings;
@@ -166,6 +165,8 @@ std::string IslandSession::execute(const RunEvents& events) {
   if (settings_.vtk) write_collection_files(folder_, manifest_);
   if (events.stage_ends) events.stage_ends(name, seconds);
   if (settings_.maps) draw_run(folder_, settings_.map_view(), name, at_hand);
+  manifest_.files = digests_of_summaries(folder_);
+  write_manifest(folder_.manifest(), manifest_);
   return name;
 }
 

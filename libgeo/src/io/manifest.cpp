@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <fstream>
@@ -11,6 +12,7 @@
 
 #include "geo/core/error.hpp"
 #include "geo/io/atomic_file.hpp"
+#include "geo/io/build_info.hpp"
 
 namespace geo::io {
 namespace {
@@ -51,6 +53,10 @@ Json to_json(const StageRecord& stage) {
   }
   json["warnings"] = stage.warnings;
   json["files"] = stage.files;
+  json["file_digests"] = stage.file_digests;
+  json["written_by"] = {{"version", stage.builder.version},
+                        {"commit", stage.builder.commit},
+                        {"build", stage.builder.id}};
   json["fields"] = fields;
   return json;
 }
@@ -94,6 +100,15 @@ StageRecord stage_from(const Json& json) {
   }
   json.at("warnings").get_to(stage.warnings);
   json.at("files").get_to(stage.files);
+  // Manifests of earlier versions have neither.
+  if (const auto digests = json.find("file_digests"); digests != json.end()) {
+    digests->get_to(stage.file_digests);
+  }
+  if (const auto builder = json.find("written_by"); builder != json.end()) {
+    builder->at("version").get_to(stage.builder.version);
+    builder->at("commit").get_to(stage.builder.commit);
+    builder->at("build").get_to(stage.builder.id);
+  }
   for (const auto& [name, field] : json.at("fields").items()) {
     stage.fields.push_back(field_from(name, field));
   }
@@ -105,6 +120,9 @@ Manifest manifest_from(const Json& json) {
   json.at("version").get_to(manifest.version);
   json.at("commit").get_to(manifest.commit);
   json.at("compiler").get_to(manifest.compiler);
+  manifest.build = json.value("build", "");
+  manifest.allowed = json.value("allowed", manifest.allowed);
+  manifest.files = json.value("files", manifest.files);
   json.at("libraries").get_to(manifest.libraries);
   json.at("seed").get_to(manifest.seed);
   json.at("threads").get_to(manifest.threads);
@@ -122,11 +140,14 @@ void write_manifest(const std::filesystem::path& path, const Manifest& manifest)
   const Json json{{"version", manifest.version},
                   {"commit", manifest.commit},
                   {"compiler", manifest.compiler},
+                  {"build", manifest.build},
+                  {"allowed", manifest.allowed},
                   {"libraries", manifest.libraries},
                   {"seed", manifest.seed},
                   {"threads", manifest.threads},
                   {"config_digest", manifest.config_digest},
                   {"complete", manifest.complete},
+                  {"files", manifest.files},
                   {"stages", stages}};
   // Bytes that are no UTF-8 (in a path, say) are replaced: no reason to lose a finished run.
   write_text_file(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
@@ -155,10 +176,40 @@ std::string disagreement(const StageRecord& record, const Snapshot& file) {
       return entry.first->name == field.name;
     });
     if (at == file.fields.end()) return field.name + ": missing in the file";
-    if (digest_of(*at->second) != field.digest) return field.name + ": digest differs";
+    const std::string difference = disagreement(record, *at->first, *at->second);
+    if (!difference.empty()) return difference;
   }
   if (record.fields.size() != file.fields.size()) return "file holds fields the manifest lacks";
   return {};
+}
+
+std::string disagreement(const StageRecord& record, const FieldSpec& spec, const Values& values) {
+  for (const FieldRecord& field : record.fields) {
+    if (field.name != spec.name) continue;
+    return digest_of(values) == field.digest ? "" : field.name + ": digest differs";
+  }
+  return fmt::format("{}: not in the manifest", spec.name);
+}
+
+std::string Builder::words_beside(const Builder& other) const {
+  if (version != other.version) return version;
+  return fmt::format("{} of commit {}, build {}", version, commit,
+                     id.empty() ? "unknown" : id.substr(0, 12));
+}
+
+Builder this_builder() {
+  const BuildInfo& build = build_info();
+  return {build.version, build.commit, build.id};
+}
+
+Builder Manifest::builder_of(const StageRecord& record) const {
+  const bool is_told = !record.builder.version.empty();
+  return is_told ? record.builder : Builder{version, commit, build};
+}
+
+void StageRecord::list(const std::filesystem::path& folder, const std::string& file) {
+  if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
+  file_digests[file] = digest_of_file(folder / file);
 }
 
 std::string netcdf_of(const StageRecord& record) {

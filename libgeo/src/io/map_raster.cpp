@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "geo/core/error.hpp"
+#include "geo/core/parallel_errors.hpp"
 #include "geo/core/place.hpp"
 #include "geo/core/vector3.hpp"
 
@@ -257,11 +258,10 @@ namespace {
 // Means along rows near the poles, where cells are narrower than high, over as many as one is high.
 void widen_rows(const MapFrame& source, Sampled& sampled) {
   const int width = sampled.mean.width;
-#pragma omp parallel for schedule(dynamic, 8)
-  for (int y = 0; y < sampled.mean.height; ++y) {
+  const auto widen = [&](int y) {
     const double cells = source.pixel_north_m(y) / std::max(source.pixel_east_m(y), 1e-3);
     const int reach = std::min(static_cast<int>(std::lround(0.5 * (cells - 1.0))), width / 2 - 1);
-    if (reach < 1) continue;
+    if (reach < 1) return;
     std::vector<double> sums(width + 2 * reach + 1, 0.0), covers(sums.size(), 0.0);
     for (int i = 0; i < width + 2 * reach; ++i) {
       const int x =
@@ -277,7 +277,11 @@ void widen_rows(const MapFrame& source, Sampled& sampled) {
       sampled.mean.at(x, y) =
           cover > 1e-9 ? static_cast<float>(sum / cover) : std::numeric_limits<float>::quiet_NaN();
     }
-  }
+  };
+  ParallelErrors errors;
+#pragma omp parallel for schedule(dynamic, 8)
+  for (int y = 0; y < sampled.mean.height; ++y) errors.guard([&] { widen(y); });
+  errors.rethrow();
 }
 
 // Weights of four neighbours, the second and third of them around the point.
@@ -411,14 +415,16 @@ Raster sample_majority(const MapFrame& frame, std::span<const std::int8_t> categ
   const auto columns = frame.column_taps(Filter::linear), rows = frame.row_taps(Filter::linear);
   const int nx = frame.grid().nx(), width = frame.width();
   Raster out(frame);
+  ParallelErrors errors;
 #pragma omp parallel
   {
     CategoryRows alone(columns, categories, nx, width);
-    std::vector<std::int16_t> only(width);
+    auto only = errors.make<std::vector<std::int16_t>>(width);
     std::array<float, 256> share{};
 #pragma omp for schedule(static)
     for (int y = 0; y < frame.height(); ++y) {
-      alone.over(rows, y, only);
+      if (errors.any()) continue;
+      errors.guard([&] { alone.over(rows, y, only); });
       for (int x = 0; x < width; ++x) {
         if (only[x] != kSeveral) {
           out.at(x, y) = only[x];
@@ -440,6 +446,7 @@ Raster sample_majority(const MapFrame& frame, std::span<const std::int8_t> categ
       }
     }
   }
+  errors.rethrow();
   return out;
 }
 
@@ -453,28 +460,36 @@ struct BlurReach {
 
 void blur_thrice(const MapFrame& frame, Raster& raster, const BlurReach& reach) {
   const bool wraps_north = frame.is_aligned() && frame.grid().topology() == Topology::torus;
+  ParallelErrors errors;
   for (int pass = 0; pass < 3; ++pass) {
 #pragma omp parallel
     {
       std::vector<double> sums;
 #pragma omp for schedule(static)
       for (int y = 0; y < raster.height; ++y) {
-        box_lines<1>(&raster.at(0, y), raster.width, 1, reach.rows[y], frame.wraps_east(), sums);
+        errors.guard([&] {
+          box_lines<1>(&raster.at(0, y), raster.width, 1, reach.rows[y], frame.wraps_east(), sums);
+        });
       }
       constexpr int kBundle = 16;
       const int bundles = raster.width / kBundle;
 #pragma omp for schedule(static)
       for (int i = 0; i < bundles; ++i) {
-        box_lines<kBundle>(&raster.at(kBundle * i, 0), raster.height, raster.width, reach.columns,
-                           wraps_north, sums);
+        errors.guard([&] {
+          box_lines<kBundle>(&raster.at(kBundle * i, 0), raster.height, raster.width, reach.columns,
+                             wraps_north, sums);
+        });
       }
 #pragma omp for schedule(static)
       for (int x = kBundle * bundles; x < raster.width; ++x) {
-        box_lines<1>(&raster.at(x, 0), raster.height, raster.width, reach.columns, wraps_north,
-                     sums);
+        errors.guard([&] {
+          box_lines<1>(&raster.at(x, 0), raster.height, raster.width, reach.columns, wraps_north,
+                       sums);
+        });
       }
     }
   }
+  errors.rethrow();
 }
 
 }  // namespace

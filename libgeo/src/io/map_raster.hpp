@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "geo/core/grid.hpp"
+#include "geo/core/parallel_errors.hpp"
 #include "map_page.hpp"
 
 namespace geo::io {
@@ -193,12 +194,15 @@ void resample_rows(const MapFrame& frame, Filter filter, const Value& value, Ras
       row.share[x] = there;
     }
   };
+  ParallelErrors errors;
 #pragma omp parallel
   {
-    ResampledRows resampled(rows, width);
-    std::vector<float> shares(width);
+    auto made = errors.make<ResampledRows>(rows, width);
+    auto shares = errors.make<std::vector<float>>(width);
 #pragma omp for schedule(static)
     for (int y = 0; y < frame.height(); ++y) {
+      if (errors.any()) continue;
+      ResampledRows& resampled = *made;
       float* const sums = &mean.at(0, y);
       std::fill(shares.begin(), shares.end(), 0.0F);
       for (int j = rows.begin[y]; j < rows.begin[y + 1]; ++j) {
@@ -215,6 +219,7 @@ void resample_rows(const MapFrame& frame, Filter filter, const Value& value, Ras
       if (cover != nullptr) std::copy(shares.begin(), shares.end(), &cover->at(0, y));
     }
   }
+  errors.rethrow();
 }
 
 /// Resamples `value(cell)`, NaN where there is none.

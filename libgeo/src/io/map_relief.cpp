@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "geo/core/parallel_errors.hpp"
+
 namespace geo::io {
 namespace {
 
@@ -163,15 +165,19 @@ float lowest_around(const Raster& raster, int x, int y) {
 /// Calls `visit(y, change per pixel along that row)` for all rows, at the same time.
 template <class Visit>
 void for_rows_with_change(const Raster& raster, const Visit& visit) {
+  ParallelErrors errors;
 #pragma omp parallel
   {
     std::vector<float> change;
 #pragma omp for schedule(static)
     for (int y = 0; y < raster.height; ++y) {
-      change_per_pixel(raster, y, change);
-      visit(y, change);
+      errors.guard([&] {
+        change_per_pixel(raster, y, change);
+        visit(y, change);
+      });
     }
   }
+  errors.rethrow();
 }
 
 // Where pixels are finer than cells, the coast is the zero line of the interpolated relief, drawn

@@ -1,7 +1,11 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <charconv>
+#include <fstream>
+#include <string_view>
 #include <system_error>
 
 #include "chunk_reader.hpp"
@@ -13,6 +17,16 @@
 
 namespace geo::io {
 namespace {
+
+/// Whether a file begins as TIFF files do, classic or big, of either order of bytes.
+bool is_tiff(const std::filesystem::path& path) {
+  std::string begin(4, ' ');
+  std::ifstream(path, std::ios::binary).read(begin.data(), 4);
+  constexpr std::array<std::string_view, 4> kBegins{
+      std::string_view("II*\0", 4), std::string_view("MM\0*", 4), std::string_view("II+\0", 4),
+      std::string_view("MM\0+", 4)};
+  return std::find(kBegins.begin(), kBegins.end(), begin) != kBegins.end();
+}
 
 Values empty_values(Type type, std::size_t size) {
   switch (type) {
@@ -115,8 +129,15 @@ nc::File open_input(const std::filesystem::path& path) {
     if (failure.status == EACCES || failure.status == EPERM) {
       throw IoError(fmt::format("cannot read {}: Permission denied", path.string()));
     }
-    throw InputError(
-        fmt::format("{}: not a NetCDF file, or truncated ({})", path.string(), failure.what()));
+    if (is_tiff(path)) {
+      throw InputError(fmt::format(
+          "{}: a TIFF image: must be a NetCDF file, which gdal_translate -of netCDF makes of it",
+          path.string()));
+    }
+    throw InputError(fmt::format(
+        "{}: not a NetCDF file (classic, 64-bit or NetCDF-4, which alone is read), or truncated "
+        "({})",
+        path.string(), failure.what()));
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include "geo/core/error.hpp"
 #include "geo/io/dem.hpp"
+#include "geo/io/recorded_file.hpp"
 #include "geo/io/stage_file.hpp"
 #include "netcdf_file.hpp"
 #include "open_input.hpp"
@@ -50,7 +51,7 @@ bool is_stage_file(const fs::path& path) {
 
 State read_stage(const fs::path& path, std::span<const FieldSpec* const> wanted) {
   const Snapshot snapshot =
-      read_netcdf(path, [&](const FieldSpec& spec) { return is_wanted(spec, wanted); });
+      read_perhaps_recorded(path, [&](const FieldSpec& spec) { return is_wanted(spec, wanted); });
   State state(snapshot.grid);
   for (const auto& [spec, values] : snapshot.fields) state.share(*spec, values);
   return state;
@@ -68,9 +69,10 @@ void require_whole_planet(const Grid& grid, const std::string& place) {
 
 State read_planet(std::span<const fs::path> stage_files, std::span<const FieldSpec* const> wanted) {
   if (stage_files.empty()) throw InputError("the run holds no complete stage");
-  State state(read_netcdf(stage_files.front(), [](const FieldSpec&) { return false; }).grid);
+  const auto none = [](const FieldSpec&) { return false; };
+  State state(read_perhaps_recorded(stage_files.front(), none).grid);
   for (auto file = stage_files.rbegin(); file != stage_files.rend(); ++file) {
-    const Snapshot snapshot = read_netcdf(
+    const Snapshot snapshot = read_perhaps_recorded(
         *file, [&](const FieldSpec& spec) { return is_wanted(spec, wanted) && !state.has(spec); });
     if (!same_cells(*snapshot.grid, state.grid())) continue;
     for (const auto& [spec, values] : snapshot.fields) state.share(*spec, values);

@@ -15,6 +15,7 @@
 #include "geo/io/manifest.hpp"
 #include "geo/io/maps.hpp"
 #include "geo/io/planet_file.hpp"
+#include "geo/io/recorded_file.hpp"
 #include "geo/io/report.hpp"
 #include "geo/io/scorecard.hpp"
 #include "map_canvas.hpp"
@@ -53,7 +54,7 @@ State final_state(const RunFolder& folder, const Manifest& manifest, const Field
       return is_missing(*spec) && holds(*record, spec->name);
     });
     if (state && !has_missing) continue;
-    const Snapshot snapshot = read_netcdf(folder.path() / netcdf_of(*record), is_missing);
+    const Snapshot snapshot = read_recorded(folder.path(), *record, is_missing);
     if (!state) state.emplace(snapshot.grid);
     for (const auto& [spec, values] : snapshot.fields) state->share(*spec, values);
   }
@@ -72,8 +73,8 @@ State island_state(const RunFolder& folder, const StageRecord& record,
                    const FieldsAtHand& at_hand) {
   if (const State* const held = at_hand.island(record.name)) return *held;
   const auto wanted = island_map_fields();
-  const Snapshot snapshot = read_netcdf(folder.path() / netcdf_of(record),
-                                        [&](const FieldSpec& spec) { return lists(wanted, spec); });
+  const Snapshot snapshot = read_recorded(
+      folder.path(), record, [&](const FieldSpec& spec) { return lists(wanted, spec); });
   State state(snapshot.grid);
   for (const auto& [spec, values] : snapshot.fields) state.share(*spec, values);
   return state;
@@ -138,11 +139,10 @@ State state_for(const RunFolder& folder, const Manifest& manifest, const StageRe
   const std::array<const FieldSpec*, 4> water{&field::lake_depth, &field::flow_receiver,
                                               &field::discharge, &field::drainage_area};
   const bool with_water = is_island(record) && field == field::elevation.name;
-  const Snapshot snapshot =
-      read_netcdf(folder.path() / netcdf_of(record), [&](const FieldSpec& spec) {
-        return spec.name == field || spec.name == field::elevation.name ||
-               (with_water && std::find(water.begin(), water.end(), &spec) != water.end());
-      });
+  const Snapshot snapshot = read_recorded(folder.path(), record, [&](const FieldSpec& spec) {
+    return spec.name == field || spec.name == field::elevation.name ||
+           (with_water && std::find(water.begin(), water.end(), &spec) != water.end());
+  });
   State state(snapshot.grid);
   for (const auto& [spec, values] : snapshot.fields) state.share(*spec, values);
   if (!state.has(field::elevation) && !is_island(record)) {

@@ -15,23 +15,25 @@ struct StageCost {
   double memory_bytes;
 };
 
-// Measured on default planets and on Earth's relief at 5', two cores of an AMD EPYC.
+// Measured on default planets of 512 x 256 and 2048 x 1024 cells, one core of an AMD EPYC; memory
+// on larger ones and on Earth's relief at 5'.
 constexpr StageCost kStageCosts[] = {
-    {"plates", 0.8, 650.0, 60.0},     {"isostasy", 0.2, 650.0, 115.0},
-    {"erosion", 0.0, 2600.0, 130.0},  {"climate", 0.8, 270.0, 110.0},
-    {"hydrology", 0.0, 380.0, 150.0}, {"biomes", 0.0, 90.0, 130.0},
-    {"island", 0.0, 4500.0, 400.0},  // per cell of its own
+    {"plates", 0.8, 710.0, 60.0},     {"isostasy", 0.3, 810.0, 115.0},
+    {"erosion", 0.0, 1720.0, 130.0},  {"climate", 0.25, 360.0, 110.0},
+    {"hydrology", 0.0, 140.0, 150.0}, {"biomes", 0.0, 50.0, 130.0},
+    {"island", 0.0, 3400.0, 400.0},  // per cell of its own
 };
-constexpr StageCost kUnknownStage{"", 0.0, 1000.0, 150.0};
+constexpr StageCost kUnknownStage{"", 0.0, 500.0, 150.0};
 
 constexpr double kIslandCells = 1024.0 * 512.0;
 constexpr double kBaseMemory_bytes = 120e6;  // program and libraries
-constexpr double kWriting_ns = 45.0;         // per value: deflate and digest, in the background
+constexpr double kWriting_ns = 15.0;         // per value: what is not written beside the stages
 constexpr double kCompression = 0.55;        // NetCDF values after deflate
-constexpr double kMaps_s = 8.0;              // all maps at their default width, one thread
+constexpr double kMaps_s = 2.2;              // all maps at their default width, one thread
 constexpr double kMaps_bytes = 12e6;
 constexpr double kMapWidth_px = 1800.0;
-constexpr double kParallelShare = 0.8;  // of the time, Amdahl
+constexpr double kParallelShare = 0.67;  // of the time, Amdahl
+constexpr double kReference_s = 0.0155;  // MachineSpeed::one_thread_s where the costs were measured
 
 double value_bytes(const FieldSpec& spec) {
   switch (spec.type) {
@@ -48,8 +50,8 @@ double value_bytes(const FieldSpec& spec) {
 
 }  // namespace
 
-Prediction predict(const Pipeline& pipeline, int first, int last, double cells, int threads,
-                   bool vtk, double map_width_px) {
+Prediction predict(const Pipeline& pipeline, int first, int last, double cells,
+                   const MachineSpeed& speed, bool vtk, double map_width_px) {
   Prediction sum;
   for (int at = first; at <= last; ++at) {
     const StageInfo& info = pipeline.stages()[at]->info();
@@ -67,7 +69,9 @@ Prediction predict(const Pipeline& pipeline, int first, int last, double cells, 
   const double map_area = std::pow(map_width_px / kMapWidth_px, 2);
   sum.seconds += map_area * kMaps_s;
   sum.disk_bytes += map_area * kMaps_bytes;
-  sum.seconds *= (1.0 - kParallelShare) + kParallelShare / std::max(threads, 1);
+  sum.seconds *=
+      ((1.0 - kParallelShare) * speed.one_thread_s + kParallelShare * speed.all_threads_s) /
+      kReference_s;
   sum.memory_bytes += kBaseMemory_bytes;
   return sum;
 }

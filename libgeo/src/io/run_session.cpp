@@ -17,6 +17,7 @@
 #include "geo/io/exemplar_files.hpp"
 #include "geo/io/hypsography.hpp"
 #include "geo/io/island_session.hpp"
+#include "geo/io/recorded_file.hpp"
 #include "geo/io/source_date.hpp"
 #include "globe_files.hpp"
 
@@ -57,14 +58,15 @@ struct StageJob {
 
   void write(bool vtk, int compression) {
     write_netcdf(netcdf, snapshot, provenance, compression);
-    record.files.push_back(netcdf.filename().string());
+    const auto folder = netcdf.parent_path();
+    record.list(folder, netcdf.filename().string());
     if (vtk) {
       write_vti(vti, snapshot, provenance);
-      record.files.push_back(vti.filename().string());
+      record.list(folder, vti.filename().string());
     }
     if (!steps.rows.empty()) {
       write_text_file(csv, text_of(steps));
-      record.files.push_back(csv.filename().string());
+      record.list(folder, csv.filename().string());
     }
     for (const auto& [spec, values] : snapshot.fields) {
       record.fields.push_back(summarise(*spec, *values, *snapshot.grid));
@@ -80,11 +82,13 @@ void RunSession::clear_for_this_run() {
   manifest_.version = build.version;
   manifest_.commit = build.commit;
   manifest_.compiler = build.compiler;
+  manifest_.build = build.id;
   manifest_.libraries = library_versions();
   manifest_.seed = static_cast<std::uint64_t>(settings_.seed);
   manifest_.threads = request_.threads;
   manifest_.config_digest = digest_of(config_);
   manifest_.complete = false;
+  manifest_.files.clear();
   // From here on no stage that is about to be replaced counts as complete.
   const bool planet_stays = pipeline_.stages()[first_]->info().own_grid;
   std::erase_if(manifest_.stages, [&](const StageRecord& record) {
@@ -126,8 +130,8 @@ std::string RunSession::references_of(int position) const {
   return fmt::format("docs/references.bib: {}", fmt::join(sources, ", "));
 }
 
-void RunSession::write_stage(BackgroundWriter& writer, int position, const State& state,
-                             const Context& context, double seconds) {
+void RunSession::write_stage(BackgroundWriter& writer, FrameFiles& frames, int position,
+                             const State& state, const Context& context, double seconds) {
   auto job = std::make_shared<StageJob>();
   job->snapshot.stage = name_of(position);
   job->snapshot.grid = state.shared_grid();
@@ -141,12 +145,14 @@ void RunSession::write_stage(BackgroundWriter& writer, int position, const State
   job->csv = file_of(position, ".csv");
   job->steps = context.steps;
   job->record.name = name_of(position);
+  job->record.builder = this_builder();
   job->record.seconds = time_is_given() ? 0.0 : seconds;
   job->record.budget = context.budget;
   job->record.events = context.event_records;
   job->record.warnings = context.warnings;
-  writer.submit([this, job] {
+  writer.submit([this, job, &frames] {
     job->write(settings_.vtk, static_cast<int>(settings_.compression));
+    for (const std::string& name : frames.take_written()) job->record.list(folder_.path(), name);
     manifest_.stages.push_back(job->record);
     write_manifest(folder_.manifest(), manifest_);
     job->snapshot.fields.clear();
@@ -230,7 +236,7 @@ void RunSession::compute(const RunEvents& events) {
   observer.after = [&](int position, const State& state, const Context& told) {
     const double seconds = seconds_since(start);
     for (const std::string& warning : told.warnings) tell(events.warning, warning);
-    write_stage(writer, position, state, told, seconds);
+    write_stage(writer, frames, position, state, told, seconds);
     if (settings_.maps) keep_for_pictures(position, state);
     tell(events.stage_ends, name_of(position), seconds);
   };
@@ -250,12 +256,10 @@ void RunSession::write_collections() {
     const auto netcdf = folder_.path() / netcdf_of(record);
     const auto vti = std::filesystem::path(netcdf).replace_extension(".vti");
     if (!std::filesystem::exists(vti)) {
-      write_vti(vti, read_netcdf(netcdf), read_provenance(netcdf));
+      const auto all = [](const FieldSpec&) { return true; };
+      write_vti(vti, read_recorded(folder_.path(), record, all), read_provenance(netcdf));
     }
-    const std::string name = vti.filename().string();
-    if (std::find(record.files.begin(), record.files.end(), name) == record.files.end()) {
-      record.files.push_back(name);
-    }
+    record.list(folder_.path(), vti.filename().string());
   }
   write_collection_files(folder_, manifest_);
 }
@@ -276,6 +280,7 @@ void RunSession::write_summaries(const RunEvents& events) {
     tell(events.stage_ends, "maps", seconds_since(start));
   }
   check_stop();
+  manifest_.files = digests_of_summaries(folder_);
   manifest_.complete = true;
   write_manifest(folder_.manifest(), manifest_);
 }

@@ -13,6 +13,7 @@
 #include "geo/io/exemplar_files.hpp"
 #include "geo/io/hypsography.hpp"
 #include "geo/io/plate_outlines.hpp"
+#include "geo/io/recorded_file.hpp"
 #include "geo/io/run_session.hpp"
 #include "geo/io/source_date.hpp"
 #include "geo/kernels/impact_crater.hpp"
@@ -38,6 +39,13 @@ bool lists(const std::vector<const FieldSpec*>& specs, const FieldSpec& spec) {
   return std::any_of(specs.begin(), specs.end(),
                      [&](const FieldSpec* listed) { return listed->name == spec.name; });
 }
+
+bool lists(const std::vector<std::string>& words, std::string_view word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+// The word by which the manifest keeps that stages are of several builds.
+constexpr std::string_view kOtherBuild = "other-build";
 
 bool has_choice(Stage& stage, std::string_view key, std::string_view value) {
   for (const Parameter& row : stage.parameters()) {
@@ -260,17 +268,31 @@ void RunSession::take_open_settings(const std::string& before) {
   }
 }
 
-/// Another version may compute other values: stages of both make no planet.
-void RunSession::check_version(std::string_view asked_by) const {
-  const auto& version = build_info().version;
-  if (manifest_.version.empty() || manifest_.version == version) return;
-  throw ConfigurationError(
-      fmt::format("{}: {} was made by terrane {}, this is {}; --overwrite computes all again",
-                  asked_by, folder_.path().string(), manifest_.version, version));
+/// Another build may compute other values: stages of several make a planet only where that was
+/// asked for, and the manifest keeps it. What was allowed before holds for the build that did it.
+void RunSession::check_builders(std::string_view asked_by) {
+  if (manifest_.version.empty()) return;
+  const Builder here = this_builder();
+  const Builder last{manifest_.version, manifest_.commit, manifest_.build};
+  std::vector<Builder> builders{last};
+  for (const StageRecord& record : manifest_.stages) {
+    builders.push_back(manifest_.builder_of(record));
+  }
+  const auto other = std::find_if(builders.begin(), builders.end(),
+                                  [&](const Builder& builder) { return builder != here; });
+  const bool was_allowed = lists(manifest_.allowed, kOtherBuild);
+  if (other == builders.end() || (was_allowed && last == here)) return;
+  if (!request_.allow_other_build) {
+    throw ConfigurationError(fmt::format(
+        "{}: {} was made by terrane {}, this is {}; --allow-other-build goes on "
+        "nevertheless, --overwrite computes all again",
+        asked_by, folder_.path().string(), other->words_beside(here), here.words_beside(*other)));
+  }
+  if (!was_allowed) manifest_.allowed.emplace_back(kOtherBuild);
 }
 
 void RunSession::go_on_from(const std::string& before) {
-  check_version("--resume");
+  check_builders("--resume");
   take_open_settings(before);
   const std::string old_to = configured_text(before, "run.to");
   const bool as_far_as_before = request_.to.empty() && settings_.to == old_to;
@@ -290,7 +312,7 @@ void RunSession::go_on_from(const std::string& before) {
 }
 
 void RunSession::keep_earlier_stages(const std::string& before, int old_begin) {
-  check_version("--from " + std::string(name_of(first_)));
+  check_builders("--from " + std::string(name_of(first_)));
   begin_ = old_begin;
   settings_.from = configured_text(before, "run.from");
   take_open_settings(before);
@@ -329,17 +351,20 @@ int RunSession::count_complete_stages() const {
   return at - begin_;
 }
 
+/// A file that is not there or cannot be read is computed again; one whose values somebody changed
+/// is refused.
 bool RunSession::is_complete(int position) const {
-  const auto path = file_of(position, ".nc");
-  if (!std::filesystem::exists(path)) return false;
-  try {
-    const auto record = std::find_if(
-        manifest_.stages.begin(), manifest_.stages.end(),
-        [&](const StageRecord& candidate) { return candidate.name == name_of(position); });
-    return record != manifest_.stages.end() && disagreement(*record, read_netcdf(path)).empty();
-  } catch (const Error&) {
-    return false;  // half a file is as good as none
+  const auto record = std::find_if(
+      manifest_.stages.begin(), manifest_.stages.end(),
+      [&](const StageRecord& candidate) { return candidate.name == name_of(position); });
+  if (record == manifest_.stages.end()) return false;
+  const Standing standing = standing_of(folder_.path(), *record);
+  if (!standing.difference.empty()) {
+    throw InputError(
+        fmt::format("{}: is not what manifest.json says: {}; without the file it is computed anew",
+                    file_of(position, ".nc").string(), standing.difference));
   }
+  return standing.fault.empty();
 }
 
 bool RunSession::is_still_read(const FieldSpec& spec) const {
@@ -359,7 +384,7 @@ void RunSession::load_complete_stages() {
       if (is_still_read(*spec)) state_->set(*spec, *values);
     }
   }
-  if (state_) folder_.check_writable(prediction().disk_bytes);
+  if (state_) folder_.check_writable(prediction({}).disk_bytes);
 }
 
 /// Whether a stage to be run reads an elevation that none before it writes.
@@ -382,7 +407,7 @@ void RunSession::begin_with_bare_planet() {
   const double cell_m = 2.0 * std::numbers::pi * planet_.figure().radius_m / std::max(1, nx);
   state_.emplace(std::make_shared<const Grid>(is_torus ? Grid::torus(nx, ny, cell_m, cell_m)
                                                        : Grid::sphere(nx, ny, planet_.figure())));
-  folder_.check_writable(prediction().disk_bytes);
+  folder_.check_writable(prediction({}).disk_bytes);
 }
 
 void RunSession::read_initial_relief() {
@@ -408,7 +433,7 @@ void RunSession::read_initial_relief() {
   settings_.grid = fmt::format("{}x{}", grid->nx(), grid->ny());
   settings_.dem_variable = relief.variable;
   if (!state_) state_.emplace(grid);
-  folder_.check_writable(prediction().disk_bytes);
+  folder_.check_writable(prediction({}).disk_bytes);
   std::vector<float> elevation_m = resample(relief, *grid);
   if (settings_.dem_sea_level == "fraction") {
     const float sea_level_m =
@@ -549,11 +574,11 @@ void RunSession::find_exemplars() {
   }
 }
 
-Prediction RunSession::prediction() const {
+Prediction RunSession::prediction(const MachineSpeed& speed) const {
   const auto cells = static_cast<double>(grid().size());
   const double map_width_px = settings_.maps ? static_cast<double>(settings_.map_width_px) : 0.0;
   const auto predicted = [&](bool vtk) {
-    return predict(pipeline_, first_, last_, cells, request_.threads, vtk, map_width_px);
+    return predict(pipeline_, first_, last_, cells, speed, vtk, map_width_px);
   };
   Prediction sum = predicted(settings_.vtk);
   if (settings_.globe) {

@@ -48,7 +48,7 @@ void measure_runoff(const State& state, Figures& figures) {
   if (rain_m3_yr > 0.0) figures["runoff_ratio"] = to_sea_m3_s * kSecondsPerYear / rain_m3_yr;
 }
 
-void measure_basin_areas(const Grid& grid, const Drainage& drainage,
+void measure_basin_areas(const Grid& grid, const DrainedPlanet& drainage,
                          std::span<const std::int32_t> basin_id, double land_m2, Figures& figures) {
   const Basins basins = measure_basins(grid, drainage, basin_id);
   double endorheic_m2 = 0.0;
@@ -86,8 +86,8 @@ void measure_basin_denudation(const State& state, const Basins& basins, Figures&
 
 void measure_network(const State& state, double land_m2, Figures& figures) {
   const Grid& grid = state.grid();
-  const Drainage drainage{state.read(field::elevation), state.read(field::flow_receiver),
-                          state.read(field::drainage_area)};
+  const DrainedPlanet drainage{state.read(field::elevation), state.read(field::flow_receiver),
+                               state.read(field::drainage_area)};
   // Smaller basins are a few cells whose shape is the raster's.
   const double least_m2 = std::max(1e10, 100.0 * grid.total_area_m2() / grid.size());
   figures["hack"] = hack_exponent(grid, drainage, least_m2);

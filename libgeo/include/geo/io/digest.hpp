@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -12,6 +13,9 @@ namespace geo::io {
 std::string digest_of(std::string_view text);
 /// XXH3-128 of the values' bytes as they lie in memory (little-endian), 32 hexadecimal digits.
 std::string digest_of(const Values& values);
+
+/// XXH3-128 of the bytes of a file, 32 hexadecimal digits. Throws IoError.
+std::string digest_of_file(const std::filesystem::path& path);
 
 /// One field in figures. `min`, `mean` and `max` leave missing cells out, and are NaN if all are.
 struct FieldRecord {

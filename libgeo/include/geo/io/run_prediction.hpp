@@ -1,10 +1,11 @@
 #pragma once
 
 #include "geo/core/pipeline.hpp"
+#include "geo/io/machine_speed.hpp"
 
 namespace geo::io {
 
-/// What a run will take. Rough: within a factor of two on machines of today.
+/// What a run will take. Time holds for the machine as busy as it was when it was measured.
 struct Prediction {
   double memory_bytes = 0.0;
   double seconds = 0.0;
@@ -12,8 +13,9 @@ struct Prediction {
 };
 
 /// Predicts stages first..last of a pipeline on `cells` cells from costs per cell, one table in the
-/// source. `vtk` as in RunSettings; `map_width_px` is 0 where no maps are drawn.
-Prediction predict(const Pipeline& pipeline, int first, int last, double cells, int threads,
-                   bool vtk, double map_width_px);
+/// source, scaled to the speed of this machine. `vtk` as in RunSettings; `map_width_px` is 0 where
+/// no maps are drawn.
+Prediction predict(const Pipeline& pipeline, int first, int last, double cells,
+                   const MachineSpeed& speed, bool vtk, double map_width_px);
 
 }  // namespace geo::io

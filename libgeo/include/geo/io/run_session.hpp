@@ -21,14 +21,17 @@
 
 namespace geo::io {
 
+class FrameFiles;
+
 /// What a command line asks of a run besides its configuration.
 struct RunRequest {
   std::filesystem::path folder;
   /// First stage to compute. In a new folder the run starts there, from the relief itself. With
   /// `overwrite` on a folder that holds a run, earlier stages keep their files.
   std::string from;
-  std::string to;       ///< last stage; empty: as configured
-  bool resume = false;  ///< go on after the last complete stage
+  std::string to;                  ///< last stage; empty: as configured
+  bool resume = false;             ///< go on after the last complete stage
+  bool allow_other_build = false;  ///< go on behind stages that another build wrote
   /// The configuration is the one that the folder holds. A run that reached its own `run.to` is
   /// then resumed to the last stage there is.
   bool folders_configuration = false;
@@ -62,8 +65,8 @@ class RunSession {
   /// stages, the folder, the relief, the wiring, room on the disk. Writes nothing. Throws
   /// ConfigurationError, InputError, IoError.
   void prepare();
-  /// What the prepared run will take.
-  [[nodiscard]] Prediction prediction() const;
+  /// What the prepared run will take on a machine of some speed.
+  [[nodiscard]] Prediction prediction(const MachineSpeed& speed) const;
   /// Names of the stages that are still to be computed.
   [[nodiscard]] std::vector<std::string_view> stages_to_run() const;
   [[nodiscard]] const Grid& grid() const { return state_->grid(); }
@@ -76,7 +79,7 @@ class RunSession {
   void choose_stages();
   void look_at_folder();
   void take_open_settings(const std::string& before);
-  void check_version(std::string_view asked_by) const;
+  void check_builders(std::string_view asked_by);
   void go_on_from(const std::string& before);
   void keep_earlier_stages(const std::string& before, int old_begin);
   void load_complete_stages();
@@ -104,7 +107,7 @@ class RunSession {
 
   void clear_for_this_run();
   void compute(const RunEvents& events);
-  void write_stage(BackgroundWriter& writer, int position, const State& state,
+  void write_stage(BackgroundWriter& writer, FrameFiles& frames, int position, const State& state,
                    const Context& context, double seconds);
   void keep_for_pictures(int position, const State& state);
   void write_summaries(const RunEvents& events);
