@@ -136,12 +136,47 @@ def check_bounds(where, variable, bounds):
     if bounds is None:
         return expect(False, where, "bounds variable is missing")
     edges, centres = np.asarray(bounds[:]), np.asarray(variable[:])
+    if centres.ndim == 2:
+        return check_corners(where, variable, edges, centres)
     expect(edges.shape == (*centres.shape, 2), where, "bounds have another shape")
     expect(np.all(edges[:, 0] < centres) and np.all(centres < edges[:, 1]), where,
            "lies outside its bounds")
     expect(np.array_equal(edges[1:, 0], edges[:-1, 1]), where, "bounds have gaps")
     expect(np.all(np.diff(centres) > 0), where, "does not ascend")
     return None
+
+
+def check_corners(where, variable, corners, centres):
+    """CF-1.10 7.1: vertices of two-dimensional coordinates, anticlockwise, shared by neighbours."""
+    expect(corners.shape == (*centres.shape, 4), where, "corners have another shape")
+    turn = 360.0 if variable.getncattr("units") == "degrees_east" else np.inf
+    same = lambda a, b: np.array_equal(np.remainder(a, turn), np.remainder(b, turn))
+    expect(same(corners[:, 1:, 0], corners[:, :-1, 1]) and same(corners[:, 1:, 3], corners[:, :-1, 2])
+           and same(corners[1:, :, 0], corners[:-1, :, 3])
+           and same(corners[1:, :, 1], corners[:-1, :, 2]), where, "cells do not share their corners")
+    expect(np.all(np.abs(corners - centres[..., None]) <= 180.0), where, "corners are on the far side")
+    # The middle of the corners is the centre, to a small part of a cell; not where meridians meet.
+    size = np.ptp(corners, axis=-1)
+    plain = size < 10 * np.median(size)
+    off = np.abs(corners.mean(axis=-1) - centres)
+    expect(plain.mean() > 0.9 and np.all(off[plain] <= 0.05 * size[plain]), where,
+           "lies off the middle of its corners")
+
+
+def check_anticlockwise(reference):
+    """Corners of an island's cells, as seen from above, go round to the left."""
+    if not reference.is_projected:
+        return
+    lat, lon = (np.radians(np.asarray(reference.dataset[name][:])) for name in ("lat_bnds", "lon_bnds"))
+    points = np.stack([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)], axis=-1)
+    to_next, to_last = points[..., 1, :] - points[..., 0, :], points[..., 3, :] - points[..., 0, :]
+    upward = (np.cross(to_next, to_last) * points[..., 0, :]).sum(axis=-1)
+    expect(np.all(upward > 0), reference.path.name, "corners of cells do not go round anticlockwise")
+    # Half the cross product is a triangle: its double is the cell.
+    crs = reference.dataset["crs"]
+    radius = float(attribute(crs, "earth_radius") or attribute(crs, "semi_major_axis"))
+    expect(np.allclose(upward * radius**2, reference.area, rtol=0.05), reference.path.name,
+           "corners do not enclose the cells' areas")
 
 
 def check_field(where, reference, variable):
@@ -269,11 +304,29 @@ def check_cdo(reference):
         seen = call("cdo", "-s", "showunit", f"-selname,{name}", reference.path)
         expect(seen is not None and seen.strip() == units, f"{reference.path.name}: {name}:",
                "cdo sees units", seen)
+    if reference.is_projected:
+        remapped = reference.path.with_suffix(".remapped.nc")
+        if call("cdo", "-s", "-O", "remapcon,r36x18", f"-selname,{names[0]}", reference.path,
+                remapped) is not None:
+            check_remapped(reference, names[0], remapped)
     description = call("cdo", "-s", "griddes", f"-selname,{names[0]}", reference.path) or ""
     kind = re.search(r"gridtype\s*=\s*(\w+)", description)
     plane = {"curvilinear"} if "lat" in reference.dataset.variables else {"generic", "projection"}
     expect(kind and kind[1] in ({"lonlat"} if reference.is_latitude_longitude else plane),
            reference.path.name, "cdo sees a grid of type", kind and kind[1])
+
+
+def check_remapped(reference, name, path):
+    """A conservative remapping keeps the values' range."""
+    low, _, high, _ = reference.summary(name)
+    with netCDF4.Dataset(path) as dataset:
+        values = np.ma.masked_invalid(dataset[name][:])
+        expect(values.count() > 0, path.name, "nothing was remapped")
+        if values.count():
+            slack = 1e-5 * (high - low)
+            expect(low - slack <= values.min() and values.max() <= high + slack, path.name, name,
+                   "leaves its range by conservative remapping")
+    path.unlink()
 
 
 def check_nco(reference):
@@ -346,8 +399,8 @@ def main():
         sys.exit(f"{sys.argv[1]}: no NetCDF files")
     for path in files:
         reference = Reference(path)
-        for check in (check_conventions, check_areas, check_projection, check_xarray, check_cdo, check_nco, check_gdal,
-                      check_ncdump):
+        for check in (check_conventions, check_areas, check_anticlockwise, check_projection, check_xarray,
+                      check_cdo, check_nco, check_gdal, check_ncdump):
             check(reference)
     print(f"{len(files)} files, {len(failures)} failures; asked netCDF4, {', '.join(sorted(asked))}")
     sys.exit(1 if failures else 0)

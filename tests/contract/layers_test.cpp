@@ -24,8 +24,8 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
 bool is_plain_library(const std::string& header) {
   if (header.find('/') == std::string::npos) return header.find('.') == std::string::npos;
   return header.starts_with("Random123/") || header.starts_with("GeographicLib/") ||
-         header == "unsupported/Eigen/FFT" || header == "Eigen/Dense" || header == "fmt/format.h" ||
-         header == "fmt/ranges.h";
+         header == "unsupported/Eigen/FFT" || header.starts_with("Eigen/") ||
+         header == "fmt/format.h" || header == "fmt/ranges.h";
 }
 
 struct Include {

@@ -107,6 +107,49 @@ TEST(Moisture, WhatEvaporatesRains) {
   EXPECT_NEAR(rain / evaporation, 1.0, 1e-4);
 }
 
+TEST(Moisture, ClosedBudgetHasRainForAllThatEvaporates) {
+  const Grid grid = Grid::sphere(72, 36);
+  Air air(grid);
+  for (Index c = 0; c < grid.size(); ++c) {
+    const int i = grid.column(c), j = grid.row(c);
+    air.water[c] = i < 40 ? 0.2F : 0.0F;
+    air.saturated[c] = static_cast<float>(2.0 + 45.0 * std::cos(grid.latitude_deg(j) / 57.3));
+    air.eddies[c] = i == 50 ? 3.0F : 1.0F;  // a range that lifts the air
+    air.land_evaporation[c] = i < 40 ? 0.0F : 0.1F;
+    air.mixing[c] = 8e5F;
+  }
+  const MoistureSeason season = air.season();
+  SteadyMoisture steady(grid, MoistureBudget{}, {&season, 1});
+  steady.solve();
+  steady.close(0);
+  double evaporation = 0.0, rain = 0.0;
+  for (Index c = 0; c < grid.size(); ++c) {
+    const double area = grid.area_m2(grid.row(c)), w = air.column[c];
+    evaporation +=
+        area * (air.water[c] * std::max(0.0, air.saturated[c] - w) + air.land_evaporation[c]);
+    rain += area * rain_mm_d({}, w, air.saturated[c], air.eddies[c]);
+  }
+  EXPECT_NEAR(rain / evaporation, 1.0, 1e-7);  // what close() promises
+}
+
+TEST(Moisture, WhatARangeTakesTheAirLacksBehindIt) {
+  const Grid grid = Grid::sphere(72, 36);
+  Air air(grid), level(grid);
+  for (Index c = 0; c < grid.size(); ++c) {
+    air.water[c] = level.water[c] = grid.column(c) < 36 ? 0.2F : 0.0F;
+    if (grid.column(c) == 42) air.eddies[c] = 2.5F;
+  }
+  for (Air* each : {&air, &level}) {
+    const MoistureSeason season = each->season();
+    SteadyMoisture steady(grid, MoistureBudget{}, {&season, 1});
+    steady.solve();
+    steady.close(0);
+  }
+  const Index on = grid.cell(42, 18), behind = grid.cell(43, 18);
+  EXPECT_GT(rain_mm_d({}, air.column[on], 40.0, 2.5), rain_mm_d({}, level.column[on], 40.0, 1.0));
+  EXPECT_LT(air.column[behind], 0.97 * level.column[behind]);
+}
+
 TEST(Moisture, RainFallsOffDownwindOfTheCoast) {
   const Grid grid = Grid::sphere(72, 36);
   Air air(grid);

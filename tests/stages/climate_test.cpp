@@ -38,13 +38,18 @@ ClimateParameters quick() {
 }
 
 State run(std::shared_ptr<const Grid> grid, std::vector<float> elevation,
-          ClimateParameters parameters = quick(), Context context = {}) {
+          ClimateParameters parameters, Context& context) {
   State state(std::move(grid));
   state.set(field::elevation, std::move(elevation));
   const auto stage = make_climate_stage(std::move(parameters));
   StageIo io(state, stage->info());
   stage->run(io, context);
   return state;
+}
+
+State run(std::shared_ptr<const Grid> grid, std::vector<float> elevation,
+          ClimateParameters parameters = quick(), Context&& context = {}) {
+  return run(std::move(grid), std::move(elevation), std::move(parameters), context);
 }
 
 const Field<float>* const kOutputs[] = {
@@ -75,6 +80,74 @@ double area_mean(const State& state, const Field<float>& spec) {
   double sum = 0.0;
   for (Index c = 0; c < grid.size(); ++c) sum += grid.area_m2(grid.row(c)) * state.read(spec)[c];
   return sum / grid.total_area_m2();
+}
+
+double rain_m3_s(const State& state) {
+  return area_mean(state, field::precipitation) * state.grid().total_area_m2() * 1e-3 /
+         (365.25 * 86400.0);
+}
+
+TEST(Climate, AllThatEvaporatesRains) {
+  const double precise = 1e-6;  // floats hold each cell's rain to 6e-8
+  for (const double lift_height_m : {300.0, 1450.0, 1e6}) {
+    for (const double noise_mm_yr : {0.0, 300.0}) {
+      for (const int nx : {36, 64, 200}) {  // coarser and finer than the air's own grid
+        const auto grid = std::make_shared<Grid>(Grid::sphere(nx, nx / 2));
+        ClimateParameters p = quick();
+        p.lift_height_m = lift_height_m;
+        p.precipitation_noise_mm_yr = noise_mm_yr;
+        Context context;
+        const State state = run(grid, relief(*grid), p, context);
+        const double evaporation =
+            context.budget.at("sea_evaporation_m3_s") + context.budget.at("land_evaporation_m3_s");
+        EXPECT_NEAR(rain_m3_s(state) / evaporation, 1.0, precise)
+            << nx << " columns, lift " << lift_height_m << " m, noise " << noise_mm_yr;
+        EXPECT_NEAR(context.budget.at("precipitation_m3_s") / rain_m3_s(state), 1.0, 1e-9);
+        EXPECT_LT(context.budget.at("air_water_closing_error"), precise);
+        EXPECT_GT(evaporation, 1e6);
+      }
+    }
+  }
+  const auto torus = std::make_shared<Grid>(Grid::torus(64, 48, 200e3, 200e3));
+  std::vector<float> half(64 * 48, -100.0F);
+  std::fill(half.begin() + 1000, half.begin() + 2000, 1500.0F);
+  Context context;
+  run(torus, half, quick(), context);
+  EXPECT_LT(context.budget.at("air_water_closing_error"), precise);
+}
+
+TEST(Climate, WhatRangesTakeOthersLack) {
+  const auto grid = std::make_shared<Grid>(Grid::sphere(200, 100));
+  ClimateParameters none = quick();
+  none.lift_height_m = 1e6;  // ranges lift the air and nothing follows
+  const State with = run(grid, relief(*grid)), without = run(grid, relief(*grid), none);
+  double more = 0.0, less = 0.0;
+  const auto a = with.read(field::precipitation), b = without.read(field::precipitation);
+  for (Index c = 0; c < grid->size(); ++c) {
+    (a[c] > b[c] ? more : less) += (a[c] - b[c]) * grid->area_m2(grid->row(c));
+  }
+  EXPECT_GT(more, 0.0);
+  // Air that is dried takes up more from the sea, but not all of it.
+  EXPECT_LT(less, -0.3 * more);
+}
+
+TEST(Climate, TemperaturesThatAreHeldAreTold) {
+  const auto grid = std::make_shared<Grid>(Grid::sphere(72, 36));
+  Context mild;
+  run(grid, relief(*grid), quick(), mild);
+  EXPECT_EQ(mild.budget.at("temperature_held_share"), 0.0);
+  EXPECT_TRUE(mild.warnings.empty());
+  ClimateParameters dark = quick();
+  dark.seasonal.energy.solar_constant_w_m2 = 100.0;
+  Context cold;
+  const State state = run(grid, relief(*grid), dark, cold);
+  double held = 0.0;
+  for (Index c = 0; c < grid->size(); ++c) {
+    if (state.read(field::temperature)[c] == -70.0F) held += grid->area_m2(grid->row(c));
+  }
+  EXPECT_GT(held, 0.0);
+  EXPECT_NEAR(cold.budget.at("temperature_held_share"), held / grid->total_area_m2(), 1e-12);
+  EXPECT_EQ(cold.warnings.size(), 1u);
 }
 
 TEST(Climate, DeclarationsAreSoundAndUnique) {

@@ -2,9 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
 
 #include "geo/core/error.hpp"
+#include "geo/core/projection.hpp"
 #include "geo/kernels/resample.hpp"
 #include "map_projection.hpp"
 
@@ -74,7 +79,10 @@ void define_mapping(const nc::File& file, const Grid& grid) {
   }
 }
 
-void define_plane_positions(const nc::File& file, const GridVariables& ids) {
+constexpr std::size_t kCorners = 4, kCornerRows = 64;  // of a cell; written and compressed together
+
+void define_plane_positions(const nc::File& file, const Grid& grid, const GridVariables& ids) {
+  const int corners = grid.is_projected() ? file.define_dimension("corners", kCorners) : -1;
   for (const CoordinateNames& names : {kLatitude, kLongitude}) {
     const int variable = file.define_variable(names.name, NC_DOUBLE,
                                               std::array{ids.row_dimension, ids.column_dimension});
@@ -82,6 +90,14 @@ void define_plane_positions(const nc::File& file, const GridVariables& ids) {
     file.put(variable, "long_name", names.long_name);
     file.put(variable, "units", names.units);
     nc::check(nc_def_var_deflate(file.id(), variable, 1, 1, 1));
+    if (!grid.is_projected()) continue;
+    file.put(variable, "bounds", names.bounds);
+    const int bounds = file.define_variable(
+        names.bounds, NC_DOUBLE, std::array{ids.row_dimension, ids.column_dimension, corners});
+    const std::array chunks{std::min<std::size_t>(grid.ny(), kCornerRows),
+                            std::min<std::size_t>(grid.nx(), 4 * kCornerRows), kCorners};
+    nc::check(nc_def_var_chunking(file.id(), bounds, NC_CHUNKED, chunks.data()));
+    nc::check(nc_def_var_deflate(file.id(), bounds, 1, 1, 1));
   }
 }
 
@@ -133,6 +149,59 @@ void write_plane_positions(const nc::File& file, const Grid& grid) {
   nc::check(nc_put_var_double(file.id(), *file.find_variable("lon"), longitudes.data()));
 }
 
+/// Positions of the corners along the south of a row of cells, rounded to a power of two of a
+/// degree below 1/256 of a cell: finer digits would only fill the file.
+std::vector<Centre> corners_south_of(const Grid& grid, const EqualAreaProjection& projection,
+                                     int row) {
+  const double cell_deg = std::min(grid.spacing_east_m(0), grid.step_north_m()) /
+                          grid.figure().radius_m * 180.0 / std::numbers::pi;
+  const double step_deg = std::exp2(std::floor(std::log2(cell_deg / 256.0)));
+  const auto rounded = [&](double degrees) { return step_deg * std::round(degrees / step_deg); };
+  std::vector<Centre> corners;
+  for (int i = 0; i <= grid.nx(); ++i) {
+    const Centre exact = projection.unproject((i - 0.5 * grid.nx()) * grid.spacing_east_m(0),
+                                              (row - 0.5 * grid.ny()) * grid.step_north_m());
+    corners.push_back(
+        {std::clamp(rounded(exact.latitude_deg), -90.0, 90.0), rounded(exact.longitude_deg)});
+  }
+  return corners;
+}
+
+/// Corners of each cell, anticlockwise from the south-west of the map, with longitudes that lie
+/// within half a turn of the centre's.
+void write_corners(const nc::File& file, const Grid& grid) {
+  const EqualAreaProjection projection(*grid.centre(), grid.figure());
+  const int latitude_id = *file.find_variable(kLatitude.bounds);
+  const int longitude_id = *file.find_variable(kLongitude.bounds);
+  constexpr int kTogether = kCornerRows;
+  const auto nx = static_cast<std::size_t>(grid.nx());
+  std::vector<double> latitudes, longitudes;
+  std::vector<Centre> south = corners_south_of(grid, projection, 0);
+  for (int first = 0; first < grid.ny(); first += kTogether) {
+    const int rows = std::min(kTogether, grid.ny() - first);
+    latitudes.clear();
+    longitudes.clear();
+    for (int j = first; j < first + rows; ++j) {
+      std::vector<Centre> north = corners_south_of(grid, projection, j + 1);
+      for (std::size_t i = 0; i < nx; ++i) {
+        const double middle_deg = grid.position(static_cast<int>(i), j).longitude_deg;
+        for (const Centre& corner : {south[i], south[i + 1], north[i + 1], north[i]}) {
+          const double away_deg = corner.longitude_deg - middle_deg;
+          latitudes.push_back(corner.latitude_deg);
+          longitudes.push_back(corner.longitude_deg - 360.0 * std::round(away_deg / 360.0));
+        }
+      }
+      south = std::move(north);
+    }
+    const std::array<std::size_t, 3> start{static_cast<std::size_t>(first), 0, 0};
+    const std::array<std::size_t, 3> count{static_cast<std::size_t>(rows), nx, kCorners};
+    nc::check(
+        nc_put_vara_double(file.id(), latitude_id, start.data(), count.data(), latitudes.data()));
+    nc::check(
+        nc_put_vara_double(file.id(), longitude_id, start.data(), count.data(), longitudes.data()));
+  }
+}
+
 std::vector<double> required_numbers(const nc::File& file, const char* name, std::size_t count) {
   auto values = file.numbers(NC_GLOBAL, name);
   if (values.size() != count) {
@@ -166,7 +235,7 @@ GridVariables define_grid(const nc::File& file, const Grid& grid) {
   ids.has_mapping = grid.is_latitude_longitude() || grid.is_projected();
   ids.has_coordinates = grid.is_geographic() && !grid.is_latitude_longitude();
   if (ids.has_mapping) define_mapping(file, grid);
-  if (ids.has_coordinates) define_plane_positions(file, ids);
+  if (ids.has_coordinates) define_plane_positions(file, grid, ids);
   put_rebuilding_attributes(file, grid);
   return ids;
 }
@@ -176,6 +245,7 @@ void write_coordinates(const nc::File& file, const Grid& grid) {
   write_axis(file, row_names(grid), raster.rows);
   write_axis(file, column_names(grid), raster.columns);
   if (grid.is_geographic() && !grid.is_latitude_longitude()) write_plane_positions(file, grid);
+  if (grid.is_projected()) write_corners(file, grid);
   if (const auto mapping = file.find_variable(kMapping)) {
     constexpr int kNoMeaning = 0;  // its attributes tell; left out, every reader would find another
     nc::check(nc_put_var_int(file.id(), *mapping, &kNoMeaning));

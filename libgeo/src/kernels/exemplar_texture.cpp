@@ -139,7 +139,9 @@ double disc_radius_m(const ExemplarLibrary& library) {
 }
 
 int times_coarser(const Exemplar& e, double fine_cell_m) {
-  return std::max(1, static_cast<int>(fine_cell_m / e.cell_m + 0.05));
+  constexpr int kLeast = 8;  // cells that are left on the shorter side
+  const int most = std::max(1, std::min(e.nx, e.ny) / kLeast);
+  return std::clamp(static_cast<int>(fine_cell_m / e.cell_m + 0.05), 1, most);
 }
 
 Texture texture_of(const Exemplar& exemplar, const ExemplarBand& band, double fine_cell_m) {

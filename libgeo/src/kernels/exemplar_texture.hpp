@@ -31,7 +31,8 @@ inline constexpr double kDiscShare = 0.3;
 /// Radius of the discs that pieces of a library have: what fits into each with room for chance.
 [[nodiscard]] double disc_radius_m(const ExemplarLibrary& library);
 
-/// How often a cell of an exemplar goes into one of those it is looked at with.
+/// How often a cell of an exemplar goes into one of those it is looked at with, as long as some of
+/// these still go into the exemplar.
 [[nodiscard]] int times_coarser(const Exemplar& exemplar, double cell_m);
 
 /// On cells up to `cell_m`.

@@ -39,6 +39,10 @@ double rain_mm_d(const MoistureBudget& model, double column_mm, double saturated
          integer_power(column_mm / saturated_mm, model.humidity_exponent);
 }
 
+double sea_evaporation_mm_d(double column_mm, double saturated_mm, double open_water_1_d) {
+  return open_water_1_d * std::max(0.0, saturated_mm - column_mm);
+}
+
 SteadyMoisture::SteadyMoisture(const Grid& grid, const MoistureBudget& model,
                                std::span<const MoistureSeason> seasons)
     : grid_(grid),
@@ -75,9 +79,9 @@ void SteadyMoisture::take_exchange(int lane) {
         const double leaving = rate * (std::max(speed, 0.0) + mixing);
         const double arriving = rate * (std::max(-speed, 0.0) + mixing);
         out[here] += leaving;
-        air_[here].from_east[lane] = static_cast<float>(arriving);
+        air_[here].from_east[lane] = arriving;
         out[east] += arriving;
-        air_[east].from_west[lane] = static_cast<float>(leaving);
+        air_[east].from_west[lane] = leaving;
       }
       if (pole) continue;
       const Index north = grid_.neighbour(i, j, kNorth);
@@ -88,14 +92,14 @@ void SteadyMoisture::take_exchange(int lane) {
       const double arriving = face_m * kSecondsPerDay * (std::max(-speed, 0.0) + mixing);
       const double north_area_m2 = grid_.area_m2(grid_.row(north));
       out[here] += leaving / area_m2;
-      air_[here].from_north[lane] = static_cast<float>(arriving / area_m2);
+      air_[here].from_north[lane] = arriving / area_m2;
       out[north] += arriving / north_area_m2;
-      air_[north].from_south[lane] = static_cast<float>(leaving / north_area_m2);
+      air_[north].from_south[lane] = leaving / north_area_m2;
     }
   }
   for (std::size_t cell = 0; cell < out.size(); ++cell) {
     Air& air = air_[cell];
-    air.out[lane] = static_cast<float>(out[cell]);
+    air.out[lane] = out[cell];
     air.saturated_mm[lane] = season.saturated_mm[cell];
     air.open_water_1_d[lane] = season.open_water_1_d[cell];
     air.rain_rate_1_d[lane] = season.eddy_activity[cell] / model_.rain_time_d;
@@ -129,19 +133,15 @@ TERRANE_WIDE void SteadyMoisture::sweep(const Field& field, bool northward, bool
         const Index north = j + 1 < ny ? here + nx : field.beyond_north[i];
         const Index south = j > 0 ? here - nx : field.beyond_south[i];
         const Air& air = field.air[here];
-        Quad out, capacity, open, from_east, from_west, from_north, from_south;
-        widen(air.out, out);
+        Quad capacity, open;
         widen(air.saturated_mm, capacity);
         widen(air.open_water_1_d, open);
-        widen(air.from_east, from_east);
-        widen(air.from_west, from_west);
-        widen(air.from_north, from_north);
-        widen(air.from_south, from_south);
-        const Quad& rain_rate = quad(air.rain_rate_1_d);
-        const Quad supply =
-            from_east * quad(field.column[east]) + from_west * quad(field.column[west]) +
-            from_north * quad(field.column[north]) + from_south * quad(field.column[south]) +
-            quad(field.land_evaporation[here]);
+        const Quad &out = quad(air.out), &rain_rate = quad(air.rain_rate_1_d);
+        const Quad supply = quad(air.from_east) * quad(field.column[east]) +
+                            quad(air.from_west) * quad(field.column[west]) +
+                            quad(air.from_north) * quad(field.column[north]) +
+                            quad(air.from_south) * quad(field.column[south]) +
+                            quad(field.land_evaporation[here]);
         // supply + open (W_s - w)+ = out w + c w (w/W_s)^n: two Newton steps from the present
         // value, which lies on the convex side after the first.
         Quad w = quad(field.column[here]);

@@ -36,14 +36,20 @@ struct End {
   double level_m = 0.0;
 };
 
+int cells_to_edge(const Grid& fine, Index c) {
+  const int i = fine.column(c), j = fine.row(c);
+  return std::min({i, fine.nx() - 1 - i, j, fine.ny() - 1 - j});
+}
+
 using Front = std::priority_queue<std::pair<double, Index>, std::vector<std::pair<double, Index>>,
                                   std::greater<>>;
 
 /// Courses as they grow, from the sea upstream.
 class Network {
  public:
-  Network(const Grid& fine, std::span<const float> z, std::span<const float> noise)
-      : fine_(fine), z_(z), noise_(noise), place_(z.size(), kNone) {}
+  /// @param strip  cells along the edge that courses keep clear of, unless they cross it
+  Network(const Grid& fine, std::span<const float> z, std::span<const float> noise, int strip)
+      : fine_(fine), z_(z), noise_(noise), strip_(strip), place_(z.size(), kNone) {}
 
   /// Place of a cell in the courses, kNone where there is none.
   [[nodiscard]] std::int32_t place(Index cell) const { return place_[cell]; }
@@ -146,9 +152,10 @@ class Network {
     return {std::max(0, west - margin), std::min(fine_.nx() - 1, east + margin),
             std::max(0, south - margin), std::min(fine_.ny() - 1, north + margin)};
   }
-  /// Cost of a metre at a cell: low ground is easy, and no ground is quite even.
+  /// Cost of a metre at a cell: low ground is easy, no ground is quite even, and the edge, which is
+  /// nothing on the ground, does not lead rivers along it.
   [[nodiscard]] double resistance(Index c, const End& from, const End& to) const {
-    constexpr double kDigging_m = 20.0, kHollow_m = 100.0, kWinding = 0.8;
+    constexpr double kDigging_m = 20.0, kHollow_m = 100.0, kWinding = 1.2, kStrip = 6.0;
     const double di = fine_.column(to.cell) - fine_.column(from.cell);
     const double dj = fine_.row(to.cell) - fine_.row(from.cell);
     const double along = (fine_.column(c) - fine_.column(from.cell)) * di +
@@ -156,11 +163,15 @@ class Network {
     const double share = std::clamp(along / std::max(1.0, di * di + dj * dj), 0.0, 1.0);
     const double level_m = std::lerp(from.level_m, to.level_m, share);
     const double low_m = level_m - std::min(0.5 * level_m, kHollow_m);
-    return std::exp(kWinding * noise_[c]) * (1.0 + std::max(0.0, z_[c] - low_m) / kDigging_m);
+    const double in_strip =
+        std::max(0.0, 1.0 - static_cast<double>(cells_to_edge(fine_, c)) / strip_);
+    return std::exp(kWinding * noise_[c]) * (1.0 + kStrip * in_strip * in_strip) *
+           (1.0 + std::max(0.0, z_[c] - low_m) / kDigging_m);
   }
 
   const Grid& fine_;
   std::span<const float> z_, noise_;
+  int strip_;
   RiverCourses courses_;
   std::vector<std::int32_t> place_;
   std::vector<double> cost_;
@@ -178,7 +189,8 @@ class Beds {
   [[nodiscard]] bool on_lake(Index planet_cell) const {
     return !water_.lake_id.empty() && water_.lake_id[planet_cell] > 0;
   }
-  /// The lowest place within a quarter of a planet cell of the centre, away from the edge.
+  /// The lowest place within a quarter of a planet cell of the centre, away from the edge: what the planet
+  /// knows is which cell the water goes through, and not where.
   End operator()(Index planet_cell) {
     const auto [found, is_new] = bed_.try_emplace(planet_cell, End{});
     if (is_new) found->second = {lowest(planet_cell), level_m(planet_cell)};
@@ -190,6 +202,12 @@ class Beds {
     const int row = planet.row(planet_cell);
     const double cell_m = std::min(planet.spacing_east_m(row), planet.step_north_m());
     return static_cast<int>(0.25 * cell_m / cells_.fine().spacing_east_m(0));
+  }
+  /// Half of that, as long as it is little of the plane.
+  [[nodiscard]] int strip() const {
+    const Grid& fine = cells_.fine();
+    const int quarter = reach(cells_.planet().cell(0, cells_.first_row()));
+    return std::clamp(quarter / 2, 1, std::max(1, std::min(fine.nx(), fine.ny()) / 16));
   }
 
  private:
@@ -206,15 +224,16 @@ class Beds {
   [[nodiscard]] Index lowest(Index planet_cell) const {
     const Grid& fine = cells_.fine();
     const auto [x, y] = window_.place(planet_cell);
-    const auto clamped = [](double v, int n) {
-      return std::clamp(static_cast<int>(std::floor(v)), 1, n - 2);
+    const int s = strip();
+    const auto clamped = [&](double v, int n) {
+      return std::clamp(static_cast<int>(std::floor(v)), s, n - 1 - s);
     };
     const int ci = clamped(x / fine.spacing_east_m(0) + 0.5 * fine.nx(), fine.nx());
     const int cj = clamped(y / fine.step_north_m() + 0.5 * fine.ny(), fine.ny());
     const int r = reach(planet_cell);
     Index best = fine.cell(ci, cj);
-    for (int j = std::max(1, cj - r); j <= std::min(fine.ny() - 2, cj + r); ++j) {
-      for (int i = std::max(1, ci - r); i <= std::min(fine.nx() - 2, ci + r); ++i) {
+    for (int j = std::max(s, cj - r); j <= std::min(fine.ny() - 1 - s, cj + r); ++j) {
+      for (int i = std::max(s, ci - r); i <= std::min(fine.nx() - 1 - s, ci + r); ++i) {
         const Index c = fine.cell(i, j);
         if (z_[c] < z_[best]) best = c;
       }
@@ -244,12 +263,16 @@ std::vector<Index> river_steps(const PlanetCells& cells, const PlanetWater& wate
   return steps;
 }
 
-/// Noise of unit variance from half a planet cell down, which makes courses wind.
+/// Noise of unit variance from half a planet cell down to two fine ones, which makes courses wind.
+/// Its short waves are strong: a least path over even ground would follow the eight directions of
+/// the grid.
 std::vector<float> winding(const PlanetCells& cells, std::uint64_t seed) {
+  constexpr double kShortWaves = 0.8;
   DetailLaw law;
   law.wavelength_m = 0.5 * cells.planet().step_north_m();
   const double octaves = std::log2(law.wavelength_m / cells.fine().step_north_m());
-  law.octaves = static_cast<int>(std::clamp(octaves, 1.0, 6.0));
+  law.octaves = static_cast<int>(std::clamp(octaves, 1.0, 12.0));
+  law.gain = kShortWaves;
   std::vector<float> noise(cells.fine().size());
   unit_detail(cells.fine(), law, seed, "island.detail", noise);
   return noise;
@@ -262,7 +285,7 @@ RiverCourses trace_river_courses(const PlanetCells& cells, const PlanetWater& wa
                                  std::span<const float> elevation_m) {
   const std::vector<float> noise = winding(cells, seed);
   Beds beds(cells, water, elevation_m);
-  Network network(cells.fine(), elevation_m, noise);
+  Network network(cells.fine(), elevation_m, noise, beds.strip());
   std::map<Index, Index> crossing_of;
   for (const auto& [planet_cell, edge_cell] : crossings) crossing_of[planet_cell] = edge_cell;
 

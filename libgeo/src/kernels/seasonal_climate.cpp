@@ -8,6 +8,7 @@
 #include <span>
 
 #include "geo/core/parallel_errors.hpp"
+#include "geo/kernels/area_sum.hpp"
 #include "geo/kernels/evaporation.hpp"
 #include "geo/kernels/insolation.hpp"
 #include "geo/kernels/thermodynamics.hpp"
@@ -86,12 +87,47 @@ struct Month {
   std::vector<double> column_mm, rain_mm_d;
 };
 
+void mean_winds(std::span<const Month> months, std::vector<float>& wind_east,
+                std::vector<float>& wind_north) {
+  const std::size_t size = months[0].wind_east.size();
+  wind_east.resize(size);
+  wind_north.resize(size);
+  for (std::size_t cell = 0; cell < size; ++cell) {
+    double east = 0.0, north = 0.0;
+    for (const Month& month : months) {
+      east += month.wind_east[cell];
+      north += month.wind_north[cell];
+    }
+    wind_east[cell] = static_cast<float>(east / kMonths);
+    wind_north[cell] = static_cast<float>(north / kMonths);
+  }
+}
+
+AirWater sum_water(const Grid& grid, std::span<const Month> months) {
+  constexpr double kPerMillimetreADay = 1.0e-3 / kSecondsPerDay / kMonths;
+  const auto over_the_year = [&](const auto& of_month) {
+    return kPerMillimetreADay * area_sum<double>(grid, [&](Index cell) {
+             double sum = 0.0;
+             for (const Month& month : months) sum += of_month(month, cell);
+             return sum;
+           });
+  };
+  return {.sea_evaporation_m3_s = over_the_year([](const Month& month, Index cell) {
+            return sea_evaporation_mm_d(month.column_mm[cell], month.saturated_mm[cell],
+                                        month.open_water_1_d[cell]);
+          }),
+          .land_evaporation_m3_s = over_the_year(
+              [](const Month& month, Index cell) { return month.land_evaporation_mm_d[cell]; }),
+          .precipitation_m3_s =
+              over_the_year([](const Month& month, Index cell) { return month.rain_mm_d[cell]; })};
+}
+
 }  // namespace
 
 SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& model,
                                       std::span<const double> latitude_deg,
                                       std::span<const float> land_fraction,
-                                      std::span<const float> height_m) {
+                                      std::span<const float> height_m, const ReliefAscent& ascent) {
   const int nx = grid.nx(), ny = grid.ny();
   const std::size_t size = static_cast<std::size_t>(grid.size());
   std::vector<double> mean_c(size);
@@ -100,7 +136,9 @@ SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& m
                        harmonic_k);
   const std::vector<double> zonal_mean_c = row_means(grid, mean_c);
 
-  const bool has_sea = std::any_of(land_fraction.begin(), land_fraction.end(),
+  // Without open water that gives any away, the air is dry.
+  const bool has_sea = model.moisture.evaporation_velocity_1_d > 0.0 &&
+                       std::any_of(land_fraction.begin(), land_fraction.end(),
                                    [](float land) { return land < 1.0F; });
   constexpr double kWattsPerMillimetreADay = 28.36;
   std::vector<double> most_evaporation_mm_d(ny);
@@ -154,7 +192,7 @@ SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& m
         const double resistance_d =
             1.0 / model.moisture.evaporation_velocity_1_d + saturated / most_evaporation_mm_d[j];
         month.open_water_1_d[here] = static_cast<float>((1.0 - land_fraction[here]) / resistance_d);
-        month.column_mm[here] = (has_sea ? 0.7 : 1.0e-3) * saturated;
+        month.column_mm[here] = (has_sea ? 0.7 : 0.0) * saturated;
       }
     }
     thermal_winds(grid, model.circulation, latitude_deg, itcz_deg, land_fraction, anomaly_k,
@@ -179,6 +217,15 @@ SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& m
 #pragma omp parallel for schedule(dynamic, 1)
   for (int m = 0; m < kMonths; ++m) errors.guard([&] { compute_month(m); });
   errors.rethrow();
+
+  SeasonalFields fields;
+  mean_winds(months, fields.wind_east, fields.wind_north);
+  if (ascent) {
+    const std::vector<float> more = ascent(fields.wind_east, fields.wind_north);
+    for (Month& month : months) {
+      for (std::size_t cell = 0; cell < size; ++cell) month.eddies[cell] *= more[cell];
+    }
+  }
 
   std::vector<MoistureSeason> seasons;
   for (Month& month : months) {
@@ -211,6 +258,14 @@ SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& m
     }
 #pragma omp parallel for schedule(dynamic, 1)
     for (std::size_t k = 0; k < budgets.size(); ++k) budgets[k]->solve();
+    const bool last_round = round + 1 == kRounds;
+    if (last_round) {
+#pragma omp parallel for schedule(dynamic, 1)
+      for (int m = 0; m < kMonths; ++m) {
+        errors.guard([&] { budgets[m / kTogether]->close(m % kTogether); });
+      }
+      errors.rethrow();
+    }
 #pragma omp parallel for schedule(dynamic, 1)
     for (int m = 0; m < kMonths; ++m) {
       Month& month = months[m];
@@ -219,6 +274,7 @@ SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& m
                                           month.saturated_mm[cell], month.eddies[cell]);
       }
     }
+    if (last_round) break;
     for (std::size_t cell = 0; cell < size; ++cell) {
       double rain = 0.0, potential = 0.0;
       for (const Month& month : months) {
@@ -233,20 +289,17 @@ SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& m
     }
   }
 
-  SeasonalFields fields;
+  fields.water = sum_water(grid, months);
   for (auto* values : {&fields.temperature_c, &fields.harmonic_cos_k, &fields.harmonic_sin_k,
-                       &fields.precipitation_mm_yr, &fields.boreal_rain_share, &fields.wind_east,
-                       &fields.wind_north, &fields.humidity}) {
+                       &fields.precipitation_mm_yr, &fields.boreal_rain_share, &fields.humidity}) {
     values->resize(size);
   }
   for (std::size_t cell = 0; cell < size; ++cell) {
-    double rain = 0.0, boreal = 0.0, east = 0.0, north = 0.0, humidity = 0.0;
+    double rain = 0.0, boreal = 0.0, humidity = 0.0;
     for (int m = 0; m < kMonths; ++m) {
       const Month& month = months[m];
       rain += month.rain_mm_d[cell];
       boreal += month.rain_mm_d[cell] * std::cos((m - 6) * 30.0 * kRadians);
-      east += month.wind_east[cell];
-      north += month.wind_north[cell];
       humidity += month.column_mm[cell] / month.saturated_mm[cell];
     }
     fields.temperature_c[cell] = static_cast<float>(mean_c[cell]);
@@ -254,8 +307,6 @@ SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& m
     fields.harmonic_sin_k[cell] = static_cast<float>(harmonic_k[cell].imag());
     fields.precipitation_mm_yr[cell] = static_cast<float>(rain / kMonths * kDaysPerYear);
     fields.boreal_rain_share[cell] = static_cast<float>(rain > 0.0 ? 2.0 * boreal / rain : 0.0);
-    fields.wind_east[cell] = static_cast<float>(east / kMonths);
-    fields.wind_north[cell] = static_cast<float>(north / kMonths);
     fields.humidity[cell] = static_cast<float>(humidity / kMonths);
   }
   return fields;

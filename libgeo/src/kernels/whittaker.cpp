@@ -101,17 +101,17 @@ double treeline_deficit_k(double mean_c, double range_k) {
 
 void smooth_biomes(const Grid& grid, double length_m, std::span<std::int8_t> biome,
                    std::span<std::int8_t> scratch) {
-  // On small planets no further than a quarter of the way round.
-  const double quarter = grid.ny() / 2;
-  const int rows =
-      static_cast<int>(std::lround(std::min(length_m / grid.spacing_north_m(0), quarter)));
+  // At most a quarter of the grid, however small its planet is.
+  const auto cells_in = [&](double spacing_m, int all) {
+    return static_cast<int>(std::min(std::round(length_m / spacing_m), std::max(1.0, all / 4.0)));
+  };
+  const int rows = cells_in(grid.spacing_north_m(0), grid.ny());
   if (rows == 0) return;
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     std::copy(biome.begin(), biome.end(), scratch.begin());
 #pragma omp parallel for schedule(dynamic, 16)
     for (int j = 0; j < grid.ny(); ++j) {
-      const int columns = std::clamp(
-          static_cast<int>(std::lround(length_m / grid.spacing_east_m(j))), 1, grid.nx() / 4);
+      const int columns = std::max(1, cells_in(grid.spacing_east_m(j), grid.nx()));
       for (int i = 0; i < grid.nx(); ++i) {
         const Index c = grid.cell(i, j);
         const std::int8_t own = scratch[c];

@@ -1,5 +1,7 @@
 #include "geo/stages/climate.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -7,6 +9,7 @@
 #include "climate_events.hpp"
 #include "climate_frame.hpp"
 #include "geo/core/parallel_errors.hpp"
+#include "geo/kernels/area_sum.hpp"
 #include "geo/kernels/circulation.hpp"
 #include "geo/kernels/distance_to_coast.hpp"
 #include "geo/kernels/evaporation.hpp"
@@ -14,6 +17,7 @@
 #include "geo/kernels/noise.hpp"
 #include "geo/kernels/orography.hpp"
 #include "geo/kernels/overlay.hpp"
+#include "geo/kernels/water_balance.hpp"
 
 namespace geo {
 namespace {
@@ -71,15 +75,66 @@ SeasonalClimate on_planet(SeasonalClimate model, const Planet& planet, double gr
   return model;
 }
 
-/// Limits of temperature: the blueprint's on Earth, wider where the air is much thicker or thinner.
+/// Range of the blueprint's temperatures; of the energy balance's, wider where the air is much
+/// thicker or thinner. What would leave it is held at its end, and counted.
 struct TemperatureLimits {
-  explicit TemperatureLimits(double pressure_bar) {
+  static TemperatureLimits of_air(double pressure_bar) {
     const double wider_k = 40.0 * std::abs(std::log(pressure_bar));
-    lowest_c = static_cast<float>(std::max(-270.0, -70.0 - wider_k));
-    highest_c = static_cast<float>(55.0 + wider_k);
+    return {static_cast<float>(std::max(-270.0, -70.0 - wider_k)),
+            static_cast<float>(55.0 + wider_k)};
   }
-  float lowest_c, highest_c;
+  [[nodiscard]] bool hold(float& temperature_c) const {
+    const float held_c = std::clamp(temperature_c, lowest_c, highest_c);
+    const bool changed = held_c != temperature_c;
+    temperature_c = held_c;
+    return changed;
+  }
+  [[nodiscard]] bool is_end(float temperature_c) const {
+    return temperature_c <= lowest_c || temperature_c >= highest_c;
+  }
+  float lowest_c = -70.0F, highest_c = 55.0F;
 };
+
+/// Tells how much of the surface was held at an end of the range; a warning unless the range is a
+/// part of the model.
+void report_limits(const Grid& grid, const TemperatureLimits& limits,
+                   std::span<const std::int64_t> cells_of_row, bool part_of_model,
+                   Context& context) {
+  double held_m2 = 0.0;
+  std::int64_t cells = 0;
+  for (int j = 0; j < grid.ny(); ++j) {
+    held_m2 += grid.area_m2(j) * static_cast<double>(cells_of_row[j]);
+    cells += cells_of_row[j];
+  }
+  const double share = held_m2 / grid.total_area_m2();
+  context.budget["temperature_held_share"] = share;
+  if (cells == 0 || part_of_model) return;
+  context.warnings.push_back(fmt::format(
+      "climate: {:.3g} % of the area would be colder or warmer than the {:g} to {:g} degC "
+      "that this air allows, and is held there",
+      100.0 * share, limits.lowest_c, limits.highest_c));
+}
+
+/// Rain on the cells that `counts`.
+template <class Counts>
+double rain_m3_s(const Grid& grid, std::span<const float> rain_mm_yr, Counts&& counts) {
+  return 1e-3 / kSecondsPerYear * area_sum<double>(grid, [&](Index cell) {
+           return counts(cell) ? static_cast<double>(rain_mm_yr[cell]) : 0.0;
+         });
+}
+
+double rain_m3_s(const Grid& grid, std::span<const float> rain_mm_yr) {
+  return rain_m3_s(grid, rain_mm_yr, [](Index) { return true; });
+}
+
+/// Multiplies rain by one factor, so that the whole surface has as much of it as the air gives.
+void close_rain(const Grid& grid, double precipitation_m3_s, std::span<float> rain_mm_yr) {
+  const double spread_m3_s = rain_m3_s(grid, rain_mm_yr);
+  if (!(spread_m3_s > 0.0)) return;
+  const auto factor = static_cast<float>(precipitation_m3_s / spread_m3_s);
+#pragma omp parallel for schedule(static)
+  for (Index cell = 0; cell < grid.size(); ++cell) rain_mm_yr[cell] *= factor;
+}
 
 /// Interpolated fields of the coarse planet along one row of the stage's grid.
 class PlanetRows {
@@ -97,14 +152,16 @@ class PlanetRows {
       humidity;
 };
 
-/// How high the air is lifted at the scale of single ranges, m, on the relief grid.
-std::vector<float> relief_lift(const ClimateFrame& frame, const SeasonalFields& fields,
-                               std::span<const float> height_m, double reach_km) {
+/// How many times more than over level ground air rains out at the scale of single ranges, on the
+/// relief grid: e where it has just been lifted by `lift_height_m`, 1/e where it has sunk by that.
+std::vector<float> relief_ascent(const ClimateFrame& frame, std::span<const float> wind_east,
+                                 std::span<const float> wind_north, std::span<const float> height_m,
+                                 const ClimateParameters& p) {
   const Grid& relief = frame.relief();
-  std::vector<float> east(height_m.size()), north(height_m.size()), lift(height_m.size());
-  const Interpolator east_of(frame.relief_on_planet(), fields.wind_east,
+  std::vector<float> east(height_m.size()), north(height_m.size()), ascent(height_m.size());
+  const Interpolator east_of(frame.relief_on_planet(), wind_east,
                              Interpolator::Kind::vector_component);
-  const Interpolator north_of(frame.relief_on_planet(), fields.wind_north,
+  const Interpolator north_of(frame.relief_on_planet(), wind_north,
                               Interpolator::Kind::vector_component);
   ParallelErrors errors;
 #pragma omp parallel
@@ -119,8 +176,18 @@ std::vector<float> relief_lift(const ClimateFrame& frame, const SeasonalFields& 
     }
   }
   errors.rethrow();
-  upwind_lift(relief, height_m, east, north, 1000.0 * reach_km, lift);
-  return lift;
+  upwind_lift(relief, height_m, east, north, 1000.0 * p.lift_reach_km, ascent);
+  const auto per_lift = static_cast<float>(1.0 / p.lift_height_m);
+  for (float& value : ascent) value = std::exp(std::clamp(value * per_lift, -1.0F, 1.0F));
+  return ascent;
+}
+
+/// Its mean over each cell of the planet, 1 beyond the stage's grid.
+std::vector<float> mean_ascent(const ClimateFrame& frame, std::span<const float> ascent) {
+  std::vector<float> mean(static_cast<std::size_t>(frame.planet().size()));
+  frame.relief_on_planet().average(ascent, mean);
+  std::replace(mean.begin(), mean.end(), 0.0F, 1.0F);
+  return mean;
 }
 
 /// How much more sun than on average reaches the ground under a column of this humidity
@@ -174,39 +241,52 @@ class ClimateStage final : public Stage {
     std::vector<float> land(size), height_m(size);
     frame.planet_relief(elevation, land, height_m);
     const auto model = on_planet(p_.seasonal, context.planet, p_.blueprint.greenhouse_k);
-    const SeasonalFields fields =
-        solve_seasonal_climate(frame.planet(), model, frame.planet_latitudes_deg(), land, height_m);
-    context.advance(0.5);
-    const DimmedSun dimmed =
-        dim_the_sun(model.energy, p_.model == "blueprint" ? &p_.blueprint : nullptr, context);
-
     const auto relief_size = static_cast<std::size_t>(frame.relief().size());
     std::vector<float> relief_land(relief_size), relief_height(relief_size), coverage(relief_size);
     frame.on_relief().average_relief(elevation, relief_land, relief_height, coverage);
-    if (p_.model == "blueprint") {
+    const bool closed_formulas = p_.model == "blueprint";
+    std::vector<float> ascent, planet_ascent;
+    ReliefAscent ascent_of;  // the blueprint has its own
+    if (!closed_formulas) {
+      ascent_of = [&](std::span<const float> wind_east, std::span<const float> wind_north) {
+        ascent = relief_ascent(frame, wind_east, wind_north, relief_height, p_);
+        planet_ascent = mean_ascent(frame, ascent);
+        return planet_ascent;
+      };
+    }
+    SeasonalFields fields = solve_seasonal_climate(
+        frame.planet(), model, frame.planet_latitudes_deg(), land, height_m, ascent_of);
+    context.advance(0.5);
+    const DimmedSun dimmed =
+        dim_the_sun(model.energy, closed_formulas ? &p_.blueprint : nullptr, context);
+    if (closed_formulas) {
       std::vector<float> rain(relief_size);
       blueprint_relief_precipitation(frame.relief(), p_.blueprint, frame.relief_latitudes_deg(),
                                      relief_land, relief_height, rain);
       finish_blueprint(frame, model, fields, rain, elevation, dimmed, context, out);
     } else {
-      const auto lift = relief_lift(frame, fields, relief_height, p_.lift_reach_km);
-      finish_energy_balance(frame, model, fields, lift, elevation, dimmed, context, out);
+      // What a cell rains is spread over its ranges as they lift the air.
+      for (std::size_t cell = 0; cell < size; ++cell) {
+        fields.precipitation_mm_yr[cell] /= planet_ascent[cell];
+      }
+      finish_energy_balance(frame, model, fields, ascent, elevation, dimmed, context, out);
+      report_water(io.grid(), fields.water, dimmed.rain_left, elevation, out, context.budget);
     }
     context.advance(1.0);
   }
 
  private:
   void finish_energy_balance(const ClimateFrame& frame, const SeasonalClimate& model,
-                             const SeasonalFields& fields, std::span<const float> lift,
+                             const SeasonalFields& fields, std::span<const float> ascent,
                              std::span<const float> elevation, const DimmedSun& dimmed,
-                             const Context& context, const Outputs& out) const {
+                             Context& context, const Outputs& out) const {
     const Grid& grid = frame.on_planet().fine();
     const PlanetRows planet(frame.on_planet(), fields);
-    const Interpolator lift_of(frame.on_relief(), lift);
+    const Interpolator ascent_of(frame.on_relief(), ascent);
     const ClimateNoise noise(p_, grid, context.seed);
-    const TemperatureLimits limits(context.planet.pressure_bar);
+    const auto limits = TemperatureLimits::of_air(context.planet.pressure_bar);
+    std::vector<std::int64_t> held(grid.ny());
     const auto lapse = static_cast<float>(model.energy.lapse_k_m);
-    const auto per_lift = static_cast<float>(1.0 / p_.lift_height_m);
     const auto cooling = static_cast<float>(dimmed.cooling_k);
     const auto rain_left = static_cast<float>(dimmed.rain_left);
     ParallelErrors errors;
@@ -214,7 +294,7 @@ class ClimateStage final : public Stage {
     {
       const auto nx = static_cast<std::size_t>(grid.nx());
       auto scratch = errors.make<std::vector<float>>(
-          std::max(planet.rain.scratch_size(), lift_of.scratch_size()));
+          std::max(planet.rain.scratch_size(), ascent_of.scratch_size()));
       auto cosine = errors.make<std::vector<float>>(nx);
       auto sine = errors.make<std::vector<float>>(nx);
       auto lifted = errors.make<std::vector<float>>(nx);
@@ -234,17 +314,16 @@ class ClimateStage final : public Stage {
         planet.wind_east.row(j, row(out.wind_east), scratch);
         planet.wind_north.row(j, row(out.wind_north), scratch);
         planet.humidity.row(j, humidity, scratch);
-        lift_of.row(j, lifted, scratch);
+        ascent_of.row(j, lifted, scratch);
         const float summer = frame.latitudes_deg()[j] < 0.0 ? -1.0F : 1.0F;
         for (std::size_t i = 0; i < nx; ++i) {
           const float above = std::max(0.0F, elevation[begin + i]);
           const auto shake = static_cast<float>(noise.temperature_k(static_cast<int>(i), j));
-          temperature[i] = std::clamp(temperature[i] - lapse * above + shake - cooling,
-                                      limits.lowest_c, limits.highest_c);
+          temperature[i] += shake - cooling - lapse * above;
+          held[j] += limits.hold(temperature[i]) ? 1 : 0;
           range[i] = 2.0F * std::sqrt(cosine[i] * cosine[i] + sine[i] * sine[i]);
-          const float ascent = std::exp(std::clamp(lifted[i] * per_lift, -1.0F, 1.0F));
           const auto stray = static_cast<float>(noise.rain_mm_yr(static_cast<int>(i), j));
-          rain[i] = rain_left * std::max(0.0F, rain[i] * ascent + stray);
+          rain[i] = rain_left * std::max(0.0F, rain[i] * lifted[i] + stray);
           seasonality[i] = std::clamp(summer * seasonality[i], -1.0F, 1.0F);
         }
         add_up_evaporation(frame.latitudes_deg()[j], model, temperature, cosine, sine, humidity,
@@ -252,18 +331,43 @@ class ClimateStage final : public Stage {
       }
     }
     errors.rethrow();
+    // A part of a planet has no budget of its own: its air goes on beyond the edge.
+    if (grid.topology() != Topology::plane) {
+      close_rain(grid, dimmed.rain_left * fields.water.precipitation_m3_s, out.precipitation);
+    }
+    report_limits(grid, limits, held, /*part_of_model=*/false, context);
+  }
+
+  /// Evaporation as the air got it, rain as the fields have it.
+  static void report_water(const Grid& grid, const AirWater& air, double rain_left,
+                           std::span<const float> elevation, const Outputs& out, Budget& budget) {
+    const bool whole = grid.topology() != Topology::plane;
+    const double evaporation = rain_left * (air.sea_evaporation_m3_s + air.land_evaporation_m3_s);
+    const double precipitation =
+        whole ? rain_m3_s(grid, out.precipitation) : rain_left * air.precipitation_m3_s;
+    budget["sea_evaporation_m3_s"] = rain_left * air.sea_evaporation_m3_s;
+    budget["land_evaporation_m3_s"] = rain_left * air.land_evaporation_m3_s;
+    budget["precipitation_m3_s"] = precipitation;
+    if (whole) {
+      budget["land_precipitation_m3_s"] =
+          rain_m3_s(grid, out.precipitation, [&](Index c) { return elevation[c] >= 0.0F; });
+    }
+    budget["air_water_closing_error"] =
+        std::abs(evaporation - precipitation) / std::max({evaporation, precipitation, 1e-30});
   }
 
   void finish_blueprint(const ClimateFrame& frame, const SeasonalClimate& model,
                         const SeasonalFields& fields, std::span<const float> relief_rain,
-                        std::span<const float> elevation, const DimmedSun& dimmed,
-                        const Context& context, const Outputs& out) const {
+                        std::span<const float> elevation, const DimmedSun& dimmed, Context& context,
+                        const Outputs& out) const {
     const Grid& grid = frame.on_planet().fine();
     const PlanetRows planet(frame.on_planet(), fields);
     const Interpolator relief_of(frame.on_relief(), relief_rain);
     const ClimateNoise noise(p_, grid, context.seed);
     const double pressure_bar = context.planet.pressure_bar;
     ParallelErrors errors;
+    const TemperatureLimits limits;
+    std::vector<std::int64_t> held(grid.ny());
 #pragma omp parallel
     {
       const auto nx = static_cast<std::size_t>(grid.nx());
@@ -294,6 +398,7 @@ class ClimateStage final : public Stage {
           temperature[i] = static_cast<float>(
               blueprint_temperature_c(p_.blueprint, latitude, h, coast_km, pressure_bar,
                                       noise.temperature_k(column, j), dimmed.cooling_k));
+          held[j] += limits.is_end(temperature[i]) ? 1 : 0;
           rain[i] = static_cast<float>(blueprint_precipitation_mm_yr(
               p_.blueprint, hadley, rain[i], h, coast_km, pressure_bar, noise.rain_mm_yr(column, j),
               dimmed.aerosol));
@@ -307,6 +412,7 @@ class ClimateStage final : public Stage {
       }
     }
     errors.rethrow();
+    report_limits(grid, limits, held, /*part_of_model=*/true, context);
   }
 
   ClimateParameters p_;

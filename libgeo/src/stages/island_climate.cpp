@@ -218,6 +218,20 @@ void measure_coast(const PlanetCells& cells, std::span<const float> elevation_m,
   }
 }
 
+/// Divides rain by the mean of its factors over each planet cell.
+void share_out(const PlanetCells& cells, std::span<const float> factor, std::span<float> rain) {
+  const Grid& fine = cells.fine();
+  const std::vector<float> mean = cells.means(factor, {}, 1.0F);
+#pragma omp parallel for schedule(static)
+  for (int j = 0; j < fine.ny(); ++j) {
+    for (int i = 0; i < fine.nx(); ++i) {
+      const double ramp = edge_ramp(fine, i, j, cells.planet().face_east_m(0));
+      const double shared = std::max(0.1, cells.interpolate(mean, i, j));
+      rain[fine.cell(i, j)] /= static_cast<float>(std::lerp(1.0, shared, ramp));
+    }
+  }
+}
+
 }  // namespace
 
 void island_climate(const PlanetCells& cells, const ClimateParameters& climate,
@@ -235,6 +249,8 @@ void island_climate(const PlanetCells& cells, const ClimateParameters& climate,
   const auto lift = extra_lift(fine, overlay, heights, to.wind_east, to.wind_north, reach_m);
   const Interpolator lift_of(overlay, lift);
   ParallelErrors errors;
+  // What the air loses over one part of a planet cell the rest lacks: the mean is the planet's.
+  std::vector<float> ascent(to.precipitation.size());
 #pragma omp parallel
   {
     auto scratch = errors.make<std::vector<float>>(lift_of.scratch_size());
@@ -247,13 +263,16 @@ void island_climate(const PlanetCells& cells, const ClimateParameters& climate,
         const double ramp = edge_ramp(fine, i, j, cells.planet().face_east_m(0));
         const Index c = fine.cell(i, j);
         float& rain = to.precipitation[c];
+        const float level_rain = rain;
         rain = static_cast<float>(law.precipitation_mm_yr(
             {fine.position(i, j).latitude_deg, heights.elevation_m[c], to.distance_to_coast[c]},
             rain, ramp * lifted[i], climate.lift_height_m));
+        ascent[c] = level_rain > 0.0F ? rain / level_rain : 1.0F;
       }
     }
   }
   errors.rethrow();
+  if (climate.model != "blueprint") share_out(cells, ascent, to.precipitation);
   smooth(fine, to.temperature, 1000.0 * p.climate_smoothing_km);
   smooth(fine, to.precipitation, 1000.0 * p.climate_smoothing_km);
 }

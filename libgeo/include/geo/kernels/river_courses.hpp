@@ -23,9 +23,10 @@ inline constexpr std::int32_t kCourseEnds = -1;
 /// The water of each planet cell gets a course from the lowest place near the centre of the cell to
 /// that near the centre of the next, or to another course that goes there as well; at the edge,
 /// from or to where it crosses. It is the path of least
-///   integral of exp(0.8 n) (1 + max(0, z - b) / 20 m) ds,   b = level - min(level / 2, 100 m),
-/// level = the planet's, linear between, n = noise of unit variance, over the fine relief. It keeps
-/// clear of other courses and of the sea where it can. Courses end at the sea, at the edge or at
+///   integral of exp(1.2 n) (1 + 6 s^2) (1 + max(0, z - b) / 20 m) ds,
+/// b = level - min(level / 2, 100 m), level = the planet's, linear between, n = noise of unit
+/// variance, s = 1 at the edge to 0 an eighth of a planet cell from it, over the fine relief. It
+/// keeps clear of other courses, of the edge and of the sea where it can. Courses end at the sea, at the edge or at
 /// the bottom of an endorheic basin. On lakes the level is that of their outlet, and does not sink;
 /// elsewhere it may sink to a quarter of the planet's, and by 30 m anywhere: plains near the level
 /// of the sea have no other way out. `elevation_m`: one
