@@ -1,12 +1,17 @@
 // Scenarios of data/scenarios: what they promise happens, and in time.
 #include <gtest/gtest.h>
+#include <netcdf.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "cli/program.hpp"
 #include "geo/core/grid.hpp"
+#include "geo/core/vector3.hpp"
 #include "io/temporary_folder.hpp"
 
 namespace geo {
@@ -33,6 +38,50 @@ std::vector<Happening> happenings(const fs::path& folder) {
                    {event.at("latitude_deg"), event.at("longitude_deg")}});
   }
   return all;
+}
+
+std::vector<float> values(int file, const char* name) {
+  int variable = -1, dimensions = 0;
+  EXPECT_EQ(nc_inq_varid(file, name, &variable), NC_NOERR) << name;
+  std::array<int, NC_MAX_VAR_DIMS> dimension{};
+  EXPECT_EQ(nc_inq_var(file, variable, nullptr, nullptr, &dimensions, dimension.data(), nullptr),
+            NC_NOERR);
+  std::size_t size = 1;
+  for (int d = 0; d < dimensions; ++d) {
+    std::size_t length = 0;
+    EXPECT_EQ(nc_inq_dimlen(file, dimension[d], &length), NC_NOERR);
+    size *= length;
+  }
+  std::vector<float> all(size);
+  EXPECT_EQ(nc_get_var_float(file, variable, all.data()), NC_NOERR) << name;
+  return all;
+}
+
+/// Sea floor of the map that is no older than an age, within 2500 km of a place.
+double young_floor_km2(const fs::path& folder, const Centre& about, double age_myr) {
+  int file = -1;
+  EXPECT_EQ(nc_open((folder / "01-plates.nc").c_str(), NC_NOWRITE, &file), NC_NOERR);
+  const auto latitude = values(file, "lat"), longitude = values(file, "lon");
+  const auto age = values(file, "crust_age"), fraction = values(file, "continental_fraction");
+  nc_close(file);
+  constexpr double kRadius_km = 6371.0, kReach_km = 2500.0, kDegree = std::numbers::pi / 180.0;
+  const double cell_rad2 =
+      2.0 * std::numbers::pi / longitude.size() * std::numbers::pi / latitude.size();
+  const auto unit = [](double phi, double lambda) {
+    return Vector3{std::cos(phi * kDegree) * std::cos(lambda * kDegree),
+                   std::cos(phi * kDegree) * std::sin(lambda * kDegree), std::sin(phi * kDegree)};
+  };
+  const Vector3 middle = unit(about.latitude_deg, about.longitude_deg);
+  double area = 0.0;
+  for (std::size_t j = 0; j < latitude.size(); ++j) {
+    for (std::size_t i = 0; i < longitude.size(); ++i) {
+      const std::size_t cell = j * longitude.size() + i;
+      if (fraction[cell] >= 0.5F || age[cell] > age_myr) continue;
+      if (kRadius_km * angle_between(unit(latitude[j], longitude[i]), middle) > kReach_km) continue;
+      area += kRadius_km * kRadius_km * cell_rad2 * std::cos(latitude[j] * kDegree);
+    }
+  }
+  return area;
 }
 
 class Scenario : public testing::Test {
@@ -69,6 +118,10 @@ TEST_F(Scenario, AnIslandIsDrivenIntoAContinentAndASupercontinentBreaks) {
   ASSERT_NE(large, collisions.end());
   EXPECT_NEAR(large->time_myr, 191.0, 20.0);
   EXPECT_TRUE(broke);
+  // A new sea, on the map: both sides go 30 mm/yr for 36 Myr, 2160 km, along a coast of 5000 km,
+  // less the passive margins and what the islands within take.
+  const Centre fracture{-8.0, -45.0};
+  EXPECT_GT(young_floor_km2(out_, fracture, 37.0), 0.4 * 2160.0 * 5000.0);
 }
 
 TEST_F(Scenario, TheIslandCollidesOnAFinerLatticeToo) {

@@ -660,6 +660,64 @@ TEST(SphereTectonics, CordillerasRiseBehindTheTrenchesOfAWholePlanet) {
   EXPECT_GT(highest_m, sum[kBins - 1] / count[kBins - 1] + 200.0);
 }
 
+TEST(SphereTectonics, PlanetsOfAnySizeStayWhole) {
+  const SampledSphere world(600);
+  for (const double radius_km : {1.0, 30.0, 1000.0, 100000.0}) {
+    for (const bool by_forces : {false, true}) {
+      SCOPED_TRACE(std::to_string(radius_km) + " km" + (by_forces ? ", forces" : ""));
+      SphereSettings settings;
+      settings.radius_km = radius_km;
+      settings.mean_area_km2 = 4.0 * std::numbers::pi * radius_km * radius_km / 20.0;
+      settings.rift_per_myr = 0.05;
+      settings.plume_mm_yr = 1.0;
+      settings.suture_drag = 1200.0;
+      settings.by_forces = by_forces;
+      SphereStart start;
+      start.plates = 20;
+      SphereTectonics model(world.mesh, settings, start_sphere(world.mesh, start, settings, 1), 1);
+      for (const std::int16_t plate : model.state().crust.plate) ASSERT_GE(plate, 0);
+      for (int k = 0; k < 40; ++k) model.advance();
+      model.finish();
+      EXPECT_GE(model.budget().plates, 1);
+      EXPECT_NEAR(model.budget().area_error, 0.0, 1e-12);
+      const SphereCrust& crust = model.state().crust;
+      for (std::int32_t i = 0; i < crust.size(); ++i) {
+        ASSERT_GE(crust.plate[i], 0);
+        ASSERT_TRUE(model.state().plates[crust.plate[i]].alive);
+        ASSERT_TRUE(std::isfinite(crust.elevation_m[i]) && std::isfinite(crust.thickness_m[i]));
+        ASSERT_TRUE(std::isfinite(crust.age_myr[i]));
+      }
+    }
+  }
+}
+
+TEST(SphereTectonics, TheBooksOfContinentsCloseToRoundingHoweverLong) {
+  const SampledSphere world(1000);
+  SphereSettings settings;
+  settings.floor_by_age = true;
+  settings.law.erosion_mm_yr = 0.24;
+  settings.thickest_km = 50.0;
+  for (const bool by_rivers : {false, true}) {
+    settings.by_rivers = by_rivers;
+    SphereStart start;
+    start.plates = 8;
+    SphereTectonics model(world.mesh, settings, start_sphere(world.mesh, start, settings, 2), 2);
+    model.finish();
+    const double first_km3 = model.budget().continental_km3;
+    double change_km3 = 0.0;
+    for (int k = 0; k < 250; ++k) {
+      model.advance();
+      const SphereBudget& b = model.budget();
+      change_km3 += b.raised_km3 - b.eroded_km3 + b.deposited_km3 + b.emerged_km3 + b.changed_km3 -
+                    b.lost_km3 + b.resampling_km3;
+    }
+    const double last_km3 = model.budget().continental_km3;
+    EXPECT_GT(std::abs(last_km3 - first_km3), 0.01 * first_km3);
+    // A collision may leave half of the last digit of one thickness, 2 mm.
+    EXPECT_NEAR(last_km3, first_km3 + change_km3, 1e-8 * last_km3) << by_rivers;
+  }
+}
+
 TEST(SphereTectonics, PlanetsOfManySeedsStayWhole) {
   const SampledSphere world(8000);
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {

@@ -98,6 +98,7 @@ void Pipeline::run(State& state, Context& context, int first, int last,
     if (observer.before) observer.before(at);
     context.budget.clear();
     context.steps = {};
+    context.tables.clear();
     context.event_records.clear();
     context.advance(0.0);
     StageIo io(state, info);

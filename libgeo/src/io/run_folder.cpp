@@ -110,6 +110,13 @@ void RunFolder::remove_stage(int number, std::string_view stage) const {
   for (const std::string_view extension : {".nc", ".vti", ".vtp", ".csv"}) {
     remove_file(stage_file(number, stage, extension));
   }
+  // Its tables, NN-STAGE-NAME.csv.
+  const std::string begin = stage_file(number, stage, "-").filename().string();
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(path_, error)) {
+    const fs::path name = entry.path().filename();
+    if (name.string().starts_with(begin) && name.extension() == ".csv") remove_file(entry.path());
+  }
 }
 
 void RunFolder::remove_further_islands() const {

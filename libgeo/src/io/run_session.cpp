@@ -48,12 +48,19 @@ std::string text_of(const StepTable& steps) {
   return text;
 }
 
+std::string text_of(const TextTable& table) {
+  std::string text = fmt::format("{}\n", fmt::join(table.columns, ","));
+  for (const auto& row : table.rows) text += fmt::format("{}\n", fmt::join(row, ","));
+  return text;
+}
+
 /// One background job: the files of a stage, then its entry in the manifest.
 struct StageJob {
   Snapshot snapshot;
   Provenance provenance;
   std::filesystem::path netcdf, vti, csv;
   StepTable steps;
+  std::vector<TextTable> tables;
   StageRecord record;
 
   void write(bool vtk, int compression) {
@@ -64,13 +71,18 @@ struct StageJob {
       write_vti(vti, snapshot, provenance);
       record.list(folder, vti.filename().string());
     }
-    if (!steps.rows.empty()) {
-      write_text_file(csv, text_of(steps));
-      record.list(folder, csv.filename().string());
+    if (!steps.rows.empty()) write_table(csv, text_of(steps));
+    for (const TextTable& table : tables) {
+      write_table(csv.parent_path() / fmt::format("{}-{}.csv", csv.stem().string(), table.name),
+                  text_of(table));
     }
     for (const auto& [spec, values] : snapshot.fields) {
       record.fields.push_back(summarise(*spec, *values, *snapshot.grid));
     }
+  }
+  void write_table(const std::filesystem::path& path, const std::string& text) {
+    write_text_file(path, text);
+    record.list(path.parent_path(), path.filename().string());
   }
 };
 
@@ -144,6 +156,7 @@ void RunSession::write_stage(BackgroundWriter& writer, FrameFiles& frames, int p
   job->vti = file_of(position, ".vti");
   job->csv = file_of(position, ".csv");
   job->steps = context.steps;
+  job->tables = context.tables;
   job->record.name = name_of(position);
   job->record.builder = this_builder();
   job->record.seconds = time_is_given() ? 0.0 : seconds;

@@ -44,6 +44,13 @@ struct StepTable {
   std::vector<std::vector<double>> rows;
 };
 
+/// What else a stage tells in words and numbers: written beside its fields as NN-STAGE-NAME.csv.
+struct TextTable {
+  std::string name;
+  std::vector<std::string> columns;
+  std::vector<std::vector<std::string>> rows;
+};
+
 /// A distribution of elevations by its quantiles: `fraction` of the area below `elevation_m`, both
 /// ascending, `fraction` strictly from 0 to 1.
 struct Hypsography {
@@ -85,6 +92,8 @@ struct Context {
   /// All declarations of the pipeline that runs, bound to the values of this run: a stage that runs
   /// others inside gives them the settings that their namesakes have outside.
   std::vector<Parameter> configuration;
+  /// Tables that the stage that runs now writes beside its steps.
+  std::vector<TextTable> tables;
 
   /// Reports progress and throws Interrupted if a signal came.
   void advance(double fraction) const;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "geo/core/field.hpp"
@@ -29,9 +30,13 @@ struct SphereCrust {
 
 /// A rigid plate. Positions of its samples are `turn` times those of the lattice.
 struct SpherePlate {
-  Quaternion turn;              ///< since the last resampling
-  Vector3 axis{0.0, 0.0, 1.0};  ///< w, unit vector
-  double speed_rad_myr = 0.0;   ///< omega
+  /// In SphereState::lives, and in files: no other plate of a run has it. -1: a terrane that
+  /// another plate carries, and is part of.
+  std::int16_t id = -1;
+  Quaternion turn;               ///< since the last resampling
+  std::vector<Quaternion> past;  ///< what that was at the times SphereState::past_myr
+  Vector3 axis{0.0, 0.0, 1.0};   ///< w, unit vector
+  double speed_rad_myr = 0.0;    ///< omega
   bool alive = true;
   /// The plate that carries this body since it collided with it, or -1: both move as one and become
   /// one at the next resampling.
@@ -41,12 +46,28 @@ struct SpherePlate {
   Vector3 yielding{};  ///< by which plates that it meets or parts from change its rotation, rad/Myr
 };
 
+/// What is known of a plate by its number, also when it is no more.
+struct PlateLife {
+  /// There from the beginning; from a rift; floor that foundered; a piece that was left over; a
+  /// terrane whose new plate has gone down before they had become one.
+  enum class Origin : std::int8_t { first, rift, foundering, piece, terrane };
+
+  Origin origin = Origin::first;
+  std::int16_t parent = -1;  ///< number of the plate of which it was a part
+  double born_myr = 0.0;
+  double ended_myr = kLives;  ///< when it collided, or the last of it had gone below others
+  std::int16_t joined = -1;   ///< number of the plate that it is part of since then
+
+  static constexpr double kLives = std::numeric_limits<double>::infinity();
+};
+
 /// What is remembered of two plates, the one of lower number first.
 struct PlatePair {
   std::int8_t ocean_top = -1;      ///< which one's ocean floor stays up: 0 first, 1 second
   std::int8_t continent_top = -1;  ///< the same of their continents
   float last_contact_myr = -1e9F;
   float parted_myr = -1e9F;  ///< when a rift made them
+  float under_km = 0.0F;  ///< how far their continents had gone below each other up to resampling
 };
 
 /// A plume of the mantle, below the plates and at rest.
@@ -66,6 +87,8 @@ struct SphereState {
   std::vector<SpherePlate> plates;
   std::vector<PlatePair> pairs;  ///< plates.size() squared; used where row < column
   std::vector<SpherePlume> plumes;
+  std::vector<PlateLife> lives;  ///< by number
+  std::vector<double> past_myr;  ///< beginnings of the steps since the last resampling
   double time_myr = 0.0;
   std::int64_t steps = 0;
   double resampled_myr = 0.0;  ///< time of the last resampling
@@ -85,6 +108,12 @@ struct SphereState {
   }
   /// A new plate in the place of a dead one, or behind the others; its pairs forget.
   int add_plate(const SpherePlate& plate);
+  /// The number of a plate that is born now. Numbers are given one after the other and not again,
+  /// until all that a file can hold have been: then that of the plate which ended first.
+  std::int16_t begin_life(PlateLife::Origin origin, std::int16_t parent);
+  /// A plate is no more; it has become part of another one (a number), or -1. Bodies without a
+  /// number have no life.
+  void end_life(std::int16_t id, std::int16_t joined);
 };
 
 }  // namespace geo

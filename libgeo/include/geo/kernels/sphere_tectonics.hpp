@@ -143,10 +143,11 @@ class SphereTectonics {
   void resample();
   /// Resamples unless the last step has; the budget is that of this alone.
   void finish();
-  /// Splits a plate by the nearest of some places, warped; the fragments part at the speed.
+  /// Splits a plate by the nearest of some places, warped. Fragments leave each other across the
+  /// fractures between them, each at the speed.
   void rift(int plate, std::span<const Vector3> places, double speed_mm_yr);
   /// Splits a plate along a line; with three or four fragments the sides are cut across at the
-  /// middle of the line, the right one first. They leave that middle at the speed.
+  /// middle of the line, the right one first. They part as ever.
   void rift_along(int plate, const GreatCircleLine& line, int fragments, double speed_mm_yr);
 
   /// The plate that is on top at a place, or -1 in a gap.
@@ -205,6 +206,7 @@ class SphereTectonics {
  private:
   class EdgeForces;
   class FrontUplift;
+  class GapHistory;
   class MovingSurface;
   void move();
   void set_frames();
@@ -240,19 +242,28 @@ class SphereTectonics {
   void yield(const std::vector<Matrix3>& drag);
   void collide();
   void collide(std::int32_t sample);
+  [[nodiscard]] double penetration_km(std::int32_t sample) const;
+  [[nodiscard]] const PlatePair& pair_of(std::int32_t sample) const;
+  void remember_penetration();
   void surge(int upper, std::span<const std::int32_t> terrane, const Vector3& centroid,
              double area_km2, double speed_mm_yr);
   void spread_roots();
   void rift_by_chance();
   [[nodiscard]] int largest_plate() const;
-  void part(int plate, std::span<const std::int8_t> fragment, std::span<const Vector3> away,
+  [[nodiscard]] std::vector<Vector3> across_fractures(int plate,
+                                                      std::span<const std::int8_t> fragment,
+                                                      int fragments, const Vector3& about) const;
+  [[nodiscard]] std::size_t fragment_nearest(int body, int plate,
+                                             std::span<const std::int8_t> fragment) const;
+  bool part(int plate, std::span<const std::int8_t> fragment, std::span<const Vector3> away,
             double speed_mm_yr, SphereEvent::Kind kind);
   [[nodiscard]] std::vector<std::int32_t> old_margins() const;
   void founder_by_chance();
   void founder(std::int32_t start);
   [[nodiscard]] Vector3 driven_rotation(int plate) const;
   [[nodiscard]] Vector3 net_rotation() const;
-  void fill_gaps(SphereCrust& now, std::vector<std::int16_t>& owner);
+  void fill_gaps(SphereCrust& now, std::vector<std::int16_t>& owner,
+                 std::span<const std::int16_t> body);
   void stretch_margins(std::span<const std::int32_t> gaps, std::span<const std::int32_t> nearest,
                        SphereCrust& now, std::span<const std::int16_t> owner);
   void tidy_pieces();

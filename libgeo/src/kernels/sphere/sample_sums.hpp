@@ -25,6 +25,29 @@ double sum_over(std::int32_t count, Value&& value) {
   return sum;
 }
 
+/// Adds to a stored value and tells what it has gained, after rounding: books of many steps close
+/// only if they hold that.
+inline double put(float& value, double gain) {
+  const double before = value;
+  value = static_cast<float>(before + gain);
+  return static_cast<double>(value) - before;
+}
+
+/// The same for values whose sum is to change by the sum of their gains: what rounding leaves of
+/// one goes to the next.
+class WholeGains {
+ public:
+  void put(float& value, double gain) {
+    left_ += gain;
+    left_ -= geo::put(value, left_);
+  }
+  /// Of all gains so far, less than the last value can show.
+  [[nodiscard]] double left() const { return left_; }
+
+ private:
+  double left_ = 0.0;
+};
+
 /// What chunks of a parallel loop found, one after the other.
 template <class T>
 std::vector<T> joined(const std::vector<std::vector<T>>& parts) {

@@ -38,7 +38,9 @@ void SphereTectonics::collide() {
       if (hidden_[i] == 0 || crust.continental[i] == 0 || crust.continental[above] == 0) continue;
       const std::int32_t front = front_of_[above];
       if (front < 0 || fronts_[front].lower != crust.plate[i]) continue;
-      if (distance_km(above, fronts_[front].sample) < needed_km) continue;
+      const double still_km = needed_km - pair_of(i).under_km;
+      if (distance_km(above, fronts_[front].sample) < still_km) continue;
+      if (penetration_km(i) < still_km) continue;
       found[chunk].push_back(i);
     }
   };
@@ -57,6 +59,52 @@ void SphereTectonics::collide() {
   if (changed) repartition();
 }
 
+/// Before all crust is read anew, and what lies below a continent becomes its root: pairs remember
+/// how far they have come by then, as far as it would have counted.
+void SphereTectonics::remember_penetration() {
+  const SphereCrust& crust = state_.crust;
+  std::vector<float> farthest_km(state_.pairs.size(), 0.0F);
+  for (const std::int32_t i : contacts_) {
+    const std::int32_t above = partner_[i];
+    if (hidden_[i] == 0 || crust.plate[i] < 0 || crust.plate[above] < 0) continue;
+    if (crust.continental[i] == 0 || crust.continental[above] == 0) continue;
+    const std::int32_t front = front_of_[above];
+    if (front < 0 || fronts_[front].lower != crust.plate[i]) continue;
+    const double gone_km = std::min(distance_km(above, fronts_[front].sample), penetration_km(i));
+    float& most_km = farthest_km[&pair_of(i) - state_.pairs.data()];
+    most_km = std::max(most_km, static_cast<float>(gone_km));
+  }
+  for (std::size_t k = 0; k < farthest_km.size(); ++k) {
+    float& under_km = state_.pairs[k].under_km;
+    under_km = farthest_km[k] > 0.0F ? under_km + farthest_km[k] : 0.0F;
+  }
+}
+
+/// The pair that moves as a sample and what it touches do.
+const PlatePair& SphereTectonics::pair_of(std::int32_t sample) const {
+  const auto& plate = state_.crust.plate;
+  return state_.pair(state_.root(plate[sample]), state_.root(plate[partner_[sample]]));
+}
+
+/// How far a sample has gone below another plate: back along the way by which it has come since all
+/// crust was read anew, when no plates overlapped, to that plate's edge, which it finds to a
+/// quarter of the spacing. Never more than that way itself.
+double SphereTectonics::penetration_km(std::int32_t sample) const {
+  const FibonacciSphere& samples = mesh_->samples();
+  const int lower = state_.crust.plate[sample], upper = state_.crust.plate[partner_[sample]];
+  const Vector3& from = samples.position(sample);  // in the frame of the plate above
+  const Vector3 here = times(back_times(frame_[upper], frame_[lower]), from);
+  const double way = angle_between(here, from);
+  const Vector3 home = normalised(cross(here, from));
+  const double half = 0.5 * samples.spacing();
+  double gone = 0.0;
+  while (gone < way && state_.crust.plate[samples.nearest(rotated(here, scaled(home, gone)))] ==
+                           static_cast<std::int16_t>(upper)) {
+    gone += half;
+  }
+  return settings_.radius_km * std::clamp(gone - 0.5 * half, 0.0, way);
+}
+
 /// Slab break, suture and surge: the terrane that holds `sample` comes to its partner's plate.
 void SphereTectonics::collide(std::int32_t sample) {
   SphereCrust& crust = state_.crust;
@@ -71,8 +119,10 @@ void SphereTectonics::collide(std::int32_t sample) {
   const Vector3 relative = add(driven_rotation(lower), driven_rotation(upper), -1.0);
   const double speed_mm_yr = settings_.radius_km * length(cross(relative, centroid));
   surge(upper, terrane, centroid, area_km2, speed_mm_yr);
+  state_.pair(lower, state_.root(upper)).under_km = 0.0F;
 
   SpherePlate body = state_.plates[lower];
+  body.id = -1;
   body.carrier = static_cast<std::int16_t>(upper);
   body.born_myr = state_.time_myr;
   // What has come off a plate in this step is a terrane as a whole.
@@ -82,7 +132,9 @@ void SphereTectonics::collide(std::int32_t sample) {
           ? 0.0
           : sample_km2() * (partition_.cap(lower).samples - static_cast<double>(terrane.size()));
   if (settings_.merge_plates || rest_km2 < kRemnant * settings_.mean_area_km2) {
-    state_.plates[lower].carrier = static_cast<std::int16_t>(state_.root(upper));
+    const int root = state_.root(upper);
+    state_.plates[lower].carrier = static_cast<std::int16_t>(root);
+    state_.end_life(state_.plates[lower].id, state_.plates[root].id);
   } else {
     const int carried = state_.add_plate(body);
     for (const std::int32_t i : terrane) {
@@ -165,13 +217,14 @@ void SphereTectonics::surge(int upper, std::span<const std::int32_t> terrane,
                                          : (swallowed_km3 - given_km3) /
                                                (sample_km2() * static_cast<double>(reached.size()));
   const Vector3 q = back(frame_[upper], centroid);
+  WholeGains gains;
   for (std::size_t k = 0; k < reached.size(); ++k) {
     const std::int32_t i = reached[k];
     const double lifted = lifted_km(k, high);
     const double thicker_m = 1e3 * (s.rebound * lifted + rest_km);
     const double raised_m = height_after(crust.elevation_m[i], thicker_m, s.rebound);
     crust.elevation_m[i] = static_cast<float>(std::min(1e3 * s.law.summit_km, raised_m));
-    crust.thickness_m[i] += static_cast<float>(thicker_m);
+    gains.put(crust.thickness_m[i], thicker_m);
     if (lifted < 0.02) continue;
     crust.orogeny[i] = kHimalayan;
     crust.orogeny_age_myr[i] = 0.0F;

@@ -112,7 +112,8 @@ void SphereTectonics::founder(std::int32_t start) {
   }
   const Vector3 down = times(frame_[plate], normalised(cross(middle, shore)));
   const std::vector<Vector3> turns{Vector3{}, down};
-  part(plate, fragment, turns, settings_.founder_speed_mm_yr, SphereEvent::Kind::foundering);
+  const double speed_mm_yr = settings_.founder_speed_mm_yr;
+  if (!part(plate, fragment, turns, speed_mm_yr, SphereEvent::Kind::foundering)) return;
   events_.back().area_km2 = sample_km2() * static_cast<double>(sinking.size());
   events_.back().place = times(frame_[plate], normalised(shore));
   ++budget_.founderings;

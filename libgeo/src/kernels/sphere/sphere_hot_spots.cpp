@@ -4,6 +4,7 @@
 
 #include "geo/core/random.hpp"
 #include "geo/kernels/sphere_tectonics.hpp"
+#include "sphere_flood.hpp"
 
 namespace geo {
 namespace {
@@ -100,19 +101,18 @@ void SphereTectonics::grow_volcano(int plate, const Vector3& place, double volum
     double cone, apron;
   };
   std::vector<Slope> slopes;
-  std::vector<std::int32_t> around;
+  std::vector<std::uint8_t> seen(crust.plate.size());
   for (std::size_t p = 0; p < state_.plates.size(); ++p) {
     if (!state_.plates[p].alive || state_.root(static_cast<int>(p)) != plate) continue;
     const Vector3 here = back(frame_[p], place);
-    around.assign(1, mesh_->samples().nearest(here));
-    for (std::size_t k = 0; k < around.size(); ++k) {
-      const std::int32_t i = around[k];
-      const double far =
-          settings_.radius_km * angle_between(mesh_->samples().position(i), here) / cone_km;
-      if (k > 0 && far > kReach * kApronWidth) continue;
-      for (const std::int32_t j : mesh_->neighbours(i)) {
-        if (std::find(around.begin(), around.end(), j) == around.end()) around.push_back(j);
-      }
+    const auto far_off = [&](std::int32_t i) {
+      return settings_.radius_km * angle_between(mesh_->samples().position(i), here) / cone_km;
+    };
+    std::fill(seen.begin(), seen.end(), 0);
+    for (const std::int32_t i :
+         flooded_from(*mesh_, mesh_->samples().nearest(here), seen,
+                      [&](std::int32_t j) { return far_off(j) <= kReach * kApronWidth; })) {
+      const double far = far_off(i);
       if (crust.plate[i] != static_cast<std::int16_t>(p) || crust.continental[i] != 0 ||
           hidden_[i] != 0 || crust.elevation_m[i] >= top_m) {
         continue;

@@ -5,6 +5,7 @@
 #include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/ocean_depth.hpp"
 #include "geo/kernels/sphere_tectonics.hpp"
+#include "sample_sums.hpp"
 
 namespace geo {
 namespace {
@@ -145,9 +146,8 @@ void SphereTectonics::raise() {
         const double thicker_km = s.rebound * (dry_height(top_km) - dry_height(z_km));
         const double thinner_km = s.rebound * (dry_height(top_km) - dry_height(top_km + worn_km));
         z_km = top_km + worn_km;
-        crust.thickness_m[i] += static_cast<float>(1e3 * (thicker_km - thinner_km));
-        sum[kRaised] += thicker_km;
-        sum[kEroded] += thinner_km;
+        sum[kRaised] += 1e-3 * put(crust.thickness_m[i], 1e3 * thicker_km);
+        sum[kEroded] -= 1e-3 * put(crust.thickness_m[i], -1e3 * thinner_km);
         crust.orogeny_age_myr[i] += step_myr;
       } else {
         const double age = crust.age_myr[i];
@@ -179,7 +179,7 @@ void SphereTectonics::raise() {
           crust.orogeny[i] = kAndean;
           crust.orogeny_age_myr[i] = 0.0F;
           crust.thickness_m[i] = static_cast<float>(1e3 * s.arc_km);
-          sum[kEmerged] += s.arc_km;
+          sum[kEmerged] += 1e-3 * static_cast<double>(crust.thickness_m[i]);
           sum[kEmergedArea] += 1.0;
         }
       }

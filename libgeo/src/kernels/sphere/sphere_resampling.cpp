@@ -58,13 +58,14 @@ Reading read_around(const SphereMesh& mesh, const SphereCrust& crust, const Vect
 }  // namespace
 
 void SphereTectonics::resample() {
+  remember_penetration();
   const FibonacciSphere& samples = mesh_->samples();
   const std::int32_t n = mesh_->size();
   const SphereCrust before = std::move(state_.crust);
   state_.crust = before;  // is_on_top and the partition ask for it while the new one grows
   SphereCrust now;
   now.resize(n);
-  std::vector<std::int16_t> owner(n, -1);
+  std::vector<std::int16_t> owner(n, -1), body(n, -1);  // what moves as one, and what has so far
   const auto plates = static_cast<int>(state_.plates.size());
   std::vector<int> root(plates);
   for (int p = 0; p < plates; ++p) root[p] = state_.root(p);
@@ -95,6 +96,7 @@ void SphereTectonics::resample() {
       const int p = before.plate[top];
       const auto reading = read_around(*mesh_, before, back(frame_[p], samples.position(i)), top);
       owner[i] = static_cast<std::int16_t>(root[p]);
+      body[i] = static_cast<std::int16_t>(p);
       now.continental[i] = before.continental[top];
       now.orogeny[i] = before.orogeny[top];
       now.thickness_m[i] = reading(before.thickness_m);
@@ -145,15 +147,17 @@ void SphereTectonics::resample() {
   };
   budget_.consumed_km2 = gone_km2(0);
   budget_.buried_km2 = gone_km2(1);
-  fill_gaps(now, owner);
+  fill_gaps(now, owner, body);
   state_.crust = std::move(now);
   state_.crust.plate = std::move(owner);
   for (SpherePlate& plate : state_.plates) {
     plate.turn = {};
+    plate.past.clear();
     if (plate.carrier >= 0) plate.alive = false;
     plate.carrier = -1;
   }
   state_.resampled_myr = state_.time_myr;
+  state_.past_myr.clear();
   tidy_pieces();
   repartition();
   std::fill(partner_.begin(), partner_.end(), -1);
@@ -170,98 +174,6 @@ void SphereTectonics::resample() {
   budget_.ocean_change_km2 = oceanic(state_.crust) - ocean_before_km2;
   budget_.ocean_error_km2 = budget_.created_km2 - budget_.consumed_km2 - budget_.ocean_change_km2;
   budget_.resampled = true;
-}
-
-/// New floor where no plate is: each place hears of the nearest sample of the two nearest plates;
-/// the ridge runs half way between them.
-void SphereTectonics::fill_gaps(SphereCrust& now, std::vector<std::int16_t>& owner) {
-  const FibonacciSphere& samples = mesh_->samples();
-  const SphereSettings& s = settings_;
-  const std::int32_t n = mesh_->size();
-  struct Sides {
-    std::array<std::int32_t, 2> source{-1, -1};
-    std::array<float, 2> chord2{9.0F, 9.0F};
-  };
-  std::vector<std::int32_t> number(n, -1), gaps, queue, next;
-  for (std::int32_t i = 0; i < n; ++i) {
-    if (owner[i] >= 0) continue;
-    number[i] = static_cast<std::int32_t>(gaps.size());
-    gaps.push_back(i);
-  }
-  std::vector<Sides> sides(gaps.size());
-  /// True when the place did not know of a source as near of that plate.
-  const auto offer = [&](std::int32_t i, std::int32_t source) {
-    Sides& at = sides[number[i]];
-    const Vector3 way = add(samples.position(i), samples.position(source), -1.0);
-    const auto chord2 = static_cast<float>(dot(way, way));
-    int slot = -1;
-    for (int k = 0; k < 2; ++k) {
-      if (at.source[k] >= 0 && owner[at.source[k]] == owner[source]) slot = k;
-    }
-    if (slot < 0) slot = at.source[0] < 0 ? 0 : 1;
-    if (chord2 >= at.chord2[slot]) return false;
-    at.source[slot] = source;
-    at.chord2[slot] = chord2;
-    if (at.source[1] >= 0 && at.chord2[1] < at.chord2[0]) {
-      std::swap(at.source[0], at.source[1]);
-      std::swap(at.chord2[0], at.chord2[1]);
-    }
-    return true;
-  };
-  for (const std::int32_t i : gaps) {
-    bool reached = false;
-    for (const std::int32_t j : mesh_->neighbours(i)) {
-      if (owner[j] >= 0) reached = offer(i, j) || reached;
-    }
-    if (reached) queue.push_back(i);
-  }
-  while (!queue.empty()) {
-    next.clear();
-    for (const std::int32_t i : queue) {
-      for (const std::int32_t j : mesh_->neighbours(i)) {
-        if (owner[j] >= 0) continue;
-        bool reached = false;
-        for (const std::int32_t source : sides[number[i]].source) {
-          if (source >= 0) reached = offer(j, source) || reached;
-        }
-        if (reached) next.push_back(j);
-      }
-    }
-    queue.swap(next);
-  }
-  const double elapsed_myr = state_.time_myr - state_.resampled_myr;
-  const auto gap_count = static_cast<std::int32_t>(gaps.size());
-  std::vector<std::int16_t> nearest_plate(gaps.size());
-#pragma omp parallel for schedule(static)
-  for (std::int32_t k = 0; k < gap_count; ++k) {
-    const std::int32_t i = gaps[k];
-    const auto [first, second] = sides[k].source;
-    const double near_km = distance_km(i, first);
-    const double far_km = second >= 0 ? distance_km(i, second) : near_km;
-    const double ridge_km = 0.5 * (far_km - near_km);
-    const double share = ridge_share(ridge_km, near_km);
-    const double mean_km =
-        1e-3 *
-        (now.elevation_m[first] * far_km +
-         (second >= 0 ? now.elevation_m[second] : now.elevation_m[first]) * near_km) /
-        std::max(1e-9, near_km + far_km);
-    const double profile_km = ridge_profile_km(ridge_km, s.ridge_falloff * s.radius_km, s.law);
-    nearest_plate[k] = owner[first];
-    now.age_myr[i] = static_cast<float>(share * elapsed_myr);
-    now.elevation_m[i] =
-        static_cast<float>(s.floor_by_age ? -ocean_depth_m(share * elapsed_myr)
-                                          : 1e3 * new_floor_km(share, mean_km, profile_km));
-    now.thickness_m[i] = static_cast<float>(1e3 * s.oceanic_km);
-    if (second < 0) continue;
-    const Vector3& p = samples.position(i);
-    const Vector3 from_ridge = add(samples.position(first), samples.position(second), -1.0);
-    const Vector3 ridge = normalised(cross(from_ridge, p));
-    for (int c = 0; c < 3; ++c) now.ridge[i][c] = static_cast<float>(ridge[c]);
-  }
-  std::vector<std::int32_t> nearest(gaps.size());
-  for (std::int32_t k = 0; k < gap_count; ++k) nearest[k] = sides[k].source[0];
-  stretch_margins(gaps, nearest, now, owner);
-  for (std::int32_t k = 0; k < gap_count; ++k) owner[gaps[k]] = nearest_plate[k];
 }
 
 /// Detached pieces of plates: small ones join the neighbour they border most, large ones are plates
@@ -289,6 +201,7 @@ void SphereTectonics::tidy_pieces() {
     if (keeps && (size > small || pieces.size() < 3)) continue;
     if (size > small) {
       SpherePlate copy = state_.plates[own];
+      copy.id = state_.begin_life(PlateLife::Origin::piece, copy.id);
       copy.born_myr = state_.time_myr;
       const int fresh = state_.add_plate(copy);
       for (const std::int32_t i : piece) plate[i] = static_cast<std::int16_t>(fresh);
@@ -302,6 +215,9 @@ void SphereTectonics::tidy_pieces() {
     }
     const auto best = std::max_element(border.begin(), border.end());
     if (*best == 0) continue;
+    if (keeps) {
+      state_.end_life(state_.plates[own].id, state_.plates[best - border.begin()].id);
+    }
     for (const std::int32_t i : piece) plate[i] = static_cast<std::int16_t>(best - border.begin());
   }
 }

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "geo/core/random.hpp"
 #include "geo/kernels/great_circle_line.hpp"
@@ -52,7 +53,6 @@ void SphereTectonics::rift_by_chance() {
 void SphereTectonics::rift(int plate, std::span<const Vector3> places, double speed_mm_yr) {
   const FibonacciSphere& samples = mesh_->samples();
   const auto& of = state_.crust.plate;
-  const Vector3 centre = times(frame_[plate], partition_.cap(plate).centre);
   std::vector<Vector3> local;
   for (const Vector3& place : places) local.push_back(back(frame_[plate], place));
   const double most = 2.2 * settings_.rift_warp_km / settings_.radius_km;
@@ -67,7 +67,7 @@ void SphereTectonics::rift(int plate, std::span<const Vector3> places, double sp
       const Vector3 shifted{straight[0] + 3.1 * c, straight[1] - 1.7 * c, straight[2] + 0.9 * c};
       at[c] += most * warp_.fbm(shifted, settings_.radius_km / kWavelength_km, 5);
     }
-    double least = 9.0;
+    double least = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < local.size(); ++k) {
       const double far = length(add(at, local[k], -1.0));
       if (far < least) {
@@ -76,11 +76,10 @@ void SphereTectonics::rift(int plate, std::span<const Vector3> places, double sp
       }
     }
   }
-  // Away from the middle of the plate that was.
-  std::vector<Vector3> away;
-  for (const Vector3& place : places) away.push_back(normalised(cross(centre, place)));
-  part(plate, fragment, away, speed_mm_yr, SphereEvent::Kind::rift);
-  ++budget_.rifts;
+  Vector3 middle{};
+  for (const Vector3& place : places) middle = add(middle, place);
+  const auto away = across_fractures(plate, fragment, static_cast<int>(places.size()), middle);
+  if (part(plate, fragment, away, speed_mm_yr, SphereEvent::Kind::rift)) ++budget_.rifts;
 }
 
 void SphereTectonics::rift_along(int plate, const GreatCircleLine& line, int fragments,
@@ -94,20 +93,95 @@ void SphereTectonics::rift_along(int plate, const GreatCircleLine& line, int fra
     const bool is_left = line.is_left(at), is_cut = line.is_beyond_middle(at);
     fragment[i] = is_left ? (is_cut && fragments > 3 ? 3 : 0) : (is_cut && fragments > 2 ? 2 : 1);
   }
-  std::vector<Vector3> sum(fragments, Vector3{}), away;
-  for (std::int32_t i = 0; i < n; ++i) {
-    if (fragment[i] >= 0) sum[fragment[i]] = add(sum[fragment[i]], mesh_->samples().position(i));
-  }
-  for (const Vector3& of : sum) {
-    away.push_back(normalised(cross(line.middle(), times(frame_[plate], of))));
-  }
-  part(plate, fragment, away, speed_mm_yr, SphereEvent::Kind::rift);
-  ++budget_.rifts;
+  const auto away = across_fractures(plate, fragment, fragments, line.middle());
+  if (part(plate, fragment, away, speed_mm_yr, SphereEvent::Kind::rift)) ++budget_.rifts;
 }
 
-/// Fragments of a plate become plates, each turned about an axis on top of the old motion. One that
-/// has no samples comes to nothing.
-void SphereTectonics::part(int plate, std::span<const std::int8_t> fragment,
+/// Axes about which fragments leave each other. A rotation w opens the area w . int r x n dl along
+/// a fracture, n the normal to the fragment's own side, and that integral is the chord between the
+/// ends of the fracture, whatever its bends: a fragment turns about the sum of the chords of its
+/// fractures, which opens most. Where they go against each other, on both sides of a strip, its
+/// axis is shorter than 1. A fracture that goes all round has no chord, and opens no more than it
+/// closes: it opens about its place that is nearest to `about`.
+std::vector<Vector3> SphereTectonics::across_fractures(int plate,
+                                                       std::span<const std::int8_t> fragment,
+                                                       int fragments, const Vector3& about) const {
+  const FibonacciSphere& samples = mesh_->samples();
+  struct Edge {
+    Vector3 at;
+    std::size_t pair;
+    Vector3 along;
+  };
+  std::vector<Edge> edges;
+  for (std::int32_t i = 0; i < mesh_->size(); ++i) {
+    if (fragment[i] < 0) continue;
+    const auto star = mesh_->neighbours(i);
+    for (std::size_t s = 0; s < star.size(); ++s) {
+      const int own = fragment[i], other = fragment[star[s]];
+      if (other < 0 || other == own) continue;
+      // Between the middles of the triangles right and left of the way to the neighbour.
+      const Vector3& left = samples.position(star[(s + 1) % star.size()]);
+      const Vector3& right = samples.position(star[(s + star.size() - 1) % star.size()]);
+      const Vector3 at = normalised(add(samples.position(i), samples.position(star[s])));
+      edges.push_back({at, static_cast<std::size_t>(own) * fragments + other,
+                       scaled(add(right, left, -1.0), 1.0 / 3.0)});
+    }
+  }
+  const Vector3 wanted = back(frame_[plate], about);
+  Vector3 middle{};
+  double most = -2.0;
+  std::vector<Vector3> chord(static_cast<std::size_t>(fragments) * fragments, Vector3{});
+  std::vector<Vector3> near(chord.size(), Vector3{});
+  std::vector<double> line(chord.size(), 0.0);
+  for (const Edge& edge : edges) {
+    chord[edge.pair] = add(chord[edge.pair], edge.along);
+    line[edge.pair] += length(edge.along);
+    if (dot(edge.at, wanted) <= most) continue;
+    most = dot(edge.at, wanted);
+    middle = edge.at;
+  }
+  for (const Edge& edge : edges) {
+    const double weight = std::max(0.0, dot(edge.at, middle));
+    near[edge.pair] = add(near[edge.pair], edge.along, weight);
+  }
+  constexpr double kAllRound = 0.1;  // chord over line
+  constexpr double kAgainst = 0.5;   // of their chords cancel before a fragment goes slower
+  std::vector<Vector3> axes;
+  for (int own = 0; own < fragments; ++own) {
+    Vector3 sum{};
+    double whole = 0.0;
+    for (int other = 0; other < fragments; ++other) {
+      const std::size_t pair = static_cast<std::size_t>(own) * fragments + other;
+      const Vector3& one = length(chord[pair]) < kAllRound * line[pair] ? near[pair] : chord[pair];
+      sum = add(sum, one);
+      whole += length(one);
+    }
+    const double size = std::max(length(sum), kAgainst * whole);
+    axes.push_back(size > 0.0 ? times(frame_[plate], scaled(sum, 1.0 / size)) : Vector3{});
+  }
+  return axes;
+}
+
+/// Of the fragments of a plate the one that is nearest to the middle of a body that it carries.
+std::size_t SphereTectonics::fragment_nearest(int body, int plate,
+                                              std::span<const std::int8_t> fragment) const {
+  const Vector3 middle = back(frame_[plate], times(frame_[body], partition_.cap(body).centre));
+  double most = -2.0;
+  std::size_t nearest = 0;
+  for (std::int32_t i = 0; i < mesh_->size(); ++i) {
+    if (fragment[i] < 0) continue;
+    const double near = dot(mesh_->samples().position(i), middle);
+    if (near <= most) continue;
+    most = near;
+    nearest = static_cast<std::size_t>(fragment[i]);
+  }
+  return nearest;
+}
+
+/// Fragments of a plate become plates, each turned about an axis on top of the old motion. The
+/// largest keeps the plate's number. One that has no samples comes to nothing. False when there are
+/// no two.
+bool SphereTectonics::part(int plate, std::span<const std::int8_t> fragment,
                            std::span<const Vector3> away, double speed_mm_yr,
                            SphereEvent::Kind kind) {
   auto& of = state_.crust.plate;
@@ -116,10 +190,31 @@ void SphereTectonics::part(int plate, std::span<const std::int8_t> fragment,
   const double area_km2 = sample_km2() * cap.samples;
   const SpherePlate whole = state_.plates[plate];
   const Vector3 drift = scaled(whole.axis, whole.speed_rad_myr);
+  std::vector<std::int32_t> size(away.size(), 0);
+  for (const std::int8_t k : fragment) {
+    if (k >= 0) ++size[k];
+  }
+  if (std::count_if(size.begin(), size.end(), [](auto samples) { return samples > 0; }) < 2) {
+    return false;
+  }
+  // What the plate carries goes with the fragment that is nearest to it.
+  std::vector<std::pair<int, std::size_t>> carried;
+  for (int p = 0; p < partition_.plates(); ++p) {
+    if (!state_.plates[p].alive || state_.plates[p].carrier != plate) continue;
+    carried.emplace_back(p, fragment_nearest(p, plate, fragment));
+    size[carried.back().second] += partition_.cap(p).samples;
+  }
+  const auto largest = std::max_element(size.begin(), size.end()) - size.begin();
+  const auto origin =
+      kind == SphereEvent::Kind::rift ? PlateLife::Origin::rift : PlateLife::Origin::foundering;
   std::vector<int> numbers;
   for (std::size_t k = 0; k < away.size(); ++k) {
+    if (size[k] == 0) continue;
     SpherePlate part = whole;
-    part.born_myr = state_.time_myr;
+    if (static_cast<std::ptrdiff_t>(k) != largest) {
+      part.id = state_.begin_life(origin, whole.id);
+      part.born_myr = state_.time_myr;
+    }
     const Vector3 gained = scaled(away[k], speed_mm_yr / settings_.radius_km);
     const Vector3 rotation = add(drift, gained);
     part.speed_rad_myr =
@@ -130,7 +225,7 @@ void SphereTectonics::part(int plate, std::span<const std::int8_t> fragment,
       part.yielding = add(add(whole.yielding, drift), part.axis, -part.speed_rad_myr);
     }
     int number = plate;
-    if (k == 0) {
+    if (numbers.empty()) {
       state_.plates[plate] = part;
     } else {
       number = state_.add_plate(part);
@@ -143,10 +238,14 @@ void SphereTectonics::part(int plate, std::span<const std::int8_t> fragment,
         state_.pair(number, other).parted_myr = static_cast<float>(state_.time_myr);
       }
     }
+    for (const auto& [body, nearest] : carried) {
+      if (nearest == k) state_.plates[body].carrier = static_cast<std::int16_t>(number);
+    }
     numbers.push_back(number);
   }
   events_.push_back({kind, state_.time_myr, plate, -1, centre, area_km2});
   repartition();
+  return true;
 }
 
 }  // namespace geo

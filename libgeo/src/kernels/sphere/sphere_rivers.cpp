@@ -138,6 +138,15 @@ void SphereTectonics::run_rivers() {
   const std::vector<float> before_m = crust.elevation_m;
   const SurfaceRivers rivers = route_rivers(surface.graph(), crust.elevation_m);
   geo::run_rivers(surface.graph(), rivers, law, crust.continental, crust.elevation_m, rock_m);
+#pragma omp parallel for schedule(static)
+  for (std::int32_t i = 0; i < crust.size(); ++i) {
+    if (crust.continental[i] != 0) {
+      rock_m[i] = static_cast<float>(put(crust.thickness_m[i], rock_m[i]));
+    } else {
+      // Floor is as much thicker as it stands higher: the rest of what it bears has sunk into it.
+      crust.thickness_m[i] += crust.elevation_m[i] - before_m[i];
+    }
+  }
   const auto volume_km3 = [&](auto&& counts) {
     return 1e-3 * sample_km2() * sum_over(crust.size(), [&](std::int32_t i) {
              return counts(i) ? static_cast<double>(rock_m[i]) : 0.0;
@@ -148,12 +157,6 @@ void SphereTectonics::run_rivers() {
       volume_km3([&](std::int32_t i) { return rock_m[i] > 0.0F && crust.continental[i] != 0; });
   budget_.sea_floor_km3 +=
       volume_km3([&](std::int32_t i) { return rock_m[i] > 0.0F && crust.continental[i] == 0; });
-#pragma omp parallel for schedule(static)
-  for (std::int32_t i = 0; i < crust.size(); ++i) {
-    // Floor is as much thicker as it stands higher: the rest of what it bears has sunk into it.
-    crust.thickness_m[i] +=
-        crust.continental[i] != 0 ? rock_m[i] : crust.elevation_m[i] - before_m[i];
-  }
 }
 
 }  // namespace geo

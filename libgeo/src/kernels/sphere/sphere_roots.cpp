@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "geo/kernels/sphere_tectonics.hpp"
+#include "sample_sums.hpp"
 
 namespace geo {
 namespace {
@@ -65,13 +66,15 @@ void SphereTectonics::spread_roots() {
       put_excess(i);
     }
   }
+  WholeGains gains;
   for (const std::int32_t i : reached) {
     gain_m[i] -= excess_m[i];
     budget_.lost_km3 += 1e-3 * sample_km2() * excess_m[i];
-    crust.thickness_m[i] += static_cast<float>(gain_m[i]);
+    gains.put(crust.thickness_m[i], gain_m[i]);
     crust.elevation_m[i] =
         static_cast<float>(height_after(crust.elevation_m[i], gain_m[i], settings_.rebound));
   }
+  budget_.lost_km3 += 1e-3 * sample_km2() * gains.left();
 }
 
 }  // namespace geo

@@ -93,7 +93,8 @@ class Beginning {
       for (int c = 0; c < 3; ++c) {
         at[c] += amplitude * warp[c].fbm(straight, settings_.radius_km / kWavelength_km, 6, 0.5);
       }
-      double least = 9.0;
+      // A small planet's places are moved far off it.
+      double least = std::numeric_limits<double>::infinity();
       for (std::size_t k = 0; k < centroids.size(); ++k) {
         const double far = length(add(at, centroids[k], -1.0));
         if (far >= least) continue;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "geo/core/error.hpp"
 #include "geo/kernels/sphere_tectonics.hpp"
@@ -38,6 +39,26 @@ int SphereState::add_plate(const SpherePlate& plate) {
   return static_cast<int>(count);
 }
 
+std::int16_t SphereState::begin_life(PlateLife::Origin origin, std::int16_t parent) {
+  constexpr auto kMost = static_cast<std::size_t>(std::numeric_limits<std::int16_t>::max()) + 1;
+  const PlateLife life{.origin = origin, .parent = parent, .born_myr = time_myr};
+  if (lives.size() < kMost) {
+    lives.push_back(life);
+    return static_cast<std::int16_t>(lives.size() - 1);
+  }
+  const auto first = std::min_element(
+      lives.begin(), lives.end(),
+      [](const PlateLife& a, const PlateLife& b) { return a.ended_myr < b.ended_myr; });
+  *first = life;
+  return static_cast<std::int16_t>(first - lives.begin());
+}
+
+void SphereState::end_life(std::int16_t id, std::int16_t joined) {
+  if (id < 0 || lives[id].ended_myr < PlateLife::kLives) return;
+  lives[id].ended_myr = time_myr;
+  lives[id].joined = joined;
+}
+
 SphereTectonics::SphereTectonics(const SphereMesh& mesh, const SphereSettings& settings,
                                  SphereState state, std::uint64_t seed)
     : mesh_(&mesh),
@@ -49,6 +70,11 @@ SphereTectonics::SphereTectonics(const SphereMesh& mesh, const SphereSettings& s
       partition_(mesh) {
   if (state_.crust.size() != mesh.size())
     throw Bug("sphere model: the crust does not fit the mesh");
+  if (state_.lives.empty()) {
+    for (SpherePlate& plate : state_.plates) {
+      plate.id = state_.begin_life(PlateLife::Origin::first, -1);
+    }
+  }
   const std::size_t n = state_.crust.plate.size();
   partner_.assign(n, -1);
   front_of_.assign(n, -1);
@@ -62,11 +88,21 @@ void SphereTectonics::repartition() {
   partition_.rebuild(state_);
   for (std::size_t p = 0; p < state_.plates.size(); ++p) {
     SpherePlate& plate = state_.plates[p];
-    if (partition_.cap(static_cast<int>(p)).samples == 0) plate.alive = false;
+    if (partition_.cap(static_cast<int>(p)).samples > 0 || !plate.alive) continue;
+    plate.alive = false;
+    state_.end_life(plate.id, -1);
   }
   // What was carried by a plate that is no more goes on alone.
   for (SpherePlate& plate : state_.plates) {
-    if (plate.carrier >= 0 && !state_.plates[plate.carrier].alive) plate.carrier = -1;
+    if (!plate.alive || plate.carrier < 0 || state_.plates[plate.carrier].alive) continue;
+    const std::int16_t carrier = state_.plates[plate.carrier].id;
+    plate.carrier = -1;
+    if (plate.id < 0) {
+      plate.id = state_.begin_life(PlateLife::Origin::terrane, carrier);
+    } else {
+      state_.lives[plate.id].ended_myr = PlateLife::kLives;
+      state_.lives[plate.id].joined = -1;
+    }
   }
   set_frames();
   rank_plates();
@@ -133,9 +169,11 @@ void SphereTectonics::subtract_net_rotation() {
 }
 
 void SphereTectonics::move() {
+  state_.past_myr.push_back(state_.time_myr);
   for (std::size_t p = 0; p < state_.plates.size(); ++p) {
     SpherePlate& plate = state_.plates[p];
     if (!plate.alive) continue;
+    plate.past.push_back(plate.turn);
     plate.turn = Quaternion::about(scaled(rotation_[p], settings_.law.step_myr)).after(plate.turn);
   }
   set_frames();

@@ -1,5 +1,7 @@
 #include "sphere.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -35,7 +37,7 @@ SphereSettings settings_of(const PlatesParameters& p, double radius_km, const Co
   return settings;
 }
 
-/// Columns for the areas of as many plates as there ever were at a time.
+/// Columns for the areas of all plates there have been.
 void name_plates(StepTable& steps) {
   std::size_t most = 0;
   for (const auto& row : steps.rows) most = std::max(most, row.size());
@@ -99,8 +101,13 @@ class Books {
                             b.sea_floor_km3,
                             b.erupted_km3,
                             static_cast<double>(b.founderings)};
-    for (const double area_km2 : model.plate_areas_km2()) {
-      row.push_back(area_km2 > 0.0 ? area_km2 : std::numeric_limits<double>::quiet_NaN());
+    // By the numbers of plates, which outlast the places where the model keeps them.
+    const SphereState& state = model.state();
+    const std::vector<double> area_km2 = model.plate_areas_km2();
+    const std::size_t before = row.size();
+    row.resize(before + state.lives.size(), std::numeric_limits<double>::quiet_NaN());
+    for (std::size_t p = 0; p < area_km2.size(); ++p) {
+      if (area_km2[p] > 0.0) row[before + state.plates[p].id] = area_km2[p];
     }
     return row;
   }
@@ -199,11 +206,56 @@ void tell(const SphereTectonics& model, const Grid& grid, Context& context) {
   }
 }
 
+std::string_view word_for(PlateLife::Origin origin) {
+  switch (origin) {
+    case PlateLife::Origin::first:
+      return "first";
+    case PlateLife::Origin::rift:
+      return "rift";
+    case PlateLife::Origin::foundering:
+      return "foundering";
+    case PlateLife::Origin::piece:
+      return "piece";
+    case PlateLife::Origin::terrane:
+      return "terrane";
+  }
+  return "";
+}
+
+/// All plates there have been: whose they were and what has become of them.
+TextTable lives_of(const SphereState& state) {
+  TextTable table{
+      "lives", {"plate_id", "origin", "parent_id", "born_myr", "ended_myr", "joined_id"}, {}};
+  const auto number = [](std::int16_t id) { return id < 0 ? std::string() : fmt::to_string(id); };
+  for (std::size_t id = 0; id < state.lives.size(); ++id) {
+    const PlateLife& life = state.lives[id];
+    const bool lives = life.ended_myr == PlateLife::kLives;
+    table.rows.push_back({fmt::to_string(id), std::string(word_for(life.origin)),
+                          number(life.parent), fmt::to_string(life.born_myr),
+                          lives ? std::string() : fmt::to_string(life.ended_myr),
+                          number(life.joined)});
+  }
+  return table;
+}
+
+/// Reads all crust anew to be seen. Plates that have come apart show one number still: their pieces
+/// are plates once the drift itself reads the crust anew.
+void finish_to_be_seen(SphereTectonics& model) {
+  const std::size_t lives = model.state().lives.size();
+  model.finish();
+  for (SpherePlate& plate : model.state().plates) {
+    while (plate.id >= static_cast<std::int64_t>(lives)) {
+      plate.id = model.state().lives[plate.id].parent;
+    }
+  }
+  model.state().lives.resize(lives);
+}
+
 /// Hands out a frame: the crust as a resampling would show it, and the state as it is.
 void show(const PlatesParameters& parameters, const SphereTectonics& model, const StageInfo& info,
           const Grid& grid, const Context& context) {
   SphereTectonics seen = model;
-  seen.finish();
+  finish_to_be_seen(seen);
   Frame frame{State(std::make_shared<const Grid>(grid)), checkpoint_of(model.state())};
   StageIo io(frame.fields, info);
   SphereOnGrid(parameters, seen, io, context).draw(io);
@@ -252,9 +304,10 @@ void drift(const PlatesParameters& parameters, const StageInfo& info, StageIo& i
     }
   }
   context.advance(0.9);
-  model.finish();
+  finish_to_be_seen(model);
   books.enter(model.budget());
   name_plates(context.steps);
+  context.tables.push_back(lives_of(model.state()));
   warn_of_later_events(model.state().time_myr, context);
   books.close(context.budget);
   tell(model, io.grid(), context);

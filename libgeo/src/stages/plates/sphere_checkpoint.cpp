@@ -1,5 +1,7 @@
 #include "sphere_checkpoint.hpp"
 
+#include <algorithm>
+
 namespace geo {
 namespace {
 
@@ -28,6 +30,84 @@ Directions directions(const std::vector<float>& values) {
 
 constexpr std::size_t kNumbers = 9;         // of a plate: turn, axis, speed, birth
 constexpr std::size_t kVolcanoNumbers = 6;  // of a plume: number, volcanoes, place, volume
+constexpr std::size_t kTurnNumbers = 4;
+
+using Arrays = std::map<std::string, Values>;
+
+/// Which plate is which, and what has become of each there has been.
+void put_lives(const SphereState& state, Arrays& to) {
+  std::vector<std::int16_t> id, parent, joined;
+  std::vector<std::int8_t> origin;
+  std::vector<double> born, ended;
+  for (const SpherePlate& plate : state.plates) id.push_back(plate.id);
+  for (const PlateLife& life : state.lives) {
+    origin.push_back(static_cast<std::int8_t>(life.origin));
+    parent.push_back(life.parent);
+    joined.push_back(life.joined);
+    born.push_back(life.born_myr);
+    ended.push_back(life.ended_myr);
+  }
+  to["plate_id"] = id;
+  to["life_origin"] = origin;
+  to["life_parent"] = parent;
+  to["life_joined"] = joined;
+  to["life_born_myr"] = born;
+  to["life_ended_myr"] = ended;
+}
+
+void get_lives(const Checkpoint& from, SphereState& state) {
+  const auto& id = from.get<std::int16_t>("plate_id");
+  const auto& origin = from.get<std::int8_t>("life_origin");
+  const auto& parent = from.get<std::int16_t>("life_parent");
+  const auto& joined = from.get<std::int16_t>("life_joined");
+  const auto& born = from.get<double>("life_born_myr");
+  const auto& ended = from.get<double>("life_ended_myr");
+  const auto lives = static_cast<std::int16_t>(origin.size());
+  const auto is_life = [&](std::int16_t number) { return number >= -1 && number < lives; };
+  bool fits = id.size() == state.plates.size() && std::ranges::all_of(id, is_life) &&
+              std::ranges::all_of(parent, is_life) && std::ranges::all_of(joined, is_life);
+  for (const std::size_t size : {parent.size(), joined.size(), born.size(), ended.size()}) {
+    fits = fits && size == origin.size();
+  }
+  for (const std::int8_t word : origin) {
+    fits = fits && word >= 0 && word <= static_cast<std::int8_t>(PlateLife::Origin::terrane);
+  }
+  if (!fits) refuse();
+  for (std::size_t p = 0; p < id.size(); ++p) state.plates[p].id = id[p];
+  for (std::size_t k = 0; k < origin.size(); ++k) {
+    state.lives.push_back({.origin = static_cast<PlateLife::Origin>(origin[k]),
+                           .parent = parent[k],
+                           .born_myr = born[k],
+                           .ended_myr = ended[k],
+                           .joined = joined[k]});
+  }
+}
+
+/// How plates have turned since the last resampling. Those that are no more have stopped.
+void put_past(const SphereState& state, Arrays& to) {
+  std::vector<double> turns;
+  for (const SpherePlate& plate : state.plates) {
+    for (std::size_t k = 0; k < state.past_myr.size(); ++k) {
+      const Quaternion turn = plate.alive ? plate.past[k] : Quaternion{};
+      turns.insert(turns.end(), {turn.w, turn.v[0], turn.v[1], turn.v[2]});
+    }
+  }
+  to["past_myr"] = state.past_myr;
+  to["plate_past"] = turns;
+}
+
+void get_past(const Checkpoint& from, SphereState& state) {
+  state.past_myr = from.get<double>("past_myr");
+  const auto& turns = from.get<double>("plate_past");
+  const std::size_t times = state.past_myr.size();
+  if (turns.size() != kTurnNumbers * times * state.plates.size()) refuse();
+  const double* at = turns.data();
+  for (SpherePlate& plate : state.plates) {
+    for (std::size_t k = 0; k < times; ++k, at += kTurnNumbers) {
+      plate.past.push_back({at[0], {at[1], at[2], at[3]}});
+    }
+  }
+}
 
 }  // namespace
 
@@ -63,17 +143,19 @@ Checkpoint checkpoint_of(const SphereState& state) {
   to["plate_held"] = held;
   to["plate_carrier"] = carrier;
   std::vector<std::int8_t> ocean, continent;
-  std::vector<float> contact, parted;
+  std::vector<float> contact, parted, under;
   for (const PlatePair& pair : state.pairs) {
     ocean.push_back(pair.ocean_top);
     continent.push_back(pair.continent_top);
     contact.push_back(pair.last_contact_myr);
     parted.push_back(pair.parted_myr);
+    under.push_back(pair.under_km);
   }
   to["pair_ocean_top"] = ocean;
   to["pair_continent_top"] = continent;
   to["pair_last_contact_myr"] = contact;
   to["pair_parted_myr"] = parted;
+  to["pair_under_km"] = under;
   std::vector<double> plumes;
   for (const SpherePlume& plume : state.plumes) {
     plumes.insert(plumes.end(),
@@ -87,6 +169,8 @@ Checkpoint checkpoint_of(const SphereState& state) {
                       plume.volcano[0], plume.volcano[1], plume.volcano[2], plume.volcano_km3});
   }
   to["volcanoes"] = volcanoes;
+  put_lives(state, to);
+  put_past(state, to);
   const Vector3& kept = state.kept_rotation_rad_myr;
   to["kept_rotation_rad_myr"] = std::vector<double>{kept[0], kept[1], kept[2]};
   to["clock"] =
@@ -162,6 +246,11 @@ SphereState state_of(const Checkpoint& from) {
     }
     for (std::size_t k = 0; k < parted.size(); ++k) state.pairs[k].parted_myr = parted[k];
   }
+  if (from.arrays.contains("pair_under_km")) {
+    const auto& under = from.get<float>("pair_under_km");
+    if (under.size() != state.pairs.size()) refuse();
+    for (std::size_t k = 0; k < under.size(); ++k) state.pairs[k].under_km = under[k];
+  }
   if (from.arrays.contains("plumes")) {
     const auto& plumes = from.get<double>("plumes");
     if (plumes.size() % 4 != 0) refuse();
@@ -186,6 +275,13 @@ SphereState state_of(const Checkpoint& from) {
   state.time_myr = clock[0];
   state.steps = static_cast<std::int64_t>(clock[1]);
   state.resampled_myr = clock[2];
+  if (from.arrays.contains("plate_id")) get_lives(from, state);
+  if (from.arrays.contains("plate_past")) {
+    get_past(from, state);
+  } else if (state.resampled_myr < state.time_myr) {
+    state.past_myr = {state.resampled_myr};
+    for (SpherePlate& plate : state.plates) plate.past.emplace_back();
+  }
   return state;
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
 #include "geo/core/random.hpp"
 #include "geo/kernels/noise_row.hpp"
@@ -107,14 +106,6 @@ SphereOnGrid::SphereOnGrid(const PlatesParameters& parameters, const SphereTecto
   nearest_boundary_ = nearest_samples(
       mesh_, samples, 3.0 * mesh_.samples().spacing() + p_.boundary_width_km / radius_km_);
 
-  std::vector<std::int32_t> size(model.state().plates.size(), 0), order(size.size());
-  for (const std::int16_t plate : crust.plate) ++size[plate];
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::int32_t a, std::int32_t b) { return size[a] > size[b]; });
-  number_.assign(size.size(), 0);
-  for (std::size_t k = 0; k < order.size(); ++k) number_[order[k]] = static_cast<std::int16_t>(k);
-
   std::vector<std::uint8_t> edge(mesh_.size(), 0);
 #pragma omp parallel for schedule(static)
   for (std::int32_t i = 0; i < mesh_.size(); ++i) {
@@ -161,7 +152,7 @@ void SphereOnGrid::draw_crust(const Cell& at, Index cell, const Vector3& unit,
                               const Outputs& out) const {
   const SphereCrust& crust = model_.state().crust;
   const std::int16_t plate = crust.plate[at.nearest];
-  out.plate[cell] = number_[plate];
+  out.plate[cell] = model_.state().plates[plate].id;
   const Vector3 up = grid_.to_axis(unit);
   const auto velocity =
       east_north(grid_.to_axis(velocity_mm_yr(model_.rotations()[plate], unit, radius_km_)), up);

@@ -41,7 +41,6 @@ class SphereOnGrid {
   std::uint64_t seed_;
   std::vector<SphereBoundary> boundaries_;
   std::vector<std::int32_t> nearest_boundary_;  // of each sample, -1 far from any
-  std::vector<std::int16_t> number_;            // of each plate in files, the largest first
   std::vector<std::uint8_t> is_edge_;           // samples beside another plate or crust type
 };
 

@@ -34,7 +34,7 @@ class Stroke {
     if (plate < 0) return false;
     model_.set_motion(plate, place_of(motion.pole_latitude_deg, motion.pole_longitude_deg),
                       motion.speed_mm_yr / model_.settings().radius_km);
-    figures.emplace_back("plate", plate);
+    figures.emplace_back("plate", id_of(plate));
     return true;
   }
   bool operator()(const PlateRift& rift, Figures& figures) const {
@@ -54,8 +54,8 @@ class Stroke {
       const Vector3 away = add(scaled(north, std::cos(azimuth)), east, std::sin(azimuth));
       places.push_back(normalised(add(scaled(at, std::cos(kAway)), away, std::sin(kAway))));
     }
+    figures.emplace_back("plate", id_of(plate));
     model_.rift(plate, places, rift.speed_mm_yr);
-    figures.emplace_back("plate", plate);
     return true;
   }
   bool operator()(const CrustChange& change, Figures& figures) const {
@@ -89,8 +89,8 @@ class Stroke {
     const GreatCircleLine line(places_on(grid_, rift.path));
     const int plate = model_.plate_at(line.middle());
     if (plate < 0) return false;
+    figures.emplace_back("plate", id_of(plate));
     model_.rift_along(plate, line, static_cast<int>(rift.fragments), rift.speed_mm_yr);
-    figures.emplace_back("plate", plate);
     return true;
   }
   [[nodiscard]] double area_changed_km2(const CrustChange& change) const {
@@ -109,6 +109,8 @@ class Stroke {
         [&](const Vector3& place) { return region.holds(position_of(grid_, place)); },
         change.continental, warp_km);
   }
+  /// The number by which files know a plate.
+  [[nodiscard]] double id_of(int plate) const { return model_.state().plates[plate].id; }
   [[nodiscard]] Vector3 place_of(double latitude_deg, double longitude_deg) const {
     return place_on(grid_, {latitude_deg, longitude_deg});
   }
