@@ -8,10 +8,12 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <new>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -20,12 +22,17 @@
 #include "geo/io/build_info.hpp"
 #include "geo/io/config.hpp"
 #include "geo/io/manifest.hpp"
+#include "geo/io/reading_aside.hpp"
 #include "log.hpp"
 #include "memory.hpp"
 #include "signals.hpp"
 #include "waiting.hpp"
 
 namespace {
+
+/// The word by which this program starts itself to read a file (read_files_aside). No command of
+/// its user's.
+constexpr const char* kReader = "--answer-reader";
 
 std::string version_text() {
   const auto& build = geo::io::build_info();
@@ -125,7 +132,9 @@ void run_program(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc == 2 && std::string_view(argv[1]) == kReader) std::_Exit(geo::io::answer_reader());
   terrane::wait_without_spinning(argc, argv);
+  geo::io::read_files_aside({"/proc/self/exe", kReader});
   terrane::prepare_memory();
   terrane::keep_standard_streams();
   terrane::prepare_signals();

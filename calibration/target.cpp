@@ -181,7 +181,7 @@ Target from_bins(const Table& table, const std::string& path, const Accuracy& ac
   return sampled(path, accuracy, curve);
 }
 
-Target from_table(const std::string& path, const Accuracy& accuracy) {
+Target from_any_table(const std::string& path, const Accuracy& accuracy) {
   const Table table(path);
   if (table.header() == "quantile,elevation_m") return from_quantiles(table, path, false);
   if (table.header() == "quantile,elevation_m,sigma_m") return from_quantiles(table, path, true);
@@ -190,6 +190,20 @@ Target from_table(const std::string& path, const Accuracy& accuracy) {
       fmt::format("{}:1: must be quantile,elevation_m or quantile,elevation_m,sigma_m or "
                   "lower_m,upper_m,fraction",
                   path));
+}
+
+/// Heights that no solid planet holds up are a wrong unit or a damaged file.
+Target from_table(const std::string& path, const Accuracy& accuracy) {
+  Target target = from_any_table(path, accuracy);
+  constexpr double kMost_m = 100e3;
+  for (const auto* heights_m : {&target.elevation_m, &target.fine_bin_m}) {
+    for (const double height_m : *heights_m) {
+      if (std::abs(height_m) <= kMost_m) continue;
+      throw InputError(fmt::format("{}: holds an elevation of {:g} m: must lie within {:g} m", path,
+                                   height_m, kMost_m));
+    }
+  }
+  return target;
 }
 
 Target from_relief(const std::string& file, const Planet& planet, const Grid& grid,

@@ -1,11 +1,16 @@
 // Writes stage files on every kind of grid into the folder named by the only argument, for
 // check_files.py and paraview_check.py.
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <optional>
+#include <string>
 
+#include "geo/core/checkpoint.hpp"
 #include "geo/core/error.hpp"
 #include "geo/core/random.hpp"
 #include "geo/io/stage_file.hpp"
@@ -53,15 +58,22 @@ Values values_for(const FieldSpec& spec, const Grid& grid, bool gaps) {
 }
 
 void write(const std::filesystem::path& folder, const std::string& name, Grid grid,
-           std::vector<std::filesystem::path>& images) {
+           std::vector<std::filesystem::path>& images, std::optional<double> time_myr = {}) {
   io::Snapshot snapshot{name, std::make_shared<const Grid>(std::move(grid)), {}};
   int number = 0;
   for (const FieldSpec* spec : field::all()) {
     snapshot.fields.emplace_back(
         spec, std::make_shared<const Values>(values_for(*spec, *snapshot.grid, number++ % 3 == 2)));
   }
+  if (time_myr) {
+    const Checkpoint checkpoint{*time_myr, {{"plate", std::vector<std::int16_t>{0, 1, 2}}}};
+    snapshot.checkpoint = std::make_shared<const Checkpoint>(checkpoint);
+  }
+  // As long as that of a run, so that it would be seen where it does not belong.
+  std::string configuration = "# every parameter\n";
+  for (int k = 0; k < 1000; ++k) configuration += "# unit 1, design\nkey = 7\n";
   const io::Provenance provenance{
-      "terrane: " + name, "seed = 7\n", 7, "0.1.0", "2026-01-01T00:00:00Z: make_files", "none"};
+      "terrane: " + name, configuration, 7, "0.1.0", "2026-01-01T00:00:00Z: make_files", "none"};
   io::write_netcdf(folder / (name + ".nc"), snapshot, provenance);
   images.push_back(folder / (name + ".vti"));
   io::write_vti(images.back(), snapshot, provenance);
@@ -82,6 +94,9 @@ int main(int count, char** arguments) try {
   write(folder, "island", Grid::plane(64, 32, 500.0, 500.0, Edges::open, Centre{-38.0, 176.0}),
         images);
   write(folder, "torus", Grid::torus(48, 24, 1000.0, 1000.0), images);
+  for (const double time_myr : {0.0, 250.0}) {
+    write(folder, fmt::format("frame-{:03.0f}", time_myr), Grid::sphere(60, 30), images, time_myr);
+  }
   io::write_pvd(folder / "planet.pvd", {images[0]});
   return 0;
 } catch (const geo::Error& error) {

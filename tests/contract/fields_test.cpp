@@ -9,9 +9,9 @@ namespace {
 
 /// Of the CF standard name table, with canonical units: the names that fields may bear.
 const std::map<std::string_view, std::string_view> kStandardNames{
-    {"surface_altitude", "m"},           {"air_temperature", "K"},
-    {"lwe_precipitation_rate", "m s-1"}, {"eastward_wind", "m s-1"},
-    {"northward_wind", "m s-1"},         {"water_volume_transport_in_river_channel", "m3 s-1"},
+    {"height_above_mean_sea_level", "m"}, {"air_temperature", "K"},
+    {"lwe_precipitation_rate", "m s-1"},  {"eastward_wind", "m s-1"},
+    {"northward_wind", "m s-1"},          {"water_volume_transport_in_river_channel", "m3 s-1"},
 };
 
 TEST(Vocabulary, HasOneRowPerName) {

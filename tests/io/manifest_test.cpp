@@ -10,6 +10,7 @@
 #include "geo/core/error.hpp"
 #include "io/sample_snapshot.hpp"
 #include "io/temporary_folder.hpp"
+#include "vouched_bytes.hpp"
 
 namespace geo::io {
 namespace {
@@ -130,6 +131,27 @@ TEST(Manifest, UnreadableOnesAreNamed) {
     std::ofstream(folder / "bad.json") << text;
     EXPECT_THROW(read_manifest(folder / "bad.json"), InputError) << text;
   }
+}
+
+TEST(Manifest, DigestsOfFilesTellWhetherTheirBytesAreAsWritten) {
+  const TemporaryFolder folder;
+  const auto path = folder / "04-climate.nc";
+  std::ofstream(path) << std::string(3'000'000, 'a');
+  EXPECT_FALSE(is_as_recorded(path)) << "nothing says what it should be";
+  Manifest manifest;
+  manifest.stages.emplace_back().name = "climate";
+  manifest.stages[0].list(folder.path(), "04-climate.nc");
+  write_manifest(folder / "manifest.json", manifest);
+  const Manifest read = read_manifest(folder / "manifest.json");
+  EXPECT_EQ(read.stages[0].files, std::vector<std::string>{"04-climate.nc"});
+  EXPECT_EQ(read.stages[0].file_digests, manifest.stages[0].file_digests);
+  EXPECT_EQ(read.stages[0].file_digests.at("04-climate.nc"),
+            digest_of(std::string(3'000'000, 'a')));
+  std::ofstream(path, std::ios::app) << "";
+  std::filesystem::last_write_time(path, std::filesystem::file_time_type::clock::now());
+  EXPECT_TRUE(is_as_recorded(path));
+  std::fstream(path, std::ios::in | std::ios::out).seekp(2'000'000) << 'b';
+  EXPECT_FALSE(is_as_recorded(path)) << "one byte is another";
 }
 
 }  // namespace

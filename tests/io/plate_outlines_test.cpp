@@ -148,5 +148,12 @@ TEST_F(PlateOutlines, EarthHasItsLargestPlates) {
   EXPECT_EQ(plates.front().name, "Pacific");
 }
 
+TEST_F(PlateOutlines, NumbersBeyondWhatANumberCanBeAreRefused) {
+  const std::string huge =
+      R"("pole_latitude_deg": 1e999, "pole_longitude_deg": 0, "rate_deg_myr": 1)";
+  EXPECT_THAT(refusal(collection(feature(R"("name": "a", )" + huge))),
+              AllOf(HasSubstr(file_.string()), HasSubstr("number that is too large")));
+}
+
 }  // namespace
 }  // namespace geo::io

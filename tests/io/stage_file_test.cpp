@@ -8,6 +8,7 @@
 
 #include <array>
 #include <csignal>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <future>
@@ -123,6 +124,117 @@ TEST(StageFile, KeepsProvenance) {
   EXPECT_EQ(read.references, written.references);
 }
 
+TEST(StageFile, KeepsTheConfigurationInAVariableAndItsDigestInAnAttribute) {
+  const TemporaryFolder folder;
+  Provenance written = sample_provenance();
+  written.config_toml.append(40'000, '#');
+  write_netcdf(folder / "a.nc", sample_snapshot(Grid::sphere(16, 8)), written);
+  int id = 0, variable = 0, attributes = 0;
+  ASSERT_EQ(nc_open((folder / "a.nc").c_str(), NC_WRITE, &id), NC_NOERR);
+  nc_inq_natts(id, &attributes);
+  for (int k = 0; k < attributes; ++k) {
+    std::array<char, NC_MAX_NAME + 1> name{};
+    std::size_t length = 0;
+    nc_inq_attname(id, NC_GLOBAL, k, name.data());
+    nc_inq_attlen(id, NC_GLOBAL, name.data(), &length);
+    EXPECT_LT(length, 200) << name.data() << " fills what every client prints";
+  }
+  // Another text than that of the digest is refused.
+  const char* text = "seed = 8\n";
+  ASSERT_EQ(nc_inq_varid(id, "terrane_config", &variable), NC_NOERR);
+  ASSERT_EQ(nc_put_var_string(id, variable, &text), NC_NOERR);
+  nc_close(id);
+  EXPECT_THAT(message_of(ErrorKind::input, [&] { read_provenance(folder / "a.nc"); }),
+              HasSubstr("terrane_config"));
+}
+
+TEST(StageFile, ReadsTheConfigurationThatOlderFilesHoldAsAnAttribute) {
+  const TemporaryFolder folder;
+  int id = 0;
+  ASSERT_EQ(nc_create((folder / "a.nc").c_str(), NC_NETCDF4, &id), NC_NOERR);
+  for (const auto& [name, text] :
+       {std::pair{"terrane_config", "seed = 7"}, std::pair{"terrane_seed", "7"},
+        std::pair{"terrane_version", "0.1.0"}}) {
+    nc_put_att_text(id, NC_GLOBAL, name, std::strlen(text), text);
+  }
+  nc_close(id);
+  EXPECT_EQ(read_provenance(folder / "a.nc").config_toml, "seed = 7");
+}
+
+/// A frame of drift with a checkpoint, on many chunks.
+Snapshot sample_frame() {
+  Snapshot snapshot = sample_snapshot(Grid::sphere(1030, 515));
+  snapshot.checkpoint = std::make_shared<const Checkpoint>(Checkpoint{
+      12.5,
+      {{"plate", std::vector<std::int16_t>{0, 1, 2}}, {"age", std::vector<float>(5000, 3.0F)}}});
+  return snapshot;
+}
+
+TEST(Frame, LiesOnATimeOfOneEntryInPlainMyrAndReadsBack) {
+  const TemporaryFolder folder;
+  const Snapshot written = sample_frame();
+  write_netcdf(folder / "a.nc", written, sample_provenance());
+  const Snapshot read = read_netcdf(folder / "a.nc");
+  ASSERT_EQ(read.fields.size(), written.fields.size());
+  for (std::size_t k = 0; k < read.fields.size(); ++k) {
+    EXPECT_TRUE(same_bits(*read.fields[k].second, *written.fields[k].second));
+  }
+  const Checkpoint checkpoint = read_checkpoint(folder / "a.nc");
+  EXPECT_EQ(checkpoint.time_myr, 12.5);
+  EXPECT_EQ(checkpoint.arrays, written.checkpoint->arrays);
+  int id = 0, variable = 0, dimensions = 0;
+  ASSERT_EQ(nc_open((folder / "a.nc").c_str(), NC_NOWRITE, &id), NC_NOERR);
+  nc_inq_varid(id, "elevation", &variable);
+  nc_inq_varndims(id, variable, &dimensions);
+  EXPECT_EQ(dimensions, 3);
+  ASSERT_EQ(nc_inq_varid(id, "drift_time", &variable), NC_NOERR);
+  std::array<char, 4> units{};
+  nc_get_att_text(id, variable, "units", units.data());
+  EXPECT_STREQ(units.data(), "Myr");
+  EXPECT_NE(nc_inq_varid(id, "time", &variable), NC_NOERR) << "no calendar goes so far";
+  nc_close(id);
+}
+
+TEST(Frame, WithOtherArraysThanWereWrittenIsRefused) {
+  const TemporaryFolder folder;
+  write_netcdf(folder / "a.nc", sample_frame(), sample_provenance());
+  int id = 0, group = 0, variable = 0;
+  ASSERT_EQ(nc_open((folder / "a.nc").c_str(), NC_WRITE, &id), NC_NOERR);
+  nc_inq_ncid(id, "checkpoint", &group);
+  nc_inq_varid(group, "plate", &variable);
+  const short plates[] = {0, 1, 1};
+  ASSERT_EQ(nc_put_var_short(group, variable, plates), NC_NOERR);
+  nc_close(id);
+  EXPECT_THAT(message_of(ErrorKind::input, [&] { read_checkpoint(folder / "a.nc"); }),
+              HasSubstr("damaged"));
+}
+
+/// A file that says it holds far more than it does.
+void write_huge_claim(const std::filesystem::path& path) {
+  int id = 0, variable = 0;
+  std::array<int, 2> dimensions{};
+  ASSERT_EQ(nc_create(path.c_str(), NC_NETCDF4, &id), NC_NOERR);
+  nc_def_dim(id, "lat", 20'000, dimensions.data());
+  nc_def_dim(id, "lon", 20'000, dimensions.data() + 1);
+  nc_def_var(id, "elevation", NC_FLOAT, 2, dimensions.data(), &variable);
+  nc_put_att_text(id, variable, "units", 1, "m");
+  for (const auto& [name, text] :
+       {std::pair{"terrane_grid", "sphere"}, std::pair{"terrane_stage", "erosion"}}) {
+    nc_put_att_text(id, NC_GLOBAL, name, std::strlen(text), text);
+  }
+  const double radius_m = 6371000.0, flattening = 0.0;
+  nc_put_att_double(id, NC_GLOBAL, "terrane_grid_radius_m", NC_DOUBLE, 1, &radius_m);
+  nc_put_att_double(id, NC_GLOBAL, "terrane_grid_flattening", NC_DOUBLE, 1, &flattening);
+  nc_close(id);
+}
+
+TEST(StageFile, SizesAreCheckedBeforeMemoryIsAskedFor) {
+  const TemporaryFolder folder;
+  write_huge_claim(folder / "a.nc");
+  EXPECT_THAT(message_of(ErrorKind::input, [&] { read_netcdf(folder / "a.nc"); }),
+              HasSubstr("claims 400000000 values"));
+}
+
 TEST(StageFile, SameContentGivesTheSameBytes) {
   const TemporaryFolder folder;
   for (const char* name : {"a.nc", "b.nc"}) {
@@ -147,6 +259,14 @@ std::vector<char> contents(const std::filesystem::path& path, char before) {
     std::array<int, NC_MAX_VAR_DIMS> dimensions{};
     std::size_t size = 0;
     nc_inq_var(file, variable, nullptr, &type, &count, dimensions.data(), nullptr);
+    if (type == NC_STRING) {  // what is read is where the text lies
+      char* text = nullptr;
+      EXPECT_EQ(nc_get_var_string(file, variable, &text), NC_NOERR);
+      EXPECT_TRUE(text != nullptr && *text != '\0');
+      all.insert(all.end(), text, text + std::strlen(text));
+      nc_free_string(1, &text);
+      continue;
+    }
     nc_inq_type(file, type, nullptr, &size);
     for (int k = 0; k < count; ++k) {
       std::size_t length = 0;

@@ -251,6 +251,25 @@ TEST(DriftedPlates, RefuseFramesThatDoNotFit) {
       InputError);
 }
 
+TEST(DriftedPlates, RefuseFramesFromWhichNoStepWouldEnd) {
+  State state(std::make_shared<Grid>(Grid::sphere(32, 16)));
+  const Frame frame = frames_of(with_frames(), state, nullptr)[2];
+  const auto refused = [&](const std::string& name, std::size_t at, double value) {
+    auto damaged = std::make_shared<Checkpoint>(frame.checkpoint);
+    std::visit(
+        [&](auto& array) { array.at(at) = static_cast<std::decay_t<decltype(array[0])>>(value); },
+        damaged->arrays.at(name));
+    State again(std::make_shared<Grid>(Grid::sphere(32, 16)));
+    EXPECT_THROW((void)frames_of(with_frames(), again, damaged), InputError)
+        << name << " " << value;
+  };
+  refused("plate_carrier", 1, 1.0);  // a plate that carries itself
+  refused("clock", 0, std::numeric_limits<double>::quiet_NaN());
+  refused("clock", 0, -1e300);
+  refused("clock", 2, 1e9);
+  refused("plate_numbers", 8, std::numeric_limits<double>::infinity());
+}
+
 TEST(DriftedPlates, FollowTheTimeline) {
   PlatesParameters parameters = with_frames();
   parameters.sphere.rift_per_myr = 0.0;

@@ -182,7 +182,7 @@ const Field<std::int8_t> rock_type{{.name = "rock_type",
                                     .cell_methods = "area: point"}};
 const Field<float> elevation{{.name = "elevation",
                               .units = "m",
-                              .standard_name = "surface_altitude",
+                              .standard_name = "height_above_mean_sea_level",
                               .doc = "elevation of the solid surface above the planet's sea level",
                               .type = Type::float32}};
 const Field<float> uplift_rate{

@@ -2,11 +2,12 @@
 
 #include <array>
 
-#include "checkpoint_group.hpp"
 #include "geo/core/error.hpp"
 #include "geo/io/stage_file.hpp"
 #include "netcdf_file.hpp"
 #include "open_input.hpp"
+#include "questions.hpp"
+#include "stage_names.hpp"
 
 namespace geo::io {
 namespace {
@@ -38,11 +39,12 @@ Values read_any(int group, int variable, nc_type type, std::size_t size) {
 Checkpoint read_group(const nc::File& file) {
   Checkpoint checkpoint;
   int group = 0, count = 0;
-  const auto time = file.find_variable("drift_time");
+  const auto time = file.find_variable(kFrameTime);
   if (!time || nc_inq_ncid(file.id(), kCheckpointGroup, &group) != NC_NOERR) {
     throw InputError("is no frame of drifting plates");
   }
-  nc::check(nc_get_var_double(file.id(), *time, &checkpoint.time_myr));
+  constexpr std::array<std::size_t, NC_MAX_VAR_DIMS> kFirst{};
+  nc::check(nc_get_var1_double(file.id(), *time, kFirst.data(), &checkpoint.time_myr));
   nc::check(nc_inq_nvars(group, &count));
   for (int variable = 0; variable < count; ++variable) {
     std::array<char, NC_MAX_NAME + 1> name{};
@@ -53,7 +55,13 @@ Checkpoint read_group(const nc::File& file) {
     nc::check(nc_inq_vardimid(group, variable, &dimension));
     std::size_t size = 0;
     nc::check(nc_inq_dimlen(group, dimension, &size));
+    file.check_size(group, variable);
     checkpoint.arrays[name.data()] = read_any(group, variable, type, size);
+  }
+  // Frames of older versions have none.
+  const auto digest = nc::text_of(group, NC_GLOBAL, kCheckpointDigest);
+  if (digest && *digest != digest_of(checkpoint)) {
+    throw InputError("is a damaged frame: its arrays are not those that were written");
   }
   return checkpoint;
 }
@@ -64,12 +72,16 @@ Checkpoint read_checkpoint(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path)) {
     throw InputError(fmt::format("fields.start_frame: {}: no such file", path.string()));
   }
+  return answer_to(CheckpointQuestion{path.string()});
+}
+
+Checkpoint CheckpointQuestion::here() const {
   try {
-    return read_group(open_input(path));
+    return read_group(open_input(file));
   } catch (const nc::Failure& failure) {
-    throw InputError(fmt::format("{}: {}", path.string(), failure.what()));
+    throw InputError(fmt::format("{}: {}", file, failure.what()));
   } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: {}", path.string(), error.what()));
+    throw InputError(fmt::format("{}: {}", file, error.what()));
   }
 }
 

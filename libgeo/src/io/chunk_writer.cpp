@@ -51,12 +51,22 @@ void shuffle(const unsigned char* from, std::size_t values, unsigned char* to) {
   }
 }
 
+/// Of a raster that is the only one of its time, or of none: dimensions before rows and columns.
+int leading_dimensions(hid_t dataset) {
+  const hid_t space = H5Dget_space(dataset);
+  const int dimensions = H5Sget_simple_extent_ndims(space);
+  H5Sclose(space);
+  require(dimensions == 2 || dimensions == 3);
+  return dimensions - 2;
+}
+
 template <class T>
 void write_chunks(hid_t dataset, const std::vector<T>& values, int ny, int nx, ChunkShape chunk,
                   int level) {
   const std::size_t cells = chunk.rows * chunk.columns, bytes = cells * sizeof(T);
   std::vector<T> raw(cells);
   std::vector<unsigned char> shuffled(bytes);
+  const int leading = leading_dimensions(dataset);
   const Compressor compressor(libdeflate_alloc_compressor(level));
   if (!compressor) throw std::bad_alloc();
   std::vector<unsigned char> packed(libdeflate_zlib_compress_bound(compressor.get(), bytes));
@@ -75,8 +85,9 @@ void write_chunks(hid_t dataset, const std::vector<T>& values, int ny, int nx, C
       const std::size_t size = libdeflate_zlib_compress(compressor.get(), shuffled.data(), bytes,
                                                         packed.data(), packed.size());
       require(size > 0);
-      const hsize_t offset[2] = {row, column};
-      require(H5Dwrite_chunk(dataset, H5P_DEFAULT, 0, offset, size, packed.data()) >= 0);
+      const hsize_t offset[3] = {0, row, column};
+      require(H5Dwrite_chunk(dataset, H5P_DEFAULT, 0, offset + 1 - leading, size, packed.data()) >=
+              0);
     }
   }
 }

@@ -15,21 +15,10 @@
 #include "map_projection.hpp"
 #include "netcdf_file.hpp"
 #include "open_input.hpp"
+#include "questions.hpp"
 
 namespace geo::io {
 namespace {
-
-struct Request {
-  std::filesystem::path path;
-  std::string variable;
-};
-
-/// "FILE:VARIABLE"; a file whose own name holds a colon wins.
-Request split(const std::string& text) {
-  const auto colon = text.rfind(':');
-  if (colon == std::string::npos || std::filesystem::exists(text)) return {text, {}};
-  return {text.substr(0, colon), text.substr(colon + 1)};
-}
 
 /// Values with rows from the south and columns from the west, starting at column `start`; only
 /// `columns.size` of the `width` columns of the file are kept.
@@ -78,6 +67,11 @@ struct Longitudes {
 
 Longitudes arrange_longitudes(DemAxis columns) {
   Longitudes result;
+  constexpr double kFarthest_deg = 1080.0;  // some count on past a turn
+  if (!(std::abs(columns.first) <= kFarthest_deg)) {
+    throw InputError(fmt::format("axis {}: begins at longitude {:g}: must be within {:g}",
+                                 columns.name, columns.first, kFarthest_deg));
+  }
   const double circle_in_steps = 360.0 / columns.step;
   if (columns.size - 1 > circle_in_steps + 0.5) {
     throw InputError(fmt::format("axis {}: covers more than 360 degrees", columns.name));
@@ -205,7 +199,13 @@ std::optional<Centre> find_centre(const nc::File& file, int variable, const DemA
   dimensions.erase(dimensions.begin(), dimensions.end() - 2);
   const auto latitude = middle_of(file, dimensions, "latitude");
   const auto longitude = middle_of(file, dimensions, "longitude");
-  if (latitude && longitude) return Centre{*latitude, *longitude};
+  if (latitude && longitude) {
+    if (std::abs(*latitude) <= 90.0 && std::abs(*longitude) <= 360.0) {
+      return Centre{*latitude, *longitude};
+    }
+    throw InputError(fmt::format("latitude {:g} and longitude {:g} of its middle are no place",
+                                 *latitude, *longitude));
+  }
   const auto crs = find_crs(file, variable);
   if (!crs) return {};
   return unproject(*crs, 0.5 * (columns.low() + columns.high()), 0.5 * (rows.low() + rows.high()));
@@ -242,22 +242,8 @@ Relief read_from(const nc::File& file, const std::string& wanted, const std::str
 
 Relief read_raster(const std::string& file_and_variable, const std::string& otherwise,
                    const std::string& units, Gaps gaps, const Planet& planet) {
-  const Request request = split(file_and_variable);
-  const std::string path = request.path.string();
-  const nc::File file = open_input(request.path);
-  check_classic_size(request.path);
-  try {
-    const bool named = !request.variable.empty() || !file.find_variable(otherwise);
-    Relief relief = read_from(file, named ? request.variable : otherwise, units, gaps, planet);
-    relief.source = path + ":" + relief.variable;
-    return relief;
-  } catch (const nc::Failure& failure) {
-    throw InputError(fmt::format("{}: truncated or damaged ({})", path, failure.what()));
-  } catch (const ConfigurationError& error) {
-    throw InputError(fmt::format("{}: {}", path, error.what()));
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: {}", path, error.what()));
-  }
+  return answer_to(RasterQuestion{file_and_variable, otherwise, units, gaps, planet.radius_km,
+                                  planet.flattening});
 }
 
 /// The same values, none of which may be what the quantity cannot be.
@@ -273,6 +259,26 @@ Relief within_bounds(Relief given, const FieldSpec& spec) {
 }
 
 }  // namespace
+
+Relief RasterQuestion::here() const {
+  const auto [file_name, variable] = split_dem(file_and_variable);
+  const std::string shown = file_name.string();
+  const nc::File file = open_input(file_name);
+  check_classic_size(file_name);
+  try {
+    const bool named = !variable.empty() || !file.find_variable(otherwise);
+    Relief relief = read_from(file, named ? variable : otherwise, units, gaps,
+                              {.radius_km = radius_km, .flattening = flattening});
+    relief.source = shown + ":" + relief.variable;
+    return relief;
+  } catch (const nc::Failure& failure) {
+    throw InputError(fmt::format("{}: truncated or damaged ({})", shown, failure.what()));
+  } catch (const ConfigurationError& error) {
+    throw InputError(fmt::format("{}: {}", shown, error.what()));
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", shown, error.what()));
+  }
+}
 
 Relief read_relief(const std::string& file_and_variable, const Planet& planet) {
   return read_raster(file_and_variable, "", "m", Gaps::refused, planet);

@@ -58,8 +58,8 @@ std::optional<AxisKind> kind_in_metres(const std::string& standard_name, const s
 }
 
 std::vector<double> axis_values(const nc::File& file, int variable, const std::string& name) {
-  const auto size = file.dimension_size(file.dimensions_of(variable)[0]);
-  std::vector<double> values(size);
+  file.check_size(variable);
+  std::vector<double> values(file.length_of(file.dimensions_of(variable)[0]));
   try {
     nc::check(nc_get_var_double(file.id(), variable, values.data()));
   } catch (const nc::Failure& failure) {

@@ -109,6 +109,7 @@ std::vector<float> read_values(const nc::File& file, int variable, const DemAxis
   const auto dimensions = file.dimensions_of(variable).size();
   std::vector<std::size_t> start(dimensions, 0), count(dimensions, 1);
   const std::size_t nx = columns.size, ny = rows.size;
+  file.check_size(variable);
   std::vector<float> values(nx * ny);
 
   // Blocks as tall as common chunks, so that each chunk is unpacked once.
@@ -126,15 +127,18 @@ std::vector<float> read_values(const nc::File& file, int variable, const DemAxis
           fmt::format("variable {}: truncated or damaged ({})", name, nc_strerror(status)));
     }
     for (std::size_t k = 0; k < count[dimensions - 2] * nx; ++k) {
-      if (packing.is_missing(block[k])) {
+      const double value = block[k] * packing.scale + packing.offset;
+      // What no float can hold is no value either.
+      const bool missing =
+          packing.is_missing(block[k]) || !(std::abs(value) <= std::numeric_limits<float>::max());
+      if (missing) {
         if (gaps.count++ == 0) {
           gaps.row = static_cast<int>(from + k / nx);
           gaps.column = static_cast<int>(k % nx);
         }
       }
-      values[from * nx + k] = packing.is_missing(block[k])
-                                  ? std::numeric_limits<float>::quiet_NaN()
-                                  : static_cast<float>(block[k] * packing.scale + packing.offset);
+      values[from * nx + k] =
+          missing ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(value);
     }
   }
   if (gaps.count > 0 && allowed == Gaps::refused) refuse(name, gaps, rows, columns);

@@ -11,6 +11,7 @@
 #include <new>
 
 #include "geo/core/error.hpp"
+#include "stage_names.hpp"
 
 namespace geo::io {
 namespace {
@@ -85,6 +86,14 @@ std::string digest_of_file(const std::filesystem::path& path) {
   }
   if (!stream.eof()) throw IoError(fmt::format("{}: could not be read", path.string()));
   return text_of(XXH3_128bits_digest(hash.get()));
+}
+
+std::string digest_of(const Checkpoint& checkpoint) {
+  std::string text = fmt::format("{:a}", checkpoint.time_myr);
+  for (const auto& [name, values] : checkpoint.arrays) {
+    text += fmt::format(" {} {} {}", name, values.index(), digest_of(values));
+  }
+  return digest_of(std::string_view(text));
 }
 
 FieldRecord summarise(const FieldSpec& spec, const Values& values, const Grid& grid) {

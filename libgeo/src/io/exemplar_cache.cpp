@@ -12,6 +12,7 @@
 #include "geo/io/build_info.hpp"
 #include "geo/io/digest.hpp"
 #include "netcdf_file.hpp"
+#include "questions.hpp"
 
 namespace geo::io {
 namespace {
@@ -44,31 +45,44 @@ std::optional<ExemplarLibrary> read_cached(const fs::path& path) {
   std::error_code error;
   if (path.empty() || !fs::exists(path, error)) return {};
   try {
-    const auto file = nc::File::open(path);
-    ExemplarLibrary library;
+    ExemplarLibrary library{answer_to(CacheQuestion{path.string()})};
+    if (library.exemplars.size() != kTerrains) return {};
     for (int t = 0; t < kTerrains; ++t) {
-      const auto terrain = static_cast<Terrain>(t);
-      const auto variable = file.find_variable(name_of(terrain));
+      measure_exemplar(library.exemplars[t], static_cast<Terrain>(t));
+    }
+    return library;
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+std::vector<Exemplar> CacheQuestion::here() const {
+  std::vector<Exemplar> exemplars;
+  try {
+    const auto cache = nc::File::open(file);
+    for (int t = 0; t < kTerrains; ++t) {
+      const auto name = name_of(static_cast<Terrain>(t));
+      const auto variable = cache.find_variable(name);
       if (!variable) return {};
-      const auto dimensions = file.dimensions_of(*variable);
-      const auto cell_m = file.numbers(*variable, "cell_m");
+      const auto dimensions = cache.dimensions_of(*variable);
+      const auto cell_m = cache.numbers(*variable, "cell_m");
       if (dimensions.size() != 2 || cell_m.size() != 1) return {};
-      Exemplar e{.name = std::string(name_of(terrain)),
-                 .nx = static_cast<int>(file.dimension_size(dimensions[1])),
-                 .ny = static_cast<int>(file.dimension_size(dimensions[0])),
+      Exemplar e{.name = std::string(name),
+                 .nx = cache.length_of(dimensions[1]),
+                 .ny = cache.length_of(dimensions[0]),
                  .cell_m = cell_m[0],
                  .periodic = true,
                  .elevation_m = {}};
+      cache.check_size(*variable);
       e.elevation_m.resize(static_cast<std::size_t>(e.nx) * e.ny);
-      nc::check(nc_get_var_float(file.id(), *variable, e.elevation_m.data()));
-      if (file.text(*variable, "digest") != digest_of_elevation(e.elevation_m)) return {};
-      measure_exemplar(e, terrain);
-      library.exemplars.push_back(std::move(e));
+      nc::check(nc_get_var_float(cache.id(), *variable, e.elevation_m.data()));
+      if (cache.text(*variable, "digest") != digest_of_elevation(e.elevation_m)) return {};
+      exemplars.push_back(std::move(e));
     }
-    return library;
+    return exemplars;
   } catch (const nc::Failure&) {
-    return {};
-  } catch (const Error&) {
     return {};
   }
 }

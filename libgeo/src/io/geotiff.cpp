@@ -19,6 +19,8 @@
 #include <optional>
 
 #include "geo/core/error.hpp"
+#include "packed_size.hpp"
+#include "questions.hpp"
 
 namespace geo::io {
 namespace {
@@ -44,11 +46,19 @@ class Image {
     TIFFOpenOptionsSetWarningHandlerExtR(options.get(), ignore, nullptr);
     tiff_.reset(TIFFOpenExt(path.c_str(), "r", options.get()));
     if (!tiff_) fail();
+    std::error_code error;
+    const std::uintmax_t bytes = std::filesystem::file_size(path, error);
+    bytes_ = error ? 0 : bytes;
   }
   [[nodiscard]] TIFF* get() const { return tiff_.get(); }
   [[noreturn]] void fail() const {
     throw InputError(fmt::format("is no sound TIFF file ({})",
                                  reason_.empty() ? "libtiff does not say why" : reason_));
+  }
+  /// Before memory is asked for.
+  void check_size(int nx, int ny) const {
+    if (nx < 1 || ny < 1) throw InputError("has no cells");
+    check_packed_size(static_cast<double>(nx) * ny, sizeof(float), static_cast<double>(bytes_));
   }
   template <class T>
   [[nodiscard]] T tag(std::uint32_t tag, T otherwise) const {
@@ -65,6 +75,7 @@ class Image {
 
  private:
   std::string reason_;
+  std::uintmax_t bytes_ = 0;
   std::unique_ptr<TIFF, decltype(&TIFFClose)> tiff_{nullptr, TIFFClose};
 };
 
@@ -125,6 +136,7 @@ std::vector<float> read_values(const Image& image, int nx, int ny) {
   }
   const std::size_t bytes = samples.bits / 8;
   const std::optional<double> missing = no_data(image);
+  image.check_size(nx, ny);
   std::vector<float> values(static_cast<std::size_t>(nx) * ny);
   const auto put = [&](int column, int row, const std::uint8_t* at) {
     const double value = samples.read(at);
@@ -211,11 +223,16 @@ Placement placement_of(const Image& image) {
 }  // namespace
 
 Relief read_geotiff(const std::filesystem::path& path, const Planet& planet) {
-  if (!std::ifstream(path)) {
-    throw IoError(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
+  return answer_to(GeotiffQuestion{path.string(), planet.radius_km, planet.flattening});
+}
+
+Relief GeotiffQuestion::here() const {
+  const Planet planet{.radius_km = radius_km, .flattening = flattening};
+  if (!std::ifstream(file)) {
+    throw IoError(fmt::format("{}: cannot be read: {}", file, std::strerror(errno)));
   }
   try {
-    const Image image(path);
+    const Image image(file);
     const auto nx = static_cast<int>(image.tag<std::uint32_t>(TIFFTAG_IMAGEWIDTH, 0));
     const auto ny = static_cast<int>(image.tag<std::uint32_t>(TIFFTAG_IMAGELENGTH, 0));
     const Placement at = placement_of(image);
@@ -226,11 +243,11 @@ Relief read_geotiff(const std::filesystem::path& path, const Planet& planet) {
                            {at.north - ny * at.step_y, at.north, at.west, at.west + nx * at.step_x},
                            planet.figure())
             : Grid::plane(nx, ny, at.step_x, at.step_y, Edges::open, {}, planet.figure());
-    return {std::move(values), std::move(grid), path.string(), {}, {}, {}};
+    return {std::move(values), std::move(grid), file, {}, {}, {}};
   } catch (const ConfigurationError& error) {
-    throw InputError(fmt::format("{}: {}", path.string(), error.what()));
+    throw InputError(fmt::format("{}: {}", file, error.what()));
   } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: {}", path.string(), error.what()));
+    throw InputError(fmt::format("{}: {}", file, error.what()));
   }
 }
 

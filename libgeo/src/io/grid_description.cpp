@@ -216,7 +216,7 @@ int dimension_size(const nc::File& file, const char* name) {
   if (nc_inq_dimid(file.id(), name, &dimension) != NC_NOERR) {
     throw InputError(fmt::format("dimension {} is missing", name));
   }
-  return static_cast<int>(file.dimension_size(dimension));
+  return file.length_of(dimension);
 }
 
 }  // namespace
@@ -271,6 +271,11 @@ Grid read_grid(const nc::File& file) {
   const int nx = dimension_size(file, latitude_longitude ? "lon" : "x");
   const Ellipsoid figure{required_numbers(file, kRadius, 1)[0],
                          required_numbers(file, kFlattening, 1)[0]};
+  constexpr double kLargest_m = 1e12;
+  if (!(figure.radius_m >= 1.0 && figure.radius_m <= kLargest_m)) {
+    throw InputError(fmt::format("global attribute {} is {:g} m, must be within 1 and {:g}",
+                                 kRadius, figure.radius_m, kLargest_m));
+  }
   const Edges edges =
       file.text(NC_GLOBAL, kEdges).value_or("open") == "closed" ? Edges::closed : Edges::open;
   try {
@@ -280,6 +285,10 @@ Grid read_grid(const nc::File& file) {
       return Grid::window(nx, ny, {w[0], w[1], w[2], w[3]}, figure, edges);
     }
     const auto step = required_numbers(file, kSpacing, 2);
+    if (!(step[0] > 0.0 && step[0] <= kLargest_m && step[1] > 0.0 && step[1] <= kLargest_m)) {
+      throw InputError(fmt::format("global attribute {}: cells must be within 0 and {:g} m",
+                                   kSpacing, kLargest_m));
+    }
     if (*topology == "torus") return Grid::torus(nx, ny, step[0], step[1]);
     if (*topology == "equal_area") {
       const auto c = required_numbers(file, kCentre, 2);
@@ -288,6 +297,9 @@ Grid read_grid(const nc::File& file) {
     if (*topology == "plane") {
       const auto c = file.numbers(NC_GLOBAL, kCentre);
       const auto centre = c.size() == 2 ? std::optional(Centre{c[0], c[1]}) : std::nullopt;
+      if (centre && !(std::abs(c[0]) <= 90.0 && std::abs(c[1]) <= 360.0)) {
+        throw InputError(fmt::format("global attribute {} is no place", kCentre));
+      }
       return Grid::plane(nx, ny, step[0], step[1], edges, centre, figure);
     }
   } catch (const ConfigurationError& error) {

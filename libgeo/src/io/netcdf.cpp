@@ -4,14 +4,16 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
-#include "checkpoint_group.hpp"
 #include "chunk_writer.hpp"
 #include "geo/core/error.hpp"
 #include "geo/io/atomic_file.hpp"
+#include "geo/io/digest.hpp"
 #include "geo/io/stage_file.hpp"
 #include "grid_description.hpp"
 #include "netcdf_file.hpp"
+#include "stage_names.hpp"
 
 namespace geo::io {
 namespace {
@@ -29,12 +31,17 @@ ChunkShape chunk_shape(const Grid& grid) {
   return {chunk_length(grid.ny()), chunk_length(grid.nx())};
 }
 
+/// A raster over rows and columns, and over a time before them where there is one.
 int define_raster(const nc::File& file, const Grid& grid, const GridVariables& ids,
-                  std::string_view name, nc_type type) {
-  const int variable =
-      file.define_variable(name, type, std::array{ids.row_dimension, ids.column_dimension});
+                  std::string_view name, nc_type type, std::optional<int> time = {}) {
+  std::vector<int> dimensions{ids.row_dimension, ids.column_dimension};
   const ChunkShape chunk = chunk_shape(grid);
-  const std::array chunks{chunk.rows, chunk.columns};
+  std::vector<std::size_t> chunks{chunk.rows, chunk.columns};
+  if (time) {
+    dimensions.insert(dimensions.begin(), *time);
+    chunks.insert(chunks.begin(), 1);
+  }
+  const int variable = file.define_variable(name, type, dimensions);
   nc::check(nc_def_var_chunking(file.id(), variable, NC_CHUNKED, chunks.data()));
   nc::check(nc_def_var_deflate(file.id(), variable, 1, 1, kDeflateLevel));
   return variable;
@@ -82,24 +89,21 @@ void put_typed_attributes(const nc::File& file, int variable, const FieldSpec& s
   file.put(variable, "flag_meanings", meanings);
 }
 
-/// CF coordinates of a frame, as scalars: time since the drift began, in common years, of which
-/// UDUNITS makes a time axis, and the same in Myr.
-constexpr const char* kFrameCoordinates = "time drift_time";
-
-void define_time(const nc::File& file) {
-  const int time = file.define_variable("time", NC_DOUBLE, {});
-  file.put(time, "standard_name", "time");
+/// The axis of a frame: a plain number, as there is no calendar of millions of years that clients
+/// would read. Of one entry, so that frames put one behind another are a series. Returns the
+/// dimension.
+int define_time(const nc::File& file) {
+  const int dimension = file.define_dimension(kFrameTime, 1);
+  const int time = file.define_variable(kFrameTime, NC_DOUBLE, std::array{dimension});
   file.put(time, "long_name", "time since plates began to drift");
-  file.put(time, "units", "common_years since 0001-01-01 00:00:00");
-  file.put(time, "calendar", "365_day");
-  const int drift = file.define_variable("drift_time", NC_DOUBLE, {});
-  file.put(drift, "long_name", "time since plates began to drift");
-  file.put(drift, "units", "Myr");
+  file.put(time, "units", "Myr");
+  file.put(time, "axis", "T");
+  return dimension;
 }
 
 void define_field(const nc::File& file, const Grid& grid, const GridVariables& ids,
-                  const FieldSpec& spec, const Values& values, bool has_time) {
-  const int variable = define_raster(file, grid, ids, spec.name, nc::type_of(spec.type));
+                  const FieldSpec& spec, const Values& values, std::optional<int> time) {
+  const int variable = define_raster(file, grid, ids, spec.name, nc::type_of(spec.type), time);
   std::visit([&]<class T>(const std::vector<T>&) { put_typed_attributes<T>(file, variable, spec); },
              values);
   file.put(variable, "standard_name", spec.standard_name);
@@ -109,18 +113,16 @@ void define_field(const nc::File& file, const Grid& grid, const GridVariables& i
   file.put(variable, "cell_measures", "area: cell_area");
   if (ids.has_mapping) file.put(variable, "grid_mapping", kMapping);
   if (ids.has_coordinates) file.put(variable, "coordinates", "lat lon");
-  if (has_time) file.put(variable, "coordinates", kFrameCoordinates);
 }
 
 /// Arrays to go on from, each with a dimension of its own length.
 void write_checkpoint(const nc::File& file, const Checkpoint& checkpoint) {
-  for (const auto& [name, value] : {std::pair{"time", 1e6 * checkpoint.time_myr},
-                                    std::pair{"drift_time", checkpoint.time_myr}}) {
-    nc::check(nc_put_var_double(file.id(), *file.find_variable(name), &value));
-  }
+  nc::check(nc_put_var_double(file.id(), *file.find_variable(kFrameTime), &checkpoint.time_myr));
   int group = 0;
   nc::check(nc_redef(file.id()));
   nc::check(nc_def_grp(file.id(), kCheckpointGroup, &group));
+  const std::string digest = digest_of(checkpoint);
+  nc::check(nc_put_att_text(group, NC_GLOBAL, kCheckpointDigest, digest.size(), digest.data()));
   for (const auto& [name, values] : checkpoint.arrays) {
     std::visit(
         [&, &name = name]<class T>(const std::vector<T>& array) {
@@ -150,7 +152,10 @@ void put_provenance(const nc::File& file, const Snapshot& snapshot, const Proven
   file.put(NC_GLOBAL, "terrane_stage", snapshot.stage);
   // As text: not every client reads unsigned 64-bit attributes.
   file.put(NC_GLOBAL, "terrane_seed", std::to_string(provenance.seed));
-  file.put(NC_GLOBAL, "terrane_config", provenance.config_toml);
+  // As an attribute the text, some 40 kB, would fill what every client prints and hands on.
+  file.put(NC_GLOBAL, kConfigDigest, digest_of(provenance.config_toml));
+  const int text = file.define_variable(kConfig, NC_STRING, {});
+  file.put(text, "long_name", "resolved configuration of the run, TOML");
 }
 
 void check_snapshot(const Snapshot& snapshot) {
@@ -171,14 +176,16 @@ void write_frame(const std::filesystem::path& path, const Snapshot& snapshot,
   put_provenance(file, snapshot, provenance);
   const GridVariables ids = define_grid(file, grid);
   define_cell_area(file, grid, ids);
-  const bool has_time = snapshot.checkpoint != nullptr;
-  if (has_time) define_time(file);
+  std::optional<int> time;
+  if (snapshot.checkpoint) time = define_time(file);
   for (const auto& [spec, values] : snapshot.fields) {
-    define_field(file, grid, ids, *spec, *values, has_time);
+    define_field(file, grid, ids, *spec, *values, time);
   }
   nc::check(nc_enddef(file.id()));
   write_coordinates(file, grid);
-  if (has_time) write_checkpoint(file, *snapshot.checkpoint);
+  const char* text = provenance.config_toml.c_str();
+  nc::check(nc_put_var_string(file.id(), *file.find_variable(kConfig), &text));
+  if (snapshot.checkpoint) write_checkpoint(file, *snapshot.checkpoint);
   file.close();
 }
 

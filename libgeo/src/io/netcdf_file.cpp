@@ -1,8 +1,13 @@
 #include "netcdf_file.hpp"
 
+#include <fmt/format.h>
 #include <hdf5.h>
 
+#include <limits>
 #include <utility>
+
+#include "geo/core/error.hpp"
+#include "packed_size.hpp"
 
 namespace geo::io::nc {
 
@@ -30,11 +35,14 @@ File File::create(const std::filesystem::path& path) {
 File File::open(const std::filesystem::path& path) {
   File file;
   check(nc_open(path.c_str(), NC_NOWRITE, &file.id_));
+  std::error_code error;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, error);
+  file.bytes_ = error ? 0 : bytes;
   return file;
 }
 
 File::File(File&& other) noexcept
-    : lock_(std::move(other.lock_)), id_(std::exchange(other.id_, -1)) {}
+    : lock_(std::move(other.lock_)), id_(std::exchange(other.id_, -1)), bytes_(other.bytes_) {}
 
 File::~File() {
   if (id_ >= 0) nc_close(id_);
@@ -64,21 +72,33 @@ void File::put(int variable, const char* name, std::span<const double> values) c
   check(nc_put_att_double(id_, variable, name, NC_DOUBLE, values.size(), values.data()));
 }
 
-std::optional<std::string> File::text(int variable, const char* name) const {
+std::optional<std::string> text_of(int group, int variable, const char* name) {
   nc_type type = NC_NAT;
   std::size_t length = 0;
-  if (nc_inq_att(id_, variable, name, &type, &length) != NC_NOERR) return {};
+  if (nc_inq_att(group, variable, name, &type, &length) != NC_NOERR) return {};
   if (type == NC_STRING && length == 1) {
     char* string = nullptr;
-    check(nc_get_att_string(id_, variable, name, &string));
+    check(nc_get_att_string(group, variable, name, &string));
     std::string result = string != nullptr ? string : "";
     nc_free_string(1, &string);
     return result;
   }
   if (type != NC_CHAR) return {};
   std::string result(length, '\0');
-  check(nc_get_att_text(id_, variable, name, result.data()));
+  check(nc_get_att_text(group, variable, name, result.data()));
   while (!result.empty() && result.back() == '\0') result.pop_back();
+  return result;
+}
+
+std::optional<std::string> File::text_in(const char* name) const {
+  const auto variable = find_variable(name);
+  if (!variable || variable_type(*variable) != NC_STRING || !dimensions_of(*variable).empty()) {
+    return {};
+  }
+  char* string = nullptr;
+  check(nc_get_var_string(id_, *variable, &string));
+  std::string result = string != nullptr ? string : "";
+  nc_free_string(1, &string);
   return result;
 }
 
@@ -136,6 +156,29 @@ std::size_t File::dimension_size(int dimension) const {
   std::size_t size = 0;
   check(nc_inq_dimlen(id_, dimension, &size));
   return size;
+}
+
+int File::length_of(int dimension) const {
+  const std::size_t size = dimension_size(dimension);
+  if (size > std::numeric_limits<int>::max()) {
+    throw InputError(fmt::format("dimension {} has {} entries: must have {} at most",
+                                 dimension_name(dimension), size, std::numeric_limits<int>::max()));
+  }
+  return static_cast<int>(size);
+}
+
+void File::check_size(int group, int variable) const {
+  int count = 0;
+  check(nc_inq_varndims(group, variable, &count));
+  std::vector<int> dimensions(count);
+  check(nc_inq_vardimid(group, variable, dimensions.data()));
+  double values = 1.0;
+  for (const int dimension : dimensions) {
+    std::size_t size = 0;
+    check(nc_inq_dimlen(group, dimension, &size));
+    values *= static_cast<double>(size);
+  }
+  check_packed_size(values, sizeof(double), static_cast<double>(bytes_));
 }
 
 }  // namespace geo::io::nc

@@ -2,6 +2,7 @@
 
 #include <netcdf.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <mutex>
 #include <optional>
@@ -45,6 +46,9 @@ constexpr nc_type type_of(Type type) {
   return NC_NAT;
 }
 
+/// An attribute of a group or file, or of one of its variables.
+std::optional<std::string> text_of(int group, int variable, const char* name);
+
 /// An open file. Holds the library's lock as long as it lives.
 class File {
  public:
@@ -67,7 +71,11 @@ class File {
   void put(int variable, const char* name, std::span<const double> values) const;
   void put(int variable, const char* name, double value) const { put(variable, name, {&value, 1}); }
 
-  [[nodiscard]] std::optional<std::string> text(int variable, const char* name) const;
+  [[nodiscard]] std::optional<std::string> text(int variable, const char* name) const {
+    return text_of(id_, variable, name);
+  }
+  /// The value of a scalar variable that holds text; nothing where there is no such.
+  [[nodiscard]] std::optional<std::string> text_in(const char* variable) const;
   [[nodiscard]] std::vector<double> numbers(int variable, const char* name) const;
 
   [[nodiscard]] int variables() const;
@@ -77,11 +85,18 @@ class File {
   [[nodiscard]] std::vector<int> dimensions_of(int variable) const;
   [[nodiscard]] std::string dimension_name(int dimension) const;
   [[nodiscard]] std::size_t dimension_size(int dimension) const;
+  /// The same as a count of rows or columns; InputError where it is no such count.
+  [[nodiscard]] int length_of(int dimension) const;
+  /// Before memory is asked for: throws InputError when a variable of any group has more values
+  /// than its file can hold however well they are packed, or than there is memory for.
+  void check_size(int variable) const { check_size(id_, variable); }
+  void check_size(int group, int variable) const;
 
  private:
   File() : lock_(lock_library()) {}
   std::unique_lock<std::recursive_mutex> lock_;
   int id_ = -1;
+  std::uintmax_t bytes_ = 0;
 };
 
 }  // namespace geo::io::nc

@@ -10,10 +10,13 @@
 
 #include "chunk_reader.hpp"
 #include "geo/core/error.hpp"
+#include "geo/io/digest.hpp"
 #include "geo/io/stage_file.hpp"
 #include "grid_description.hpp"
 #include "netcdf_file.hpp"
 #include "open_input.hpp"
+#include "questions.hpp"
+#include "stage_names.hpp"
 
 namespace geo::io {
 namespace {
@@ -45,8 +48,12 @@ Values empty_values(Type type, std::size_t size) {
 }
 
 bool lies_on_grid(const nc::File& file, int variable, const Grid& grid) {
-  const auto dimensions = file.dimensions_of(variable);
+  auto dimensions = file.dimensions_of(variable);
   const auto names = dimension_names(grid);
+  if (dimensions.size() == 3 && file.dimension_name(dimensions[0]) == kFrameTime &&
+      file.dimension_size(dimensions[0]) == 1) {
+    dimensions.erase(dimensions.begin());
+  }
   return dimensions.size() == 2 && file.dimension_name(dimensions[0]) == names.row &&
          file.dimension_name(dimensions[1]) == names.column;
 }
@@ -68,6 +75,7 @@ std::shared_ptr<const Values> read_field(const nc::File& file, const ChunkReader
     throw InputError(
         fmt::format("variable {}: units are \"{}\", must be \"{}\"", name, units, spec.units));
   }
+  file.check_size(variable);
   const auto values = std::make_shared<Values>(empty_values(spec.type, grid.size()));
   if (chunks.read(name, *values, grid.ny(), grid.nx())) return values;
   try {
@@ -96,6 +104,16 @@ std::uint64_t read_seed(const nc::File& file) {
         fmt::format("global attribute terrane_seed is \"{}\", must be a whole number", text));
   }
   return seed;
+}
+
+std::string read_configuration(const nc::File& file) {
+  auto text = file.text_in(kConfig);
+  if (!text) return required_text(file, kConfig);  // older files
+  if (file.text(NC_GLOBAL, kConfigDigest) != digest_of(std::string_view(*text))) {
+    throw InputError(fmt::format("variable {}: is not the text of which {} is the digest", kConfig,
+                                 kConfigDigest));
+  }
+  return *text;
 }
 
 /// Opens a file, runs `read` on it, and puts the path before what goes wrong.
@@ -147,9 +165,17 @@ Snapshot read_netcdf(const std::filesystem::path& path) {
 
 Snapshot read_netcdf(const std::filesystem::path& path,
                      const std::function<bool(const FieldSpec&)>& wanted) {
-  return read_stage_file(path, [&](const nc::File& file) {
+  StageQuestion question{path.string(), {}};
+  for (const FieldSpec* spec : field::all()) {
+    if (wanted(*spec)) question.wanted.emplace_back(spec->name);
+  }
+  return answer_to(question);
+}
+
+Snapshot StageQuestion::here() const {
+  return read_stage_file(path(), [&](const nc::File& file) {
     Snapshot snapshot;
-    const ChunkReader chunks(path);
+    const ChunkReader chunks(path());
     bool holds_fields = false;
     snapshot.grid = std::make_shared<const Grid>(read_grid(file));
     snapshot.stage = required_text(file, "terrane_stage");
@@ -157,7 +183,7 @@ Snapshot read_netcdf(const std::filesystem::path& path,
       const FieldSpec* const spec = field::find(file.variable_name(variable));
       if (spec == nullptr) continue;
       holds_fields = true;
-      if (!wanted(*spec)) continue;
+      if (std::find(wanted.begin(), wanted.end(), spec->name) == wanted.end()) continue;
       snapshot.fields.emplace_back(spec, read_field(file, chunks, variable, *spec, *snapshot.grid));
     }
     if (!holds_fields) throw InputError("holds no field that terrane knows");
@@ -166,10 +192,14 @@ Snapshot read_netcdf(const std::filesystem::path& path,
 }
 
 Provenance read_provenance(const std::filesystem::path& path) {
-  return read_stage_file(path, [](const nc::File& file) {
+  return answer_to(ProvenanceQuestion{path.string()});
+}
+
+Provenance ProvenanceQuestion::here() const {
+  return read_stage_file(path(), [](const nc::File& file) {
     Provenance provenance;
     provenance.title = file.text(NC_GLOBAL, "title").value_or("");
-    provenance.config_toml = required_text(file, "terrane_config");
+    provenance.config_toml = read_configuration(file);
     provenance.seed = read_seed(file);
     provenance.version = required_text(file, "terrane_version");
     provenance.history = file.text(NC_GLOBAL, "history").value_or("");

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cctype>
+#include <functional>
 #include <system_error>
+#include <type_traits>
 
 #include "geo/core/error.hpp"
 #include "geo/io/dem.hpp"
@@ -12,6 +14,7 @@
 #include "geo/io/stage_file.hpp"
 #include "netcdf_file.hpp"
 #include "open_input.hpp"
+#include "questions.hpp"
 
 namespace geo::io {
 namespace {
@@ -46,12 +49,44 @@ bool is_wanted(const FieldSpec& spec, std::span<const FieldSpec* const> wanted) 
 }
 
 bool is_stage_file(const fs::path& path) {
-  return open_input(path).text(NC_GLOBAL, "terrane_stage").has_value();
+  return answer_to(StageNameQuestion{path.string()}).has_value();
+}
+
+/// Refuses values by which something would be looked up that is not there: numbers of cells, of
+/// plates, lakes and basins (there are never more than cells), and flags without a meaning.
+void check_numbers(const fs::path& path, const Snapshot& snapshot) {
+  const double cells = snapshot.grid->size();
+  for (const auto& [spec, values] : snapshot.fields) {
+    double least = spec == &field::flow_receiver ? 0.0 : spec->missing, most = cells - 1.0;
+    if (!spec->flags.empty()) {
+      const auto [low, high] =
+          std::minmax_element(spec->flags.begin(), spec->flags.end(),
+                              [](const Flag& a, const Flag& b) { return a.value < b.value; });
+      least = std::min<double>(spec->missing, low->value);
+      most = high->value;
+    }
+    const auto check = [&, &spec = spec]<class T>(const std::vector<T>& array) {
+      if constexpr (std::is_integral_v<T>) {
+        for (const T value : array) {
+          if (value >= least && value <= most) continue;
+          throw InputError(fmt::format("{}: variable {}: holds {}, must be within {:g} and {:g}",
+                                       path.string(), spec->name, value, least, most));
+        }
+      }
+    };
+    std::visit(check, *values);
+  }
+}
+
+Snapshot read_wanted(const fs::path& path, const std::function<bool(const FieldSpec&)>& wanted) {
+  Snapshot snapshot = read_perhaps_recorded(path, wanted);
+  check_numbers(path, snapshot);
+  return snapshot;
 }
 
 State read_stage(const fs::path& path, std::span<const FieldSpec* const> wanted) {
   const Snapshot snapshot =
-      read_perhaps_recorded(path, [&](const FieldSpec& spec) { return is_wanted(spec, wanted); });
+      read_wanted(path, [&](const FieldSpec& spec) { return is_wanted(spec, wanted); });
   State state(snapshot.grid);
   for (const auto& [spec, values] : snapshot.fields) state.share(*spec, values);
   return state;
@@ -67,12 +102,16 @@ void require_whole_planet(const Grid& grid, const std::string& place) {
 
 }  // namespace
 
+std::optional<std::string> StageNameQuestion::here() const {
+  return open_input(file).text(NC_GLOBAL, "terrane_stage");
+}
+
 State read_planet(std::span<const fs::path> stage_files, std::span<const FieldSpec* const> wanted) {
   if (stage_files.empty()) throw InputError("the run holds no complete stage");
   const auto none = [](const FieldSpec&) { return false; };
   State state(read_perhaps_recorded(stage_files.front(), none).grid);
   for (auto file = stage_files.rbegin(); file != stage_files.rend(); ++file) {
-    const Snapshot snapshot = read_perhaps_recorded(
+    const Snapshot snapshot = read_wanted(
         *file, [&](const FieldSpec& spec) { return is_wanted(spec, wanted) && !state.has(spec); });
     if (!same_cells(*snapshot.grid, state.grid())) continue;
     for (const auto& [spec, values] : snapshot.fields) state.share(*spec, values);

@@ -161,6 +161,8 @@ Json parse(const std::string& text, const std::string& source) {
     return Json::parse(text);
   } catch (const Json::parse_error& error) {
     throw InputError(fmt::format("{}: is no JSON: broken at byte {}", source, error.byte));
+  } catch (const Json::out_of_range&) {
+    throw InputError(fmt::format("{}: holds a number that is too large", source));
   }
 }
 

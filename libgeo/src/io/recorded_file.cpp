@@ -1,14 +1,8 @@
 #include "geo/io/recorded_file.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <omp.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <csignal>
 #include <system_error>
 
 #include "geo/core/error.hpp"
@@ -17,67 +11,6 @@ namespace geo::io {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// What a reader beside this process found.
-struct Finding {
-  bool is_readable = false;
-  std::string text;  ///< why it is not, or what differs
-};
-
-std::string read_to_end(int pipe) {
-  std::string text;
-  std::array<char, 4096> block{};
-  while (true) {
-    const ssize_t size = ::read(pipe, block.data(), block.size());
-    if (size < 0 && errno == EINTR) continue;
-    if (size <= 0) return text;
-    text.append(block.data(), static_cast<std::size_t>(size));
-  }
-}
-
-/// In the new process: nothing that this one began is there but the memory.
-[[noreturn]] void read_and_tell(const fs::path& path, const StageRecord& record, int pipe,
-                                unsigned patience_s) {
-  omp_set_num_threads(1);
-  for (const int signal : {SIGALRM, SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);
-  ::alarm(patience_s);
-  if (const int nowhere = ::open("/dev/null", O_WRONLY); nowhere >= 0) {
-    ::dup2(nowhere, STDERR_FILENO);
-  }
-  std::string text;
-  try {
-    text = fmt::format("+{}", disagreement(record, read_netcdf(path)));
-  } catch (const Error& error) {
-    text = fmt::format("-{}", error.what());
-  } catch (...) {
-    ::_exit(1);
-  }
-  const ssize_t told = ::write(pipe, text.data(), text.size());
-  ::_exit(told == static_cast<ssize_t>(text.size()) ? 0 : 1);
-}
-
-/// Reads a file in a process of its own and compares its values.
-Finding read_beside(const fs::path& path, const StageRecord& record) {
-  std::error_code ignored;
-  const auto bytes = fs::file_size(path, ignored);
-  const auto patience_s = static_cast<unsigned>(30 + (ignored ? 0 : bytes / 5'000'000));
-  std::array<int, 2> pipe{};
-  if (::pipe2(pipe.data(), O_CLOEXEC) != 0) {
-    throw IoError(fmt::format("{}: could not be examined: {}", path.string(),
-                              std::generic_category().message(errno)));
-  }
-  const pid_t reader = ::fork();
-  if (reader == 0) read_and_tell(path, record, pipe[1], patience_s);
-  ::close(pipe[1]);
-  const std::string text = reader > 0 ? read_to_end(pipe[0]) : "";
-  ::close(pipe[0]);
-  int status = 1;
-  while (reader > 0 && ::waitpid(reader, &status, 0) < 0 && errno == EINTR) {
-  }
-  const bool ended_well = WIFEXITED(status) && WEXITSTATUS(status) == 0 && !text.empty();
-  if (!ended_well) return {false, fmt::format("{}: damaged", path.string())};
-  return {text.front() == '+', text.substr(1)};
-}
 
 bool has_written_bytes(const fs::path& folder, const StageRecord& record, const std::string& name) {
   const auto written = record.file_digests.find(name);
@@ -94,16 +27,14 @@ bool has_written_bytes(const fs::path& folder, const StageRecord& record, const 
 }  // namespace
 
 Standing standing_of(const fs::path& folder, const StageRecord& record) {
-  const std::string name = netcdf_of(record);
-  const fs::path path = folder / name;
+  const fs::path path = folder / netcdf_of(record);
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return {.fault = "missing", .difference = {}};
-  if (has_written_bytes(folder, record, name)) {
+  try {
     return {.fault = {}, .difference = disagreement(record, read_netcdf(path))};
+  } catch (const InputError& error) {
+    return {.fault = error.what(), .difference = {}};
   }
-  const Finding found = read_beside(path, record);
-  if (found.is_readable) return {.fault = {}, .difference = found.text};
-  return {.fault = found.text, .difference = {}};
 }
 
 Snapshot read_recorded(const fs::path& folder, const StageRecord& record,
@@ -112,9 +43,8 @@ Snapshot read_recorded(const fs::path& folder, const StageRecord& record,
   const fs::path path = folder / name;
   std::error_code ignored;
   if (fs::exists(path, ignored) && !has_written_bytes(folder, record, name)) {
-    const Finding found = read_beside(path, record);
-    if (!found.is_readable) throw InputError(found.text);
-    if (!found.text.empty()) refuse(path, found.text);
+    const std::string difference = disagreement(record, read_netcdf(path));
+    if (!difference.empty()) refuse(path, difference);
   }
   Snapshot snapshot = read_netcdf(path, wanted);
   for (const auto& [spec, values] : snapshot.fields) {

@@ -16,13 +16,19 @@ enum class ErrorKind : int {
 };
 
 /// Base of every error that terrane throws on purpose. The message is one line that says
-/// what is wrong, where, and what would be right.
+/// what is wrong, where, and what would be right; breaks in what it quotes become spaces.
 class Error : public std::runtime_error {
  public:
-  Error(ErrorKind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}
+  Error(ErrorKind kind, const std::string& message)
+      : std::runtime_error(one_line(message)), kind_(kind) {}
   [[nodiscard]] ErrorKind kind() const noexcept { return kind_; }
 
  private:
+  static std::string one_line(std::string text) {
+    for (char& letter : text) letter = letter == '\n' || letter == '\r' ? ' ' : letter;
+    return text;
+  }
+
   ErrorKind kind_;
 };
 

@@ -21,8 +21,7 @@ struct Standing {
   std::string difference;
 };
 
-/// Compares all values of a stage's file with its record. A file of other bytes than were written
-/// is read in a process of its own, as a damaged one can end a program inside HDF5.
+/// Compares all values of a stage's file with its record.
 Standing standing_of(const std::filesystem::path& folder, const StageRecord& record);
 
 /// The fields of a stage's file that `wanted` says yes to, held against the record. Throws

@@ -1,6 +1,7 @@
 #include "sphere_checkpoint.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace geo {
 namespace {
@@ -26,6 +27,34 @@ Directions directions(const std::vector<float>& values) {
 
 [[noreturn]] void refuse() {
   throw InputError("the frame to go on from is damaged: its arrays do not fit");
+}
+
+/// Refuses numbers that nothing could go on from: steps would never reach a time of them.
+void check_numbers(const Checkpoint& from) {
+  for (const char* name : {"plate_numbers", "clock", "kept_rotation_rad_myr", "plate_yielding",
+                           "plumes", "volcanoes"}) {
+    if (!from.arrays.contains(name)) continue;
+    for (const double value : from.get<double>(name)) {
+      if (!std::isfinite(value)) refuse();
+    }
+  }
+  constexpr double kLongest_myr = 1e5, kMostSteps = 1e9;
+  const auto& clock = from.get<double>("clock");
+  if (clock.size() != 3 || clock[0] < 0.0 || clock[0] > kLongest_myr || clock[1] < 0.0 ||
+      clock[1] > kMostSteps || clock[2] > clock[0]) {
+    refuse();
+  }
+}
+
+/// Whether each plate is carried by others, if by any, that end with one that none carries.
+bool carriers_end(const std::vector<std::int16_t>& carrier) {
+  for (std::size_t p = 0; p < carrier.size(); ++p) {
+    std::size_t steps = 0;
+    for (int at = carrier[p]; at >= 0; at = carrier[at]) {
+      if (++steps > carrier.size()) return false;
+    }
+  }
+  return true;
 }
 
 constexpr std::size_t kNumbers = 9;         // of a plate: turn, axis, speed, birth
@@ -179,6 +208,7 @@ Checkpoint checkpoint_of(const SphereState& state) {
 }
 
 SphereState state_of(const Checkpoint& from) {
+  check_numbers(from);
   SphereState state;
   SphereCrust& crust = state.crust;
   crust.plate = from.get<std::int16_t>("plate");
@@ -213,7 +243,7 @@ SphereState state_of(const Checkpoint& from) {
   for (std::size_t p = 0; fits && p < plates; ++p) {
     fits = carrier[p] >= -1 && carrier[p] < static_cast<std::int16_t>(plates);
   }
-  if (!fits) refuse();
+  if (!fits || !carriers_end(carrier)) refuse();
   for (std::size_t p = 0; p < plates; ++p) {
     const double* at = numbers.data() + kNumbers * p;
     SpherePlate plate;
