@@ -54,10 +54,13 @@ class Calibration {
     fit_from_all_starts(objective);
     const Eigen::VectorXd best = choose_best();
     judge(objective, best);
-    result_.held_out = misfits(held_out_seeds_, size_, best, "held-out seeds");
+    result_.held_out =
+        misfits(held_out_seeds_, size_, best, "held-out seeds", result_.held_out_spread);
+    say_of_collapse();
     if (!settings_.held_out_grid.empty()) {
       result_.held_out_resolution =
-          misfits(seeds_, io::parse_grid_size(settings_.held_out_grid), best, "held-out grid");
+          misfits(seeds_, io::parse_grid_size(settings_.held_out_grid), best, "held-out grid",
+                  result_.held_out_resolution_spread);
     }
     finish(best);
     return std::move(result_);
@@ -71,9 +74,9 @@ class Calibration {
     for (const Parameter& parameter : planet.parameters()) {
       parameter.set(find_parameter(request_.configuration, parameter.name)->value());
     }
-    return read_target(
-        request_.target, planet, Grid::sphere(size.nx, size.ny, planet.figure()),
-        {static_cast<int>(settings_.bins), settings_.deviation_m, settings_.deviation_share});
+    return read_target(request_.target, planet, Grid::sphere(size.nx, size.ny, planet.figure()),
+                       {static_cast<int>(settings_.bins), settings_.deviation_m,
+                        settings_.deviation_share, settings_.error_m});
   }
   void say(std::string_view message) const {
     if (watch_.info) watch_.info(message);
@@ -85,6 +88,7 @@ class Calibration {
     Settings settings = settings_;
     settings.iterations = 0;  // a fit may be given more time
     settings.profiles = true;
+    settings.error_m = 0.0;  // standard errors come after the fit
     settings.held_out.clear();
     settings.held_out_grid.clear();
     const auto own = settings.parameters();
@@ -162,9 +166,9 @@ class Calibration {
     start_ = problem_.present();
     result_.cost_before = 0.5 * objective.route(start_).squaredNorm();
     before_ = objective.statistics();
-    result_.before.elevation_m = mean_curve(objective.fine_bins());
+    result_.before = mean_curve(objective.fine_bins());
     before_bins_ = objective.fine_bins();
-    result_.target.elevation_m = shown_curve(problem_.target.fine_bin_m);
+    result_.target = shown_curve(problem_.target.fine_bin_m);
     Eigen::MatrixXd rates;
     objective.follow(start_, &rates);
     for (std::size_t i = 0; i < problem_.free.size(); ++i) {
@@ -174,22 +178,34 @@ class Calibration {
         most = std::max(most, of_seed.col(Eigen::Index(i)).cwiseAbs().maxCoeff());
       }
       if (most == 0.0) {
+        // Some processes are left out altogether where their amount is 0.
         throw ConfigurationError(fmt::format(
-            "calibration.free: {}: the figures to match do not change with it, or not smoothly; "
-            "leave it out",
-            free.declaration.name));
+            "calibration.free: {}: the figures to match do not change with it, or not smoothly; {}",
+            free.declaration.name,
+            free.to_value(start_[Eigen::Index(i)]) == 0.0 ? "leave it out, or start above 0"
+                                                          : "leave it out"));
       }
     }
   }
 
-  /// A hundred points of a curve of fine bins.
-  static std::vector<double> shown_curve(const std::vector<double>& fine) {
-    constexpr int kPoints = 100, kEach = kFineBins / kPoints;
-    std::vector<double> curve(kPoints, 0.0);
-    for (int k = 0; k < kFineBins; ++k) curve[k / kEach] += fine[k] / kEach;
+  /// A curve of fine bins by a hundred points, or as many as there are bins where the target tells
+  /// of no more.
+  [[nodiscard]] Curve shown_curve(const std::vector<double>& fine) const {
+    const int first = problem_.target.first_bin(), end = problem_.target.end_bin();
+    const int points = std::min(100, end - first);
+    const double each = static_cast<double>(end - first) / points;
+    Curve curve{std::vector<double>(points, 0.0), double(first) / kFineBins,
+                double(end) / kFineBins};
+    for (int k = 0; k < points; ++k) {
+      const double from = first + k * each, to = first + (k + 1) * each;
+      for (int bin = static_cast<int>(from); bin < end && bin < to; ++bin) {
+        const double part = std::min(to, bin + 1.0) - std::max(from, double(bin));
+        curve.elevation_m[k] += fine[bin] * part / each;
+      }
+    }
     return curve;
   }
-  static std::vector<double> mean_curve(const std::vector<std::vector<double>>& fine) {
+  [[nodiscard]] Curve mean_curve(const std::vector<std::vector<double>>& fine) const {
     std::vector<double> mean(kFineBins, 0.0);
     for (const auto& of_seed : fine) {
       for (int k = 0; k < kFineBins; ++k) mean[k] += of_seed[k] / static_cast<double>(fine.size());
@@ -274,16 +290,22 @@ class Calibration {
     Eigen::MatrixXd rates;
     objective.follow(x, &rates);
     result_.cost_after = 0.5 * residual.squaredNorm();
-    result_.after.elevation_m = mean_curve(objective.fine_bins());
+    result_.after = mean_curve(objective.fine_bins());
     for (std::size_t s = 0; s < seeds_.size(); ++s) {
-      result_.fitted.push_back(
-          {seeds_[s], wasserstein_m(before_bins_[s], problem_.target.fine_bin_m),
-           wasserstein_m(objective.fine_bins()[s], problem_.target.fine_bin_m)});
+      result_.fitted.push_back({seeds_[s], wasserstein_m(before_bins_[s], problem_.target),
+                                wasserstein_m(objective.fine_bins()[s], problem_.target)});
     }
+    result_.fitted_spread = {spread_m(before_bins_, problem_.target),
+                             spread_m(objective.fine_bins(), problem_.target)};
     list_parameters(x);
     list_residuals(objective);
     assess(objective, problem_, x, residual, rates, result_);
-    if (settings_.profiles) add_profiles(objective, problem_, x, rates, result_);
+    if (settings_.profiles) {
+      say("profiles");
+      const auto begin = Clock::now();
+      add_profiles(objective, problem_, x, rates, result_);
+      result_.profile_seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+    }
     result_.forward_runs = objective.forward_runs();
     result_.jacobians = objective.jacobians();
     result_.seconds_per_forward = objective.forward_seconds() / std::max(1, result_.forward_runs);
@@ -342,7 +364,8 @@ class Calibration {
   }
 
   std::vector<SeedMisfit> misfits(const std::vector<std::int64_t>& seeds, const io::GridSize& size,
-                                  const Eigen::VectorXd& x, std::string_view what) {
+                                  const Eigen::VectorXd& x, std::string_view what,
+                                  SeedSpread& spread) {
     std::vector<SeedMisfit> all;
     if (seeds.empty()) return all;
     say(what);
@@ -352,13 +375,25 @@ class Calibration {
     for (const std::int64_t seed : seeds) all.push_back({seed, 0.0, 0.0});
     judge.route(start_);
     for (std::size_t s = 0; s < seeds.size(); ++s) {
-      all[s].before_m = wasserstein_m(judge.fine_bins()[s], target.fine_bin_m);
+      all[s].before_m = wasserstein_m(judge.fine_bins()[s], target);
     }
+    spread.before_m = spread_m(judge.fine_bins(), target);
     judge.route(x);
+    spread.after_m = spread_m(judge.fine_bins(), target);
     for (std::size_t s = 0; s < seeds.size(); ++s) {
-      all[s].after_m = wasserstein_m(judge.fine_bins()[s], target.fine_bin_m);
+      all[s].after_m = wasserstein_m(judge.fine_bins()[s], target);
     }
     return all;
+  }
+
+  void say_of_collapse() {
+    const SeedSpread& spread = result_.held_out_spread;
+    if (!has_collapsed(spread)) return;
+    result_.warnings.push_back(fmt::format(
+        "held-out planets have become alike: the curves of different seeds lie {:.3g} m apart, "
+        "{:.3g} m before the fit, so that their misfits and the spread of seeds say less than they "
+        "seem to",
+        spread.after_m, spread.before_m));
   }
 
   void finish(const Eigen::VectorXd& x) {

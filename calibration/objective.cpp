@@ -178,6 +178,31 @@ Eigen::Index Objective::residuals() const {
          priors;
 }
 
+Eigen::VectorXd Objective::known_variance() const {
+  Eigen::VectorXd variance = Eigen::VectorXd::Ones(residuals());
+  const auto each = static_cast<Eigen::Index>(problem_.every_seed ? planets_.size() : 1);
+  Eigen::Index at = 0;
+  for (std::size_t k = 0; k < problem_.target.share.size(); ++k) {
+    const double error = problem_.error(k) / problem_.deviation(k);
+    variance.segment(at, each).setConstant(error * error);
+    at += each;
+  }
+  return variance;
+}
+
+double Objective::misfit_m(const Eigen::VectorXd& residual) const {
+  const std::size_t quantiles = problem_.target.share.size();
+  const auto each = static_cast<Eigen::Index>(problem_.every_seed ? planets_.size() : 1);
+  double sum = 0.0;
+  Eigen::Index at = 0;
+  for (std::size_t k = 0; k < quantiles; ++k) {
+    const double deviation_m = problem_.deviation(k);
+    sum += residual.segment(at, each).squaredNorm() * deviation_m * deviation_m;
+    at += each;
+  }
+  return std::sqrt(sum / static_cast<double>(quantiles));
+}
+
 Eigen::VectorXd Objective::residuals_of(const std::vector<std::vector<double>>& statistics,
                                         const Eigen::VectorXd& x) const {
   const std::size_t quantiles = problem_.target.share.size(), seeds = statistics.size();
@@ -222,7 +247,7 @@ Eigen::VectorXd Objective::route(const Eigen::VectorXd& x) {
 
 double Objective::distance_m() const {
   double sum = 0.0;
-  for (const auto& bins : fine_bins_) sum += wasserstein_m(bins, problem_.target.fine_bin_m);
+  for (const auto& bins : fine_bins_) sum += wasserstein_m(bins, problem_.target);
   return sum / static_cast<double>(fine_bins_.size());
 }
 
@@ -283,12 +308,6 @@ Eigen::VectorXd Objective::follow(const Eigen::VectorXd& x, Eigen::MatrixXd* jac
   ++jacobians_;
   jacobian_seconds_ += watch.seconds();
   return residuals_of(statistics, x);
-}
-
-double wasserstein_m(std::span<const double> bins, std::span<const double> others) {
-  double sum = 0.0;
-  for (std::size_t k = 0; k < bins.size(); ++k) sum += std::abs(bins[k] - others[k]);
-  return sum / static_cast<double>(bins.size());
 }
 
 }  // namespace geo::calibration

@@ -48,7 +48,6 @@ struct Problem {
   std::vector<Term> terms;
   Target target;
   bool every_seed = false;
-  double deviation_m = 50.0;
 
   /// Reads free parameters, bounds, priors and terms. Throws ConfigurationError.
   Problem(std::span<const Parameter> configuration, const Settings& settings, Target target);
@@ -60,6 +59,8 @@ struct Problem {
   /// Quantiles and terms of one planet.
   [[nodiscard]] std::size_t statistics() const { return target.share.size() + terms.size(); }
   [[nodiscard]] double deviation(std::size_t statistic) const;
+  /// Standard deviation to which it is known; 0 where the target does not say.
+  [[nodiscard]] double error(std::size_t statistic) const;
   [[nodiscard]] double aim(std::size_t statistic) const;
 };
 
@@ -72,6 +73,11 @@ class Objective {
             const std::atomic<bool>* stop = nullptr);
 
   [[nodiscard]] Eigen::Index residuals() const;
+  /// Variance of each residual that what is known of errors gives: of the target's quantiles where
+  /// it says, of terms and of priors. All planets share the error of a quantile.
+  [[nodiscard]] Eigen::VectorXd known_variance() const;
+  /// Root mean square misfit of the quantiles, m, of residuals.
+  [[nodiscard]] double misfit_m(const Eigen::VectorXd& residual) const;
   /// Residuals with everything routed anew, which is then held fast.
   Eigen::VectorXd route(const Eigen::VectorXd& x);
   /// Residuals with all held fast as the last `route` left it, and their derivatives if asked for.
@@ -123,8 +129,5 @@ class Objective {
   int forward_runs_ = 0, jacobians_ = 0;
   double forward_seconds_ = 0.0, jacobian_seconds_ = 0.0;
 };
-
-/// Wasserstein-1 distance between two distributions by their fine bins, m.
-[[nodiscard]] double wasserstein_m(std::span<const double> bins, std::span<const double> others);
 
 }  // namespace geo::calibration

@@ -75,6 +75,26 @@ std::string six_parameters(std::span<const Parameter> configuration, const Model
          "isostasy.ocean_swell_m, erosion.erodibility_factor";
 }
 
+/// A fit keeps the plates of each seed: what moves them too would make another planet of the fitted
+/// configuration than the one that was judged.
+void check_plates_stay(std::span<const Parameter> configuration, const Model& model,
+                       std::string_view name) {
+  const auto is = [&](std::string_view key, std::string_view value) {
+    const Parameter* parameter = find_parameter(configuration, key);
+    return parameter != nullptr && *std::get<std::string*>(parameter->storage) == value;
+  };
+  const bool shares_land = is("plates.model", "growth") && is("plates.continents", "plates");
+  const bool floods = is("plates.model", "raster") && model.planet.sea_level == "fraction";
+  const bool moves = name == "planet.radius_km" || name == "planet.flattening" ||
+                     (name == "planet.gravity_m_s2" && is("plates.model", "sphere")) ||
+                     (name == "planet.ocean_fraction" && (shares_land || floods));
+  if (moves) {
+    throw ConfigurationError(fmt::format(
+        "calibration.free: {}: must be one that leaves the plates as they are: a fit keeps them",
+        name));
+  }
+}
+
 void check_known(std::string_view key, std::string_view name, std::span<const FreeParameter> free) {
   const bool known = std::any_of(free.begin(), free.end(), [&](const FreeParameter& parameter) {
     return parameter.declaration.name == name;
@@ -95,16 +115,14 @@ double FreeParameter::to_value(double x) const {
 double FreeParameter::rate(double x) const { return logarithmic ? std::exp(x) : scale; }
 
 Problem::Problem(std::span<const Parameter> configuration, const Settings& settings, Target aims)
-    : model(configuration),
-      target(std::move(aims)),
-      every_seed(settings.objective == "each"),
-      deviation_m(settings.deviation_m) {
+    : model(configuration), target(std::move(aims)), every_seed(settings.objective == "each") {
   const auto bounds = read_ranges("calibration.bounds", settings.bounds);
   const auto priors = read_estimates("calibration.priors", settings.priors);
   const std::string names =
       settings.free == "auto" ? six_parameters(configuration, model) : settings.free;
   for (const std::string& name : read_names("calibration.free", names)) {
     free.push_back(make_free(model.find(name), bounds, priors));
+    check_plates_stay(configuration, model, name);
   }
   if (free.empty()) throw ConfigurationError("calibration.free: must name a parameter");
   for (const Range& range : bounds) check_known("calibration.bounds", range.name, free);
@@ -135,8 +153,14 @@ Eigen::VectorXd Problem::present() const {
 
 double Problem::deviation(std::size_t statistic) const {
   const std::size_t quantiles = target.share.size();
+  return statistic >= quantiles ? terms[statistic - quantiles].target.deviation
+                                : target.deviation_m[statistic];
+}
+
+double Problem::error(std::size_t statistic) const {
+  const std::size_t quantiles = target.share.size();
   if (statistic >= quantiles) return terms[statistic - quantiles].target.deviation;
-  return target.deviation_m.empty() ? deviation_m : target.deviation_m[statistic];
+  return target.error_m.empty() ? 0.0 : target.error_m[statistic];
 }
 
 double Problem::aim(std::size_t statistic) const {

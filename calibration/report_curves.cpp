@@ -14,15 +14,10 @@ namespace {
 using io::Hue;
 using io::Stroke;
 
-/// Share of the area below the middle of bin k.
-double quantile(const Curve& curve, std::size_t k) {
-  return (static_cast<double>(k) + 0.5) / static_cast<double>(curve.elevation_m.size());
-}
-
 /// The highest land on the left, as hypsographic curves are drawn.
 std::vector<double> percent_higher(const Curve& curve) {
   std::vector<double> percent(curve.elevation_m.size());
-  for (std::size_t k = 0; k < percent.size(); ++k) percent[k] = 100.0 * (1.0 - quantile(curve, k));
+  for (std::size_t k = 0; k < percent.size(); ++k) percent[k] = 100.0 * (1.0 - curve.share(k));
   return percent;
 }
 
@@ -47,8 +42,13 @@ io::Axis elevation_axis(const Result& result) {
 }
 
 std::vector<std::string> caption(const Result& result) {
+  const Curve& target = result.target;
+  const std::string where = target.is_whole()
+                                ? ""
+                                : fmt::format(" over quantiles {:.4g} to {:.4g}, which it tells of",
+                                              target.share_from, target.share_to);
   std::vector<std::string> lines{fmt::format(
-      "Wasserstein-1 distance of the mean curve to the target: {} m before, {} m after.",
+      "Wasserstein-1 distance of the mean curve to the target{}: {} m before, {} m after.", where,
       shown(curve_distance_m(result.before, result.target)),
       shown(curve_distance_m(result.after, result.target)))};
   std::string seeds =
@@ -77,10 +77,15 @@ double curve_distance_m(const Curve& a, const Curve& b) {
   return sum / static_cast<double>(a.elevation_m.size());
 }
 
+io::Axis area_axis(const Curve& target) {
+  return {"% of the area lies higher", 100.0 * (1.0 - target.share_to),
+          100.0 * (1.0 - target.share_from)};
+}
+
 std::string curves_csv(const Result& result) {
   std::string text = "quantile,target_m,before_m,after_m\n";
   for (std::size_t k = 0; k < result.target.elevation_m.size(); ++k) {
-    text += fmt::format("{:.10g},{:.3f},{:.3f},{:.3f}\n", quantile(result.target, k),
+    text += fmt::format("{:.10g},{:.3f},{:.3f},{:.3f}\n", result.target.share(k),
                         result.target.elevation_m[k], result.before.elevation_m[k],
                         result.after.elevation_m[k]);
   }
@@ -89,7 +94,7 @@ std::string curves_csv(const Result& result) {
 
 io::Chart curves_chart(const Result& result) {
   const auto percent = percent_higher(result.target);
-  const io::Axis across{"% of the area lies higher", 0.0, 100.0};
+  const io::Axis across = area_axis(result.target);
   const auto before = distance_m(result.before, result.target);
   const auto after = distance_m(result.after, result.target);
   const io::ChartPanel curves{

@@ -11,6 +11,9 @@ namespace geo::calibration {
 /// distributions of elevation, to the width of a bin.
 double curve_distance_m(const Curve& a, const Curve& b);
 
+/// The share of the area that lies higher, over the part that the target tells of, %.
+io::Axis area_axis(const Curve& target);
+
 /// Text of hypsometry.csv: quantile,target_m,before_m,after_m at the middle of each bin.
 std::string curves_csv(const Result& result);
 

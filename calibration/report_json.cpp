@@ -43,13 +43,13 @@ Json residual_json(const Residual& residual) {
           {"deviation", residual.deviation}};
 }
 
-Json misfits_json(const std::vector<SeedMisfit>& seeds) {
+Json misfits_json(const std::vector<SeedMisfit>& seeds, const SeedSpread& spread) {
   const auto one = [](const SeedMisfit& seed) {
     return Json{{"seed", seed.seed}, {"before_m", seed.before_m}, {"after_m", seed.after_m}};
   };
-  return {{"mean_before_m", mean_before_m(seeds)},
-          {"mean_after_m", mean_after_m(seeds)},
-          {"seeds", list_of(seeds, one)}};
+  return {{"mean_before_m", mean_before_m(seeds)}, {"mean_after_m", mean_after_m(seeds)},
+          {"spread_before_m", spread.before_m},    {"spread_after_m", spread.after_m},
+          {"collapsed", has_collapsed(spread)},    {"seeds", list_of(seeds, one)}};
 }
 
 Json iteration_json(const Iteration& iteration) {
@@ -73,11 +73,16 @@ Json direction_json(const Direction& direction) {
 }
 
 Json profile_json(const Profile& profile) {
-  return {{"name", profile.name}, {"value", profile.value}, {"cost", profile.cost}};
+  return {{"name", profile.name},
+          {"value", profile.value},
+          {"cost", profile.cost},
+          {"fitted", profile.fitted}};
 }
 
 Json curves_json(const Result& result) {
-  return {{"target_m", result.target.elevation_m},
+  return {{"share_from", result.target.share_from},
+          {"share_to", result.target.share_to},
+          {"target_m", result.target.elevation_m},
           {"before_m", result.before.elevation_m},
           {"after_m", result.after.elevation_m}};
 }
@@ -89,7 +94,8 @@ Json effort_json(const Result& result) {
           {"forward_runs", result.forward_runs},
           {"jacobians", result.jacobians},
           {"seconds_per_forward", measured * result.seconds_per_forward},
-          {"seconds_per_jacobian", measured * result.seconds_per_jacobian}};
+          {"seconds_per_jacobian", measured * result.seconds_per_jacobian},
+          {"profile_seconds", measured * result.profile_seconds}};
 }
 
 Json program_json() {
@@ -115,9 +121,10 @@ std::string json_text(const Result& result) {
   json["cost_before"] = result.cost_before;
   json["cost_after"] = result.cost_after;
   json["noise_m"] = result.noise_m;
-  json["misfit"] = {{"fitted", misfits_json(result.fitted)},
-                    {"held_out", misfits_json(result.held_out)},
-                    {"held_out_resolution", misfits_json(result.held_out_resolution)}};
+  json["misfit"] = {{"fitted", misfits_json(result.fitted, result.fitted_spread)},
+                    {"held_out", misfits_json(result.held_out, result.held_out_spread)},
+                    {"held_out_resolution",
+                     misfits_json(result.held_out_resolution, result.held_out_resolution_spread)}};
   json["hypsometry"] = curves_json(result);
   json["residuals"] = list_of(result.residuals, residual_json);
   json["iterations"] = list_of(result.iterations, iteration_json);

@@ -97,8 +97,9 @@ void add_parameters(pugi::xml_node main, const Result& result) {
   add(main, "h2", "Parameters");
   add(main, "p",
       fmt::format("The standard error is that of a straight-line model with the scatter of the "
-                  "residuals ({} m for a bin). The spread of seeds is how far the fitted value "
-                  "would move with other seeds; where it is the larger, believe it.",
+                  "residuals ({} m for a quantile), or with the errors to which the target says "
+                  "that it is known, where those are larger. The spread of seeds is how far the "
+                  "fitted value would move with other seeds; where it is the larger, believe it.",
                   shown(result.noise_m)));
   add_parameter_table(main, result);
 }
@@ -116,10 +117,11 @@ void add_profiles(pugi::xml_node main, const Result& result) {
   if (result.profiles.empty()) return;
   add(main, "h2", "Profiles");
   add(main, "p",
-      "The cost along each, all other parameters fitted again. Dashed lines stand one standard "
-      "error "
-      "to either side of the fitted value. A curve that is flat towards one side gives no bound "
-      "there, and one that is no parabola says that the standard error is too simple.");
+      "The cost at values of each, with all other parameters fitted again at every one of them; "
+      "rivers, shores and the cells of quantiles stay where they lie at the minimum. Dashed lines "
+      "stand one standard error to either side of the fitted value. A curve that is flat towards "
+      "one side gives no bound there, and one that is no parabola says that the standard error is "
+      "too simple.");
   add_profile_pictures(main, result);
 }
 
@@ -127,7 +129,8 @@ void add_misfits(pugi::xml_node main, const Result& result) {
   add(main, "h2", "Misfit of each planet");
   add(main, "p",
       "Wasserstein-1 distance between the elevations of one planet and the target, by area; mean "
-      "and standard deviation over the planets. Seeds held out were not seen by the fit.");
+      "and standard deviation over the planets. Seeds held out were not seen by the fit. Curves of "
+      "different seeds lie apart by their standard deviation at equal rank, mean over the area.");
   add_misfit_tables(main, result);
 }
 
@@ -160,7 +163,12 @@ void add_provenance(pugi::xml_node main, const Result& result) {
   entry("configuration", result.preset_or_config);
   entry("forward runs", times(result.forward_runs, result.seconds_per_forward));
   entry("Jacobians", times(result.jacobians, result.seconds_per_jacobian));
-  if (timed) entry("time", fmt::format("{} s", shown(result.seconds)));
+  if (timed) {
+    entry("time of the fit", fmt::format("{} s", shown(result.seconds)));
+    if (!result.profiles.empty()) {
+      entry("time of the profiles", fmt::format("{} s", shown(result.profile_seconds)));
+    }
+  }
   const auto& build = io::build_info();
   entry("terrane", fmt::format("{} (commit {}, {})", build.version, build.commit, build.compiler));
   std::string libraries;

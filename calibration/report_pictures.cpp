@@ -94,7 +94,7 @@ void add_residual_picture(pugi::xml_node section, const Result& result) {
   const Series after = residual_series(result, &Residual::after, {"after", {}, {}, Hue::red});
   if (before.x.empty()) return;
   io::ChartPanel panel;
-  panel.x = {"% of the area lies higher", 0.0, 100.0};
+  panel.x = area_axis(result.target);
   panel.y = io::axis_over("deviations", {before.y, after.y, {0.0}});
   panel.series = {before, after};
   panel.levels = {{0.0, ""}};

@@ -49,12 +49,14 @@ void add_residual_table(pugi::xml_node parent, const Rows& rows) {
 struct Group {
   std::string name, grid;
   const std::vector<SeedMisfit>& seeds;
+  const SeedSpread& spread;
 };
 
 std::vector<Group> groups_of(const Result& result) {
-  return {{"fitted", result.grid, result.fitted},
-          {"held out", result.grid, result.held_out},
-          {"held-out resolution", result.held_out_grid, result.held_out_resolution}};
+  return {{"fitted", result.grid, result.fitted, result.fitted_spread},
+          {"held out", result.grid, result.held_out, result.held_out_spread},
+          {"held-out resolution", result.held_out_grid, result.held_out_resolution,
+           result.held_out_resolution_spread}};
 }
 
 }  // namespace
@@ -113,7 +115,9 @@ void add_misfit_tables(pugi::xml_node section, const Result& result) {
          {plus_minus(mean_before_m(group.seeds), spread(group.seeds, &SeedMisfit::before_m)),
           "number"},
          {plus_minus(mean_after_m(group.seeds), spread(group.seeds, &SeedMisfit::after_m)),
-          "number"}});
+          "number"},
+         {fmt::format("{} → {}", shown(group.spread.before_m), shown(group.spread.after_m)),
+          has_collapsed(group.spread) ? "number outside" : "number"}});
     for (const SeedMisfit& seed : group.seeds) {
       const bool better = seed.after_m <= seed.before_m;
       seeds.push_back({{fmt::format("{}, seed {}", group.name, seed.seed)},
@@ -122,7 +126,8 @@ void add_misfit_tables(pugi::xml_node section, const Result& result) {
                        better ? Cell{"✓ better", "within"} : Cell{"✗ worse", "outside"}});
     }
   }
-  add_table(section, {"planets", "grid", "seeds", "before, m", "after, m"}, means);
+  add_table(section, {"planets", "grid", "seeds", "before, m", "after, m", "curves apart, m"},
+            means);
   add_table(add_details(section, "Seed by seed"), {"planet", "before, m", "after, m", ""}, seeds);
 }
 

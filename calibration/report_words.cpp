@@ -57,7 +57,7 @@ std::string seeds_in_words(const std::vector<SeedMisfit>& seeds) {
   std::string words;
   for (std::size_t i = 0; i < seeds.size();) {
     std::size_t last = i;
-    while (last + 1 < seeds.size() && seeds[last + 1].seed == seeds[last].seed + 1) ++last;
+    while (last + 1 < seeds.size() && seeds[last + 1].seed - 1 == seeds[last].seed) ++last;
     if (!words.empty()) words += ", ";
     words += fmt::format("{}", seeds[i].seed);
     if (last > i) words += fmt::format("{}{}", last > i + 1 ? " to " : ", ", seeds[last].seed);

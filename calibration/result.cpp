@@ -14,6 +14,11 @@ double mean_of(const std::vector<SeedMisfit>& seeds, double SeedMisfit::*figure)
 
 }  // namespace
 
+bool has_collapsed(const SeedSpread& spread) {
+  constexpr double kAlike = 0.5;
+  return spread.after_m < kAlike * spread.before_m;
+}
+
 double mean_before_m(const std::vector<SeedMisfit>& seeds) {
   return mean_of(seeds, &SeedMisfit::before_m);
 }

@@ -1,15 +1,24 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
 namespace geo::calibration {
 
-/// A hypsometric curve by its equal-area bins: `elevation_m[k]` is the mean elevation of the cells
-/// whose share of the area below lies between k / K and (k + 1) / K.
+/// A hypsometric curve by its K equal-area bins: `elevation_m[k]` is the mean elevation of the
+/// cells whose share of the area below lies within the kth part of `share_from` to `share_to`.
 struct Curve {
   std::vector<double> elevation_m;
+  double share_from = 0.0, share_to = 1.0;  ///< the part of the area that the bins share out
+
+  /// Share of the area below the middle of bin k.
+  [[nodiscard]] double share(std::size_t k) const {
+    return share_from + (static_cast<double>(k) + 0.5) / static_cast<double>(elevation_m.size()) *
+                            (share_to - share_from);
+  }
+  [[nodiscard]] bool is_whole() const { return share_from <= 0.0 && share_to >= 1.0; }
 };
 
 /// One free parameter, before and after.
@@ -57,10 +66,17 @@ struct Direction {
   std::vector<double> weights;  ///< one for each parameter, of unit length
 };
 
-/// The cost along one direction or parameter, all others fitted again.
+/// The cost at values of one parameter, at each of which all others were fitted again.
 struct Profile {
   std::string name;
   std::vector<double> value, cost;
+  std::vector<std::vector<double>> fitted;  ///< values of all parameters at each
+};
+
+/// How far apart the curves of planets of several seeds lie, m; NaN for a single one.
+struct SeedSpread {
+  double before_m = std::numeric_limits<double>::quiet_NaN();
+  double after_m = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// The result of one starting point.
@@ -91,12 +107,17 @@ struct Result {
 
   Curve target, before, after;  ///< means over the fitted seeds
   std::vector<SeedMisfit> fitted, held_out, held_out_resolution;
+  SeedSpread fitted_spread, held_out_spread, held_out_resolution_spread;
   double cost_before = 0.0, cost_after = 0.0;
-  double noise_m = 0.0;  ///< deviation of one residual as the residuals show it
+  double noise_m = 0.0;  ///< deviation of one quantile as the residuals show it
   double seconds = 0.0;
   int forward_runs = 0, jacobians = 0;
-  double seconds_per_forward = 0.0, seconds_per_jacobian = 0.0;
+  double seconds_per_forward = 0.0, seconds_per_jacobian = 0.0, profile_seconds = 0.0;
 };
+
+/// Whether planets of different seeds have become alike: their curves lie less than half as far
+/// apart as before.
+[[nodiscard]] bool has_collapsed(const SeedSpread& spread);
 
 [[nodiscard]] double mean_before_m(const std::vector<SeedMisfit>& seeds);
 [[nodiscard]] double mean_after_m(const std::vector<SeedMisfit>& seeds);

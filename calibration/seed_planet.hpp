@@ -52,6 +52,7 @@ struct HeldFast {
     Sea sea;
     std::vector<std::uint8_t> wet;
   };
+  bool settles = false;
   std::array<Settling, kSettlings> settlings;
 };
 
@@ -157,7 +158,8 @@ Relief<V> SeedPlanet::evaluate(const Model& model, const Lift<V>& lift, bool rou
   if (routes) hold_frame(model.isostasy, in);
   float_margins_crust(crust, coarse_, *held_.frame);
   const std::span<V> z(relief.elevation_m);
-  if (settles_continents(model.isostasy, model.planet)) {
+  if (routes) held_.settles = settles_continents(model.isostasy, model.planet);
+  if (held_.settles) {
     for (HeldFast::Settling& at : held_.settlings) {
       const V level_m = sea_level<V>(model, lift, z, at.sea, routes);
       if (routes) {

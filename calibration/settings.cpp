@@ -91,9 +91,12 @@ std::vector<Parameter> Settings::parameters() {
       integer("calibration.bins", bins, "1", 10, 1000,
               "quantiles that a target other than rows of a table is matched at", "design"),
       real("calibration.deviation_m", deviation_m, "m", 1e-3, 1e5,
-           "standard deviation of a quantile where the target gives none", "design"),
+           "how exactly a quantile is to be matched, in height", "design"),
       real("calibration.deviation_share", deviation_share, "1", 0.0, 0.5,
-           "standard deviation of the area below a height, for curves and reliefs as targets",
+           "how exactly it is to be matched, in the share of the area below a height", "design"),
+      real("calibration.error_m", error_m, "m", 0.0, 1e5,
+           "standard deviation to which the target's quantiles are known, less than which no error "
+           "of a parameter is derived from; 0: not known",
            "design"),
       integer("calibration.starts", starts, "1", 1, 100,
               "starting points: the configuration, and random ones within the bounds", "design"),
@@ -150,7 +153,9 @@ std::vector<std::int64_t> read_seeds(const std::string& key, const std::string& 
     if (!first || !last || *first < 0 || *last < *first || *last - *first >= kMost) {
       refuse(key, entry, kWanted);
     }
-    for (std::int64_t seed = *first; seed <= *last; ++seed) {
+    // Counted from the first: the last may be the largest number there is.
+    for (std::int64_t after = 0; after <= *last - *first; ++after) {
+      const std::int64_t seed = *first + after;
       if (std::find(seeds.begin(), seeds.end(), seed) != seeds.end()) refuse(key, entry, kWanted);
       seeds.push_back(seed);
     }

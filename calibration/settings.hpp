@@ -21,6 +21,7 @@ struct Settings {
   std::int64_t bins = 100;
   double deviation_m = 50.0;
   double deviation_share = 0.005;
+  double error_m = 0.0;  ///< 0: not known
   std::int64_t starts = 1;
   std::int64_t iterations = 20;
   double tolerance = 1e-3;

@@ -3,17 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <optional>
+#include <limits>
 #include <string_view>
 
 #include "calibration/ranking.hpp"
 #include "geo/core/error.hpp"
-#include "geo/io/config.hpp"
 #include "geo/io/dem.hpp"
 #include "geo/io/hypsography.hpp"
+#include "geo/io/table.hpp"
 
 namespace geo::calibration {
 namespace {
@@ -50,16 +49,29 @@ std::vector<double> fine_bins(const PiecewiseCurve& curve) {
   return means;
 }
 
-/// A curve at the middles of equal parts; `at(share)` gives its elevation.
+/// How exactly the quantiles of a curve are to be matched; `at(share)` gives its elevation.
 template <class At>
-Target sampled(std::string name, const Accuracy& accuracy, std::vector<double> fine, At&& at) {
-  Target target{std::move(name), middles(accuracy.bins), {}, {}, std::move(fine)};
+void add_deviations(Target& target, const Accuracy& accuracy, At&& at) {
   for (const double share : target.share) {
-    target.elevation_m.push_back(at(share));
-    const double half = std::min({accuracy.share, share, 1.0 - share});
-    const double slope_m = (at(share + half) - at(share - half)) / (2.0 * half);
+    const double from = std::max(target.share_from, share - accuracy.share);
+    const double to = std::min(target.share_to, share + accuracy.share);
+    const double slope_m = to > from ? (at(to) - at(from)) / (to - from) : 0.0;
     target.deviation_m.push_back(std::hypot(accuracy.deviation_m, accuracy.share * slope_m));
   }
+  if (accuracy.error_m > 0.0) target.error_m.assign(target.share.size(), accuracy.error_m);
+}
+
+/// A curve at the middles of equal parts.
+template <class At>
+Target sampled(std::string name, const Accuracy& accuracy, std::vector<double> fine, At&& at) {
+  Target target{.name = std::move(name),
+                .share = middles(accuracy.bins),
+                .elevation_m = {},
+                .deviation_m = {},
+                .error_m = {},
+                .fine_bin_m = std::move(fine)};
+  for (const double share : target.share) target.elevation_m.push_back(at(share));
+  add_deviations(target, accuracy, at);
   return target;
 }
 Target sampled(std::string name, const Accuracy& accuracy, const PiecewiseCurve& curve) {
@@ -67,104 +79,56 @@ Target sampled(std::string name, const Accuracy& accuracy, const PiecewiseCurve&
                  [&](double share) { return curve.at(share); });
 }
 
-/// Rows of numbers under a header line.
-class Table {
- public:
-  explicit Table(const std::string& path) : path_(path) {
-    const std::string text = io::read_text(path);
-    std::string_view rest = text;
-    int number = 0;
-    while (!rest.empty()) {
-      ++number;
-      const auto end = rest.find('\n');
-      std::string_view line = rest.substr(0, end);
-      rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
-      while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.remove_suffix(1);
-      if (line.empty() || line.front() == '#') continue;
-      if (header_.empty()) {
-        header_ = line;
-      } else {
-        rows_.push_back(numbers(line, number));
-        lines_.push_back(number);
-      }
-    }
-  }
-  [[nodiscard]] const std::string& header() const { return header_; }
-  [[nodiscard]] const std::vector<std::vector<double>>& rows() const { return rows_; }
-  [[noreturn]] void refuse(std::size_t row, std::string_view what) const {
-    throw InputError(fmt::format("{}:{}: {}", path_, row < lines_.size() ? lines_[row] : 1, what));
-  }
-  void check_columns(std::size_t columns) const {
-    for (std::size_t r = 0; r < rows_.size(); ++r) {
-      if (rows_[r].size() != columns) refuse(r, fmt::format("must be {} numbers", columns));
-    }
-    if (rows_.size() < 2) refuse(lines_.size(), "must hold two rows of numbers at least");
-  }
+void check_rows(const io::Table& table) {
+  if (table.rows() < 2) table.refuse(table.rows(), "must hold two rows of numbers at least");
+}
 
- private:
-  [[nodiscard]] std::vector<double> numbers(std::string_view line, int number) const {
-    std::vector<double> values;
-    while (true) {
-      while (!line.empty() && line.front() == ' ') line.remove_prefix(1);
-      double value = 0.0;
-      const auto [stop, error] = std::from_chars(line.data(), line.data() + line.size(), value);
-      if (error != std::errc() || !std::isfinite(value)) {
-        throw InputError(fmt::format("{}:{}: must be numbers with commas between", path_, number));
-      }
-      values.push_back(value);
-      line.remove_prefix(stop - line.data());
-      while (!line.empty() && line.front() == ' ') line.remove_prefix(1);
-      if (line.empty()) return values;
-      if (line.front() != ',') {
-        throw InputError(fmt::format("{}:{}: must be numbers with commas between", path_, number));
-      }
-      line.remove_prefix(1);
-    }
-  }
-
-  std::string path_, header_;
-  std::vector<std::vector<double>> rows_;
-  std::vector<int> lines_;
-};
-
-Target from_quantiles(const Table& table, const std::string& path, bool with_deviation) {
-  table.check_columns(with_deviation ? 3 : 2);
+Target from_quantiles(const io::Table& table, const std::string& path, const Accuracy& accuracy,
+                      bool has_errors) {
+  check_rows(table);
   PiecewiseCurve curve;
   Target target;
   target.name = path;
-  const auto& rows = table.rows();
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    const double share = rows[r][0], elevation_m = rows[r][1];
+  for (std::size_t r = 0; r < table.rows(); ++r) {
+    const double share = table.number(r, 0), elevation_m = table.number(r, 1);
     if (!(share >= 0.0 && share <= 1.0)) table.refuse(r, "a quantile must be within [0, 1]");
-    if (r > 0 && !(share > rows[r - 1][0])) table.refuse(r, "quantiles must ascend");
+    if (r > 0 && !(share > curve.share.back())) table.refuse(r, "quantiles must ascend");
+    if (r > 0 && elevation_m < curve.elevation_m.back()) {
+      table.refuse(r, "elevations must not fall where quantiles ascend");
+    }
     curve.share.push_back(share);
     curve.elevation_m.push_back(elevation_m);
-    if (with_deviation && !(rows[r][2] > 0.0)) table.refuse(r, "sigma_m must be positive");
+    const double error_m = has_errors ? table.number(r, 2) : 1.0;
+    if (!(error_m > 0.0)) table.refuse(r, "sigma_m must be positive");
     if (share == 0.0 || share == 1.0) continue;
     target.share.push_back(share);
     target.elevation_m.push_back(elevation_m);
-    if (with_deviation) target.deviation_m.push_back(rows[r][2]);
+    if (has_errors) target.error_m.push_back(error_m);
   }
   if (target.share.empty()) table.refuse(0, "must hold a quantile between 0 and 1");
-  if (curve.elevation_m.back() < curve.elevation_m.front()) {
-    table.refuse(rows.size() - 1, "elevations must rise with the quantile");
-  }
+  target.share_from = curve.share.front();
+  target.share_to = curve.share.back();
   target.fine_bin_m = fine_bins(curve);
-  std::sort(target.fine_bin_m.begin(), target.fine_bin_m.end());
+  if (has_errors) {
+    target.deviation_m = target.error_m;
+  } else {
+    add_deviations(target, accuracy, [&](double share) { return curve.at(share); });
+  }
   return target;
 }
 
-Target from_bins(const Table& table, const std::string& path, const Accuracy& accuracy) {
-  table.check_columns(3);
+Target from_bins(const io::Table& table, const std::string& path, const Accuracy& accuracy) {
+  check_rows(table);
   PiecewiseCurve curve;
-  double sum = 0.0;
-  const auto& rows = table.rows();
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    const double lower = rows[r][0], upper = rows[r][1], fraction = rows[r][2];
+  double sum = 0.0, top_m = 0.0;
+  for (std::size_t r = 0; r < table.rows(); ++r) {
+    const double lower = table.number(r, 0), upper = table.number(r, 1),
+                 fraction = table.number(r, 2);
     if (!(upper > lower)) table.refuse(r, "upper_m must be above lower_m");
-    if (r > 0 && std::abs(lower - rows[r - 1][1]) > 1e-6 * (std::abs(lower) + 1.0)) {
+    if (r > 0 && std::abs(lower - top_m) > 1e-6 * (std::abs(lower) + 1.0)) {
       table.refuse(r, "a bin must begin where the one before it ends");
     }
+    top_m = upper;
     if (!(fraction >= 0.0)) table.refuse(r, "a fraction must not be negative");
     if (fraction == 0.0) continue;
     // Equal shares may not follow each other: the curve jumps over empty bins.
@@ -175,21 +139,25 @@ Target from_bins(const Table& table, const std::string& path, const Accuracy& ac
     curve.elevation_m.push_back(upper);
   }
   if (std::abs(sum - 1.0) > 1e-3) {
-    table.refuse(rows.size() - 1, fmt::format("fractions sum to {:.6g}, must sum to 1", sum));
+    table.refuse(table.rows() - 1, fmt::format("fractions sum to {:.6g}, must sum to 1", sum));
   }
   for (double& share : curve.share) share /= sum;
   return sampled(path, accuracy, curve);
 }
 
 Target from_any_table(const std::string& path, const Accuracy& accuracy) {
-  const Table table(path);
-  if (table.header() == "quantile,elevation_m") return from_quantiles(table, path, false);
-  if (table.header() == "quantile,elevation_m,sigma_m") return from_quantiles(table, path, true);
-  if (table.header() == "lower_m,upper_m,fraction") return from_bins(table, path, accuracy);
-  throw InputError(
-      fmt::format("{}:1: must be quantile,elevation_m or quantile,elevation_m,sigma_m or "
-                  "lower_m,upper_m,fraction",
-                  path));
+  const io::Table table = io::Table::of_file(path);
+  if (table.has_columns({"quantile", "elevation_m"})) {
+    return from_quantiles(table, path, accuracy, false);
+  }
+  if (table.has_columns({"quantile", "elevation_m", "sigma_m"})) {
+    return from_quantiles(table, path, accuracy, true);
+  }
+  if (table.has_columns({"lower_m", "upper_m", "fraction"})) {
+    return from_bins(table, path, accuracy);
+  }
+  table.refuse_header(
+      "must be quantile,elevation_m or quantile,elevation_m,sigma_m or lower_m,upper_m,fraction");
 }
 
 /// Heights that no solid planet holds up are a wrong unit or a damaged file.
@@ -237,6 +205,38 @@ Target read_target(const std::string& name, const Planet& planet, const Grid& gr
                     name));
   }
   return from_relief(name, planet, grid, accuracy);
+}
+
+int Target::first_bin() const {
+  const int inner = static_cast<int>(std::ceil(share_from * kFineBins - 1e-6));
+  const int end = static_cast<int>(std::floor(share_to * kFineBins + 1e-6));
+  return inner < end ? inner : static_cast<int>(share_from * kFineBins);
+}
+
+int Target::end_bin() const {
+  const int end = static_cast<int>(std::floor(share_to * kFineBins + 1e-6));
+  return std::max(end, first_bin() + 1);
+}
+
+double wasserstein_m(std::span<const double> fine_bins, const Target& target) {
+  double sum = 0.0;
+  for (int k = target.first_bin(); k < target.end_bin(); ++k) {
+    sum += std::abs(fine_bins[k] - target.fine_bin_m[k]);
+  }
+  return sum / (target.end_bin() - target.first_bin());
+}
+
+double spread_m(const std::vector<std::vector<double>>& fine_bins, const Target& target) {
+  const auto planets = static_cast<double>(fine_bins.size());
+  if (fine_bins.size() < 2) return std::numeric_limits<double>::quiet_NaN();
+  double sum = 0.0;
+  for (int k = target.first_bin(); k < target.end_bin(); ++k) {
+    double mean = 0.0, squares = 0.0;
+    for (const auto& of_planet : fine_bins) mean += of_planet[k] / planets;
+    for (const auto& of_planet : fine_bins) squares += std::pow(of_planet[k] - mean, 2);
+    sum += std::sqrt(squares / (planets - 1.0));
+  }
+  return sum / (target.end_bin() - target.first_bin());
 }
 
 }  // namespace geo::calibration

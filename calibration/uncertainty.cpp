@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "calibration/held_fast.hpp"
+
 namespace geo::calibration {
 namespace {
 
@@ -81,10 +83,9 @@ void assess(const Objective& objective, const Problem& problem, const Eigen::Vec
   const Eigen::VectorXd& singular = svd.singularValues();
   const double largest = singular[0];
   const double freedom = std::max<double>(1.0, double(jacobian.rows() - count));
-  const bool has_deviations = !problem.target.deviation_m.empty();
   const double reduced = residual.squaredNorm() / freedom;
-  const double variance = has_deviations ? std::max(1.0, reduced) : reduced;
-  result.noise_m = std::sqrt(reduced) * problem.deviation_m;
+  const Eigen::VectorXd variance = objective.known_variance().cwiseMax(reduced);
+  result.noise_m = objective.misfit_m(residual) * std::sqrt(double(jacobian.rows()) / freedom);
   result.condition = singular[count - 1] > 0.0 ? largest / singular[count - 1]
                                                : std::numeric_limits<double>::infinity();
   Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(count, count);
@@ -96,13 +97,15 @@ void assess(const Objective& objective, const Problem& problem, const Eigen::Vec
     }
     // One deviation along it is more than a change by a factor e, or by the whole scale.
     constexpr double kTooFar = 1.0;
-    if (std::sqrt(variance) > kTooFar * singular[d]) {
+    const double error = std::sqrt(svd.matrixU().col(d).cwiseAbs2().dot(variance));
+    if (error > kTooFar * singular[d]) {
       result.warnings.push_back(fmt::format("a combination is not determined by the target: {}",
                                             in_words(problem, direction.weights)));
     }
     result.directions.push_back(std::move(direction));
   }
-  const Eigen::MatrixXd covariance = variance * inverse;
+  const Eigen::MatrixXd gain = inverse * jacobian.transpose();
+  const Eigen::MatrixXd covariance = gain * variance.asDiagonal() * gain.transpose();
   const bool has_spread = objective.statistics().size() >= 3;
   const Eigen::MatrixXd spread =
       has_spread ? seed_covariance(objective, problem, inverse) : Eigen::MatrixXd();
@@ -120,6 +123,92 @@ void assess(const Objective& objective, const Problem& problem, const Eigen::Vec
   }
 }
 
+namespace {
+
+/// The place from `guess` on where all but parameter `i` are at their optimum, with all held fast:
+/// steps with the derivatives of one place each, from anew until the cost no longer falls.
+Eigen::VectorXd refit_others(Objective& objective, const Problem& problem, Eigen::Index i,
+                             Eigen::VectorXd guess, double& cost) {
+  constexpr int kRounds = 4, kSteps = 3;
+  constexpr double kWorthwhile = 1e-3;
+  cost = 0.5 * objective.follow(guess).squaredNorm();
+  for (int round = 0; round < kRounds; ++round) {
+    const Eigen::VectorXd to =
+        solve_held_fast(objective, problem, guess,
+                        {.steps = kSteps, .radius = 1e4, .tolerance = kWorthwhile, .fixed = i});
+    const double there = 0.5 * objective.follow(to).squaredNorm();
+    if (!(there < cost)) break;
+    const bool settled = cost - there < kWorthwhile * cost;
+    guess = to;
+    cost = there;
+    if (settled) break;
+  }
+  return guess;
+}
+
+/// What one side of a profile holds, from the fitted value outwards.
+struct Side {
+  std::vector<Eigen::VectorXd> place;
+  std::vector<double> cost;
+};
+
+Side walk(Objective& objective, const Problem& problem, Eigen::Index i, double step, int points,
+          const Eigen::VectorXd& from, const Eigen::VectorXd& along) {
+  const FreeParameter& free = problem.free[i];
+  const double low = free.to_x(free.low), high = free.to_x(free.high);
+  Side side;
+  Eigen::VectorXd here = from, rate = along;
+  for (int k = 0; k < points; ++k) {
+    const double to = std::clamp(here[i] + step, low, high);
+    if (to == here[i]) break;  // at its bound
+    // Where the others went from the last point to this one, they will go on to.
+    Eigen::VectorXd guess = here + (to - here[i]) * rate;
+    for (Eigen::Index j = 0; j < guess.size(); ++j) {
+      guess[j] = std::clamp(guess[j], problem.free[j].to_x(problem.free[j].low),
+                            problem.free[j].to_x(problem.free[j].high));
+    }
+    guess[i] = to;
+    double cost = 0.0;
+    const Eigen::VectorXd there = refit_others(objective, problem, i, guess, cost);
+    rate = (there - here) / (to - here[i]);
+    here = there;
+    side.place.push_back(here);
+    side.cost.push_back(cost);
+  }
+  return side;
+}
+
+}  // namespace
+
+Profile profile_of(Objective& objective, const Problem& problem, const Eigen::VectorXd& x,
+                   const Eigen::MatrixXd& jacobian, Eigen::Index i, double reach) {
+  constexpr int kEachSide = 3;
+  const Eigen::Index count = x.size();
+  // How the others follow a small change: along the linear optimum.
+  Eigen::MatrixXd others = jacobian;
+  others.col(i).setZero();
+  Eigen::VectorXd along = -others.completeOrthogonalDecomposition().solve(jacobian.col(i));
+  along[i] = 1.0;
+  if (count == 1) along.setOnes();
+  double cost = 0.0;
+  const Eigen::VectorXd middle = refit_others(objective, problem, i, x, cost);
+  const double step = reach / kEachSide;
+  const Side below = walk(objective, problem, i, -step, kEachSide, middle, along);
+  const Side above = walk(objective, problem, i, step, kEachSide, middle, along);
+  Profile profile;
+  profile.name = problem.free[i].declaration.name;
+  const auto add = [&](const Eigen::VectorXd& at, double cost_there) {
+    profile.value.push_back(problem.free[i].to_value(at[i]));
+    profile.cost.push_back(cost_there);
+    auto& fitted = profile.fitted.emplace_back();
+    for (Eigen::Index j = 0; j < count; ++j) fitted.push_back(problem.free[j].to_value(at[j]));
+  };
+  for (std::size_t k = below.place.size(); k-- > 0;) add(below.place[k], below.cost[k]);
+  add(middle, cost);
+  for (std::size_t k = 0; k < above.place.size(); ++k) add(above.place[k], above.cost[k]);
+  return profile;
+}
+
 void add_profiles(Objective& objective, Problem& problem, const Eigen::VectorXd& x,
                   const Eigen::MatrixXd& jacobian, Result& result) {
   const auto count = Eigen::Index(problem.free.size());
@@ -132,32 +221,11 @@ void add_profiles(Objective& objective, Problem& problem, const Eigen::VectorXd&
     if (relative_error(i) < relative_error(best)) best = i;
     if (relative_error(i) > relative_error(worst)) worst = i;
   }
-  for (const Eigen::Index i : {best, worst}) {
-    if (i == worst && worst == best && !result.profiles.empty()) break;
-    // A direction without any bound is looked at within a factor e.
-    const double reach = std::clamp(3.0 * relative_error(i), 1e-6, 1.0);
-    Eigen::MatrixXd others(jacobian.rows(), std::max<Eigen::Index>(count - 1, 1));
-    others.setZero();
-    for (Eigen::Index j = 0, to = 0; j < count; ++j) {
-      if (j != i) others.col(to++) = jacobian.col(j);
-    }
-    const Eigen::VectorXd follows =
-        count > 1 ? Eigen::VectorXd(others.completeOrthogonalDecomposition().solve(jacobian.col(i)))
-                  : Eigen::VectorXd();
-    Profile profile;
-    profile.name = problem.free[i].declaration.name;
-    constexpr int kEachSide = 3;
-    for (int k = -kEachSide; k <= kEachSide; ++k) {
-      Eigen::VectorXd at = x;
-      const double move = reach * k / kEachSide;
-      at[i] += move;
-      for (Eigen::Index j = 0, from = 0; j < count; ++j) {
-        if (j != i) at[j] -= move * follows[from++];
-      }
-      profile.value.push_back(problem.free[i].to_value(at[i]));
-      profile.cost.push_back(0.5 * objective.follow(at).squaredNorm());
-    }
-    result.profiles.push_back(std::move(profile));
+  // A direction without any bound is looked at within a factor e.
+  const auto reach = [&](Eigen::Index i) { return std::clamp(3.0 * relative_error(i), 1e-6, 1.0); };
+  result.profiles.push_back(profile_of(objective, problem, x, jacobian, best, reach(best)));
+  if (worst != best) {
+    result.profiles.push_back(profile_of(objective, problem, x, jacobian, worst, reach(worst)));
   }
   problem.set(x);
 }

@@ -3,7 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <complex>
+#include <limits>
+#include <map>
+#include <set>
 
 #include "small_planets.hpp"
 
@@ -49,9 +53,10 @@ const std::vector<std::string> kDifferenced{
 
 /// The planet of seed 1, routed.
 struct Planet1 {
-  explicit Planet1(int rows = 48, const std::string& assignment = "isostasy.ocean_depth_m=0")
+  explicit Planet1(int rows = 48, const std::string& assignment = "isostasy.ocean_depth_m=0",
+                   const std::vector<std::string>& more = {})
       // Hillslopes enough to be seen on cells of 400 km.
-      : run("erosion.diffusivity_m2_yr=500", assignment),
+      : run("erosion.diffusivity_m2_yr=500", assignment, more),
         planet(run.parameters, 1, 2 * rows, rows) {
     (void)planet.route(model);
   }
@@ -141,6 +146,157 @@ TEST(Derivatives, AgreeWithCentralDifferencesOfTheHeldFastModel) {
       // A few cells stand at a bend (a shore, a shelf) within the step.
       EXPECT_LT(distance(rate_by_jet(p, name), rate, 0.002), 1e-6) << name;
     }
+  }
+}
+
+/// Parameters that a calibration reads but that no figure follows smoothly, and why: freed, each is
+/// refused.
+const std::map<std::string, std::string> kSilent{
+    {"planet.radius_km", "cells and plates are laid with it"},
+    {"planet.flattening", "cells are laid with it"},
+    {"planet.obliquity_deg", "climate alone"},
+    {"planet.pressure_bar", "climate alone"},
+    {"isostasy.convergent_length_km", "blueprint crust alone"},
+    {"isostasy.crust_smoothing_km", "blueprint crust alone"},
+    {"isostasy.coast_smoothing_km", "blueprint crust alone"},
+    {"isostasy.thermal_coefficient", "blueprint crust alone"},
+    {"isostasy.noise_factor", "blueprint crust alone"},
+    {"isostasy.weakness_length_km", "weakness moves no relief"},
+    {"isostasy.fracture_m", "simulated crust alone"},
+    {"isostasy.fracture_spacing_km", "simulated crust alone"},
+    {"isostasy.abyssal_hills_m", "simulated crust alone"},
+    {"isostasy.fabric_age_myr", "simulated crust alone"},
+    {"isostasy.detail_longest_km", "exemplars alone"},
+    {"isostasy.detail_amplitude", "exemplars alone"},
+    {"isostasy.old_orogeny_myr", "exemplars alone"},
+    {"isostasy.plain_slope", "exemplars alone"},
+    {"erosion.flow_exponent", "the ways of the water are held fast"},
+    {"erosion.land_smoothing_km", "must be 0 in a calibration"},
+    {"erosion.hypsometry_median_m", "remaps of heights are refused"},
+    {"erosion.hypsometry_smoothing_km", "remaps of heights are refused"},
+    {"erosion.detail_noise", "must be 0 in a calibration"}};
+
+/// All that the forward model gives, in one scale each: elevations, thicknesses, the rate of
+/// erosion and the water.
+template <class V, class Part>
+std::vector<std::vector<double>> figures_of(const Relief<V>& relief, Part&& part) {
+  std::vector<std::vector<double>> all(4);
+  for (const V& z : relief.elevation_m) all[0].push_back(part(z));
+  for (const V& h : relief.thickness_m) all[1].push_back(part(h));
+  all[2].push_back(part(relief.erosion_rate_m_yr));
+  all[3].push_back(part(relief.water_m3));
+  return all;
+}
+
+/// Central differences over a step and half of it, extrapolated (Richardson).
+std::vector<std::vector<double>> extrapolated_rate(Planet1& p, const std::string& name,
+                                                   double relative) {
+  double* const at = p.member(name);
+  const double value = *at, step = relative * std::max(std::abs(value), 1e-3);
+  const auto figures_at = [&](double moved) {
+    *at = moved;
+    auto figures = figures_of(p.planet.follow<double>(p.model, {}), [](double x) { return x; });
+    *at = value;
+    return figures;
+  };
+  auto rate = figures_at(value + step);
+  const auto below = figures_at(value - step), half_above = figures_at(value + 0.5 * step),
+             half_below = figures_at(value - 0.5 * step);
+  for (std::size_t f = 0; f < rate.size(); ++f) {
+    for (std::size_t c = 0; c < rate[f].size(); ++c) {
+      const double whole = (rate[f][c] - below[f][c]) / (2.0 * step);
+      const double half = (half_above[f][c] - half_below[f][c]) / step;
+      rate[f][c] = (4.0 * half - whole) / 3.0;
+    }
+  }
+  return rate;
+}
+
+/// Every real parameter of planet, isostasy and erosion, on planets on which one or the other has a
+/// say: either no figure follows it, whatever is done, or all derivatives are those of differences.
+TEST(Derivatives, OfEveryParameterAreThoseOfDifferences) {
+  constexpr int kRows = 32;
+  const std::vector<std::vector<std::string>> worlds{
+      {"isostasy.ocean_depth_m=0", "erosion.noise_injection_m=5",
+       "erosion.relaxation_fraction=0.1"},
+      {"isostasy.ocean_depth_m=3690", "erosion.slope_exponent=1.3", "erosion.area_exponent=0.45"},
+      {"planet.sea_level=volume", "erosion.uplift_from=boundaries", "isostasy.compensation=airy",
+       "erosion.depressions=breach"},
+      {"planet.ocean_fraction=0.5", "isostasy.compensation=airy-dry", "erosion.uplift_mm_yr=0.02",
+       "erosion.rebound_length_km=0"}};
+  std::set<std::string> heard;
+  std::vector<std::string> names;
+  for (const auto& assignments : worlds) {
+    Planet1 p(kRows, assignments.front(), {assignments.begin() + 1, assignments.end()});
+    names.clear();
+    for (const Parameter& declaration : p.model.declarations()) {
+      const std::string name(declaration.name);
+      SCOPED_TRACE(name + " with " + assignments.front());
+      names.push_back(name);
+      const auto jets =
+          figures_of(p.follow<Jet>(name, Jet(0.0, 0)), [](const Jet& x) { return x.v[0]; });
+      double size = 0.0;
+      for (const auto& jet : jets) size += norm(jet);
+      ASSERT_TRUE(std::isfinite(size));
+      // A process that is left out where its amount is 0 begins with a bend: refused as well.
+      if (*p.member(name) == 0.0 && declaration.min == 0.0 && size == 0.0) continue;
+      double best = std::numeric_limits<double>::infinity();
+      // Noise is a float: its differences are rough. Elsewhere a bend may lie within a wide step,
+      // and a narrow one lose digits.
+      for (const double step : {1e-4, 1e-3, 1e-5, 1e-6}) {
+        const auto rates = extrapolated_rate(p, name, step);
+        double worst = 0.0;
+        bool moves = false;
+        for (std::size_t f = 0; f < rates.size(); ++f) {
+          if (norm(rates[f]) == 0.0) {
+            worst = std::max(worst, norm(jets[f]));
+            continue;
+          }
+          moves = true;
+          worst = std::max(worst, distance(jets[f], rates[f], f < 2 ? 0.005 : 0.0));
+        }
+        if (moves) heard.insert(name);
+        best = std::min(best, worst);
+        if (best < 1e-5) break;
+      }
+      EXPECT_LT(best, name == "erosion.warping_km" ? 1e-3 : 1e-5);
+    }
+  }
+  for (const std::string& name : names) {
+    EXPECT_NE(heard.contains(name), kSilent.contains(name)) << name;
+  }
+}
+
+/// Terms and quantiles of the objective follow as their figures do.
+TEST(Derivatives, OfTermsAndQuantilesAreThoseOfDifferences) {
+  SmallRun run("erosion.diffusivity_m2_yr=500", "isostasy.ocean_depth_m=0");
+  run.settings.free =
+      "isostasy.continental_km, isostasy.collision_km, planet.ocean_fraction, "
+      "erosion.erodibility_factor, erosion.time_step_yr, isostasy.mantle_density_kg_m3";
+  run.settings.terms =
+      "land_fraction = 0.3 +- 0.01, water_volume_km3 = 1.3e9 +- 1e7, erosion_rate_mm_yr = 0.05 +- "
+      "0.01, concavity = 0.4 +- 0.1, crust_thickness_q50_km = 35 +- 1";
+  run.settings.priors = "isostasy.collision_km = 15 +- 2";
+  Problem problem(run.parameters, run.settings, run.earth());
+  Objective objective(problem, run.parameters, std::vector<std::int64_t>{1, 2}, 96, 48);
+  const Eigen::VectorXd x = problem.present();
+  objective.route(x);
+  Eigen::MatrixXd rates;
+  objective.follow(x, &rates);
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    constexpr double kStep = 1e-6;
+    Eigen::VectorXd above = x, below = x;
+    above[i] += kStep;
+    below[i] -= kStep;
+    const Eigen::VectorXd difference =
+        (objective.follow(above) - objective.follow(below)) / (2.0 * kStep);
+    for (Eigen::Index r = 0; r < rates.rows(); ++r) {
+      // A bend in one of the cells of a quantile is a small part of it.
+      EXPECT_NEAR(rates(r, i), difference[r], 0.02 * std::abs(difference[r]) + 1e-4)
+          << problem.free[i].declaration.name << ", residual " << r;
+    }
+    EXPECT_LT((rates.col(i) - difference).norm(), 2e-3 * difference.norm() + 1e-9)
+        << problem.free[i].declaration.name;
   }
 }
 

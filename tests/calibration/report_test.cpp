@@ -11,6 +11,7 @@
 #include <regex>
 #include <set>
 
+#include "calibration/report_curves.hpp"
 #include "calibration/sample_result.hpp"
 #include "geo/core/error.hpp"
 #include "geo/io/build_info.hpp"
@@ -154,6 +155,50 @@ TEST_F(CalibrationReport, TableHasTheThreeCurves) {
     EXPECT_NEAR(after, result_.after.elevation_m[k], 1e-3);
   }
   EXPECT_FALSE(std::getline(lines, line));
+}
+
+TEST_F(CalibrationReport, ShowsThePartThatTheTargetTellsOfAlone) {
+  for (Curve* curve : {&result_.target, &result_.before, &result_.after}) {
+    curve->share_from = 0.2;
+    curve->share_to = 0.6;
+  }
+  write(result_);
+  std::istringstream lines(text_of("hypsometry.csv"));
+  std::string line;
+  std::getline(lines, line);
+  int rows = 0;
+  for (double quantile = 0.0; std::getline(lines, line); ++rows) {
+    ASSERT_EQ(std::sscanf(line.c_str(), "%lf", &quantile), 1);
+    EXPECT_NEAR(quantile, 0.2 + (rows + 0.5) / 64 * 0.4, 1e-9);
+  }
+  EXPECT_EQ(rows, 64);
+  const io::Chart chart = curves_chart(result_);
+  for (const io::ChartPanel& panel : chart.panels) {
+    EXPECT_DOUBLE_EQ(panel.x.low, 40.0);
+    EXPECT_DOUBLE_EQ(panel.x.high, 80.0);
+  }
+  const auto json = nlohmann::json::parse(text_of("calibration.json"));
+  EXPECT_EQ(json["hypsometry"]["share_from"], 0.2);
+  EXPECT_EQ(json["hypsometry"]["share_to"], 0.6);
+  EXPECT_THAT(text_of("report.html"), HasSubstr("quantiles 0.2 to 0.6"));
+}
+
+TEST_F(CalibrationReport, TellsHowFarApartPlanetsLieAndThatTheyBecameAlike) {
+  result_.held_out_spread = {200.0, 40.0};
+  result_.fitted_spread = {200.0, 160.0};
+  write(result_);
+  const auto json = nlohmann::json::parse(text_of("calibration.json"));
+  EXPECT_EQ(json["misfit"]["held_out"]["spread_before_m"], 200.0);
+  EXPECT_EQ(json["misfit"]["held_out"]["spread_after_m"], 40.0);
+  EXPECT_EQ(json["misfit"]["held_out"]["collapsed"], true);
+  EXPECT_EQ(json["misfit"]["fitted"]["collapsed"], false);
+  EXPECT_TRUE(json["misfit"]["held_out_resolution"]["spread_after_m"].is_null());
+  EXPECT_EQ(json["misfit"]["held_out_resolution"]["collapsed"], false);
+  pugi::xml_document document;
+  ASSERT_TRUE(document.load_string(text_of("report.html").c_str()));
+  const auto marked = document.select_nodes("//td[@class='number outside' and contains(., '→')]");
+  ASSERT_EQ(marked.size(), 1U);
+  EXPECT_STREQ(marked.first().node().child_value(), "200 → 40.0");
 }
 
 /// Share of the pixels of each colour of a picture.

@@ -82,10 +82,11 @@ inline Result made_up_result() {
   result.directions = {
       {48.2, {0.93, -0.2, 0.3}}, {9.4, {-0.32, 0.15, 0.935}}, {0.61, {0.1, 0.79, -0.6}}};
   result.condition = 79.0;
-  result.profiles = {{"isostasy.collision_km", {34, 36, 38, 40, 42}, {62, 46, 40.1, 45, 64}},
+  result.profiles = {{"isostasy.collision_km", {34, 36, 38, 40, 42}, {62, 46, 40.1, 45, 64}, {}},
                      {"erosion.erodibility_factor",
                       {0.02, 0.03, 0.05, 0.08, 0.12},
-                      {43.1, 41.0, 40.0, 41.3, 44.0}}};
+                      {43.1, 41.0, 40.0, 41.3, 44.0},
+                      {}}};
   result.target = made_up_curve(-5200.0, 480.0);
   result.before = made_up_curve(-4600.0, 820.0);
   result.after = made_up_curve(-5120.0, 530.0);

@@ -15,13 +15,15 @@ namespace geo::calibration {
 class SmallRun {
  public:
   explicit SmallRun(const std::string& assignment = "erosion.steps=4",
-                    const std::string& another = "erosion.steps=4") {
+                    const std::string& another = "erosion.steps=4",
+                    const std::vector<std::string>& more = {}) {
     for (auto declarations : {planet.parameters(), pipeline.parameters()}) {
       parameters.insert(parameters.end(), declarations.begin(), declarations.end());
     }
     set("erosion.steps=4");
     set(assignment);
     set(another);
+    for (const std::string& further : more) set(further);
     settings.seeds = "1-2";
     settings.grid = "96x48";
   }
@@ -41,6 +43,7 @@ inline Target own_target(const SmallRun& run, const std::vector<std::int64_t>& s
   target.name = "twin";
   for (int k = 0; k < 99; ++k) target.share.push_back((k + 1) / 100.0);
   target.elevation_m.assign(target.share.size(), 0.0);
+  target.deviation_m.assign(target.share.size(), run.settings.deviation_m);
   target.fine_bin_m.assign(kFineBins, 0.0);
   Problem problem(run.parameters, run.settings, target);
   Objective objective(problem, run.parameters, seeds, 2 * rows, rows);

@@ -1,10 +1,13 @@
 #include "calibration/target.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 
 #include "calibration/ranking.hpp"
 #include "calibration/settings.hpp"
@@ -19,10 +22,13 @@ using testing::HasSubstr;
 
 class TargetFile : public testing::Test {
  protected:
-  Target read(const std::string& text) {
+  Target read(const std::string& text, const Accuracy& accuracy = {}) {
     std::ofstream(path_) << text;
+    return read_name(path_.string(), accuracy);
+  }
+  static Target read_name(const std::string& name, const Accuracy& accuracy = {}) {
     const Planet planet;
-    return read_target(path_.string(), planet, Grid::sphere(64, 32, planet.figure()), {});
+    return read_target(name, planet, Grid::sphere(64, 32, planet.figure()), accuracy);
   }
   std::string message(const std::string& text) {
     try {
@@ -44,13 +50,53 @@ TEST_F(TargetFile, QuantilesAreMatchedRowByRowWithoutTheExtremes) {
   const Target target = read("quantile,elevation_m\n0,-5000\n0.25,-4000\n0.75,100\n1,3000\n");
   EXPECT_EQ(target.share, (std::vector<double>{0.25, 0.75}));
   EXPECT_EQ(target.elevation_m, (std::vector<double>{-4000, 100}));
-  EXPECT_TRUE(target.deviation_m.empty());
+  EXPECT_EQ(target.deviation_m.size(), 2U);
+  EXPECT_TRUE(target.error_m.empty());
   EXPECT_NEAR(target.fine_bin_m[500], -4000 + 0.5 * 4100, 5.0);
 }
 
 TEST_F(TargetFile, DeviationsMayStandBesideQuantiles) {
   const Target target = read("quantile,elevation_m,sigma_m\n0.1,-4000,20\n0.9,500,30\n");
   EXPECT_EQ(target.deviation_m, (std::vector<double>{20, 30}));
+  EXPECT_EQ(target.error_m, (std::vector<double>{20, 30}));
+}
+
+TEST_F(TargetFile, RowsOfACurveAreAskedForAsExactlyAsTheCurve) {
+  const Target curve = read_name("earth");
+  std::string rows = "quantile,elevation_m\n";
+  for (std::size_t k = 0; k < curve.share.size(); ++k) {
+    rows += fmt::format("{},{}\n", curve.share[k], curve.elevation_m[k]);
+  }
+  const Target table = read(rows);
+  ASSERT_EQ(table.share.size(), curve.share.size());
+  // Between the rows a curve may bend, and at their ends it goes no further.
+  for (std::size_t k = 2; k + 2 < curve.share.size(); ++k) {
+    EXPECT_NEAR(table.deviation_m[k], curve.deviation_m[k], 0.15 * curve.deviation_m[k]) << k;
+  }
+  for (const double error_m : {0.0, 7.0}) {
+    const std::size_t known = error_m > 0.0 ? curve.share.size() : 0;
+    EXPECT_EQ(read_name("earth", {.error_m = error_m}).error_m,
+              std::vector<double>(known, error_m));
+    EXPECT_EQ(read(rows, {.error_m = error_m}).error_m, std::vector<double>(known, error_m));
+  }
+}
+
+TEST_F(TargetFile, APartOfTheCurveIsComparedThereAlone) {
+  const Target target = read("quantile,elevation_m\n0.2,-4000\n0.4,-3000\n0.6,-1000\n");
+  EXPECT_EQ(target.share_from, 0.2);
+  EXPECT_EQ(target.share_to, 0.6);
+  EXPECT_EQ(target.first_bin(), 200);
+  EXPECT_EQ(target.end_bin(), 600);
+  std::vector<double> planet = target.fine_bin_m;
+  for (int k = 0; k < 200; ++k) planet[k] = -9000.0;
+  for (int k = 600; k < kFineBins; ++k) planet[k] = 9000.0;
+  EXPECT_EQ(wasserstein_m(planet, target), 0.0);
+  for (int k = 200; k < 600; ++k) planet[k] += 30.0;
+  EXPECT_NEAR(wasserstein_m(planet, target), 30.0, 1e-9);
+  EXPECT_NEAR(spread_m({planet, target.fine_bin_m}, target), 30.0 / std::sqrt(2.0), 1e-9);
+  const Target narrow = read("quantile,elevation_m\n0.5001,10\n0.5002,11\n");
+  EXPECT_EQ(narrow.first_bin(), 500);
+  EXPECT_EQ(narrow.end_bin(), 501);
 }
 
 TEST_F(TargetFile, BinsAreAHistogram) {
@@ -66,7 +112,14 @@ TEST_F(TargetFile, BadOnesAreRefusedWithTheirLine) {
   EXPECT_THAT(message("height\n1\n2\n"), HasSubstr(":1: must be quantile,elevation_m"));
   EXPECT_THAT(message("quantile,elevation_m\n0.1,5\n0.1,6\n"), HasSubstr(":3: quantiles must"));
   EXPECT_THAT(message("quantile,elevation_m\n0.1,5\n1.1,6\n"), HasSubstr(":3: a quantile must"));
-  EXPECT_THAT(message("quantile,elevation_m\n0.1,x\n"), HasSubstr(":2: must be numbers"));
+  EXPECT_THAT(message("quantile,elevation_m\n0.1,x\n0.2,5\n"),
+              HasSubstr(":2: elevation_m: must be a number"));
+  EXPECT_THAT(message("quantile,elevation_m\n0.1,5\n0.2,\n"),
+              HasSubstr(":3: elevation_m: must be a number"));
+  EXPECT_THAT(message("quantile,elevation_m\n0.1,5\n0.2,1,5\n"),
+              HasSubstr(":3: must have 2 cells"));
+  EXPECT_THAT(message("# x\nquantile,elevation_m\n0,-5000\n0.4,100\n0.6,50\n1,3000\n"),
+              HasSubstr(":5: elevations must not fall"));
   EXPECT_THAT(message("quantile,elevation_m\n0.1,5\n"), HasSubstr("two rows"));
   EXPECT_THAT(message("lower_m,upper_m,fraction\n0,1,0.5\n2,3,0.5\n"), HasSubstr(":3: a bin"));
   EXPECT_THAT(message("lower_m,upper_m,fraction\n0,1,0.5\n1,3,0.2\n"), HasSubstr("sum to 0.7"));
@@ -96,6 +149,12 @@ TEST(Ranking, QuantilesAndBinsAreThoseOfTheArea) {
 TEST(CalibrationSettings, ListsAreRead) {
   EXPECT_EQ(read_seeds("s", "1-3, 7"), (std::vector<std::int64_t>{1, 2, 3, 7}));
   EXPECT_TRUE(read_seeds("s", "").empty());
+  constexpr std::int64_t kLast = std::numeric_limits<std::int64_t>::max();
+  EXPECT_EQ(read_seeds("s", fmt::format("{}", kLast)), (std::vector<std::int64_t>{kLast}));
+  EXPECT_EQ(read_seeds("s", fmt::format("{}-{}", kLast - 1, kLast)),
+            (std::vector<std::int64_t>{kLast - 1, kLast}));
+  EXPECT_THROW((void)read_seeds("s", "9223372036854775808"), ConfigurationError);
+  EXPECT_THROW((void)read_seeds("s", fmt::format("0-{}", kLast)), ConfigurationError);
   EXPECT_THROW((void)read_seeds("s", "3-1"), ConfigurationError);
   EXPECT_THROW((void)read_seeds("s", "1, 1"), ConfigurationError);
   EXPECT_THROW((void)read_seeds("s", "one"), ConfigurationError);

@@ -105,11 +105,59 @@ TEST_F(Calibrate, SaysThatATargetIsOutOfReachAndKeepsTheBest) {
   EXPECT_TRUE(fs::exists(out_ / "fitted.toml"));
 }
 
+TEST_F(Calibrate, TakesTheLargestSeedThereIs) {
+  const Outcome outcome =
+      calibrate({"--set=calibration.seeds=9223372036854775807",
+                 "--set=calibration.held_out=9223372036854775805-9223372036854775806"});
+  ASSERT_TRUE(outcome.code == 0 || outcome.code == 5) << outcome.err;
+  const json all = json::parse(text_of(out_ / "calibration.json"));
+  EXPECT_EQ(all["misfit"]["fitted"]["seeds"][0]["seed"], 9223372036854775807);
+  EXPECT_EQ(all["misfit"]["held_out"]["seeds"].size(), 2U);
+}
+
+TEST_F(Calibrate, ComparesAPartOfTheCurveThereAlone) {
+  std::ofstream(folder_ / "part.csv")
+      << "quantile,elevation_m\n0.2,-5000\n0.3,-4700\n0.4,-4300\n0.5,-3900\n0.6,-3300\n";
+  (void)calibrate({}, (folder_ / "part.csv").string());
+  const json all = json::parse(text_of(out_ / "calibration.json"));
+  EXPECT_EQ(all["hypsometry"]["share_from"], 0.2);
+  EXPECT_EQ(all["hypsometry"]["share_to"], 0.6);
+  EXPECT_EQ(all["residuals"].size(), 5U);
+  const auto rows = lines_of(text_of(out_ / "hypsometry.csv"));
+  ASSERT_EQ(rows.size(), 101U);
+  EXPECT_THAT(rows[1], testing::StartsWith("0.202,"));
+  EXPECT_THAT(rows[100], testing::StartsWith("0.598,"));
+}
+
+TEST_F(Calibrate, SaysThatHeldOutPlanetsBecameAlike) {
+  // Swells of the floor that no Earth has: what tells these planets apart goes with the fit.
+  const Outcome outcome = calibrate(
+      {"--set=isostasy.ocean_swell_m=3000", "--set=calibration.free=isostasy.ocean_swell_m",
+       "--set=calibration.held_out=3-5", "--set=calibration.iterations=8"});
+  const json held_out = json::parse(text_of(out_ / "calibration.json"))["misfit"]["held_out"];
+  EXPECT_EQ(held_out["collapsed"], true) << held_out.dump();
+  EXPECT_THAT(outcome.err, HasSubstr("held-out planets have become alike"));
+  EXPECT_THAT(text_of(out_ / "report.html"), HasSubstr("have become alike"));
+}
+
+TEST_F(Calibrate, RefusesATableThatFallsWithItsLine) {
+  std::ofstream(folder_ / "falls.csv") << "quantile,elevation_m\n0.1,-5000\n0.5,100\n0.9,50\n";
+  expect_refusal({}, 3, {"falls.csv:4: elevations must not fall"},
+                 (folder_ / "falls.csv").string());
+  std::ofstream(folder_ / "back.csv") << "quantile,elevation_m\n0.1,-5000\n0.5,100\n0.4,500\n";
+  expect_refusal({}, 3, {"back.csv:4: quantiles must ascend"}, (folder_ / "back.csv").string());
+}
+
 TEST_F(Calibrate, RefusesWhatCannotBeFitted) {
   expect_refusal({"--set=calibration.free=plates.count"}, 2, {"plates.count", "must be"});
   expect_refusal({"--set=calibration.free=isostasy.swel_m"}, 2, {"did you mean isostasy.swell_m"});
   expect_refusal({"--set=calibration.free=erosion.flow_exponent"}, 2, {"do not change with it"});
+  expect_refusal({"--set=calibration.free=isostasy.fracture_m"}, 2, {"do not change with it"});
+  expect_refusal({"--set=calibration.free=planet.radius_km"}, 2, {"leaves the plates as they are"});
   expect_refusal({"--set=calibration.free="}, 2, {"must name a parameter"});
+  expect_refusal({"--set=calibration.seeds=9223372036854775808"}, 2, {"whole numbers from 0 on"});
+  expect_refusal({"--set=calibration.held_out=5-9223372036854775807"}, 2,
+                 {"whole numbers from 0 on"});
   expect_refusal({"--set=erosion.hypsometry=rank"}, 2, {"must be none"});
   expect_refusal({"--preset=tectonica"}, 2, {"must be margins"});
   expect_refusal({"--set=calibration.held_out=2"}, 2, {"must not be one of calibration.seeds"});

@@ -3,13 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
 
 #include "geo/core/error.hpp"
-#include "geo/io/config.hpp"
 #include "geo/io/embedded_data.hpp"
 
 namespace geo::io {
@@ -36,42 +34,23 @@ Hypsography statistical_earth() {
   return curve;
 }
 
-Hypsography parse(std::string_view text, const std::string& source) {
+Hypsography curve_of(const Table& table) {
+  if (!table.has_columns({"quantile", "elevation_m"})) {
+    table.refuse_header("must begin with the line quantile,elevation_m");
+  }
   Hypsography curve;
-  int number = 0;
-  const auto refuse = [&](std::string_view what) {
-    throw InputError(fmt::format("{}:{}: {}", source, number, what));
-  };
-  while (!text.empty()) {
-    ++number;
-    const auto end = text.find('\n');
-    std::string_view line = text.substr(0, end);
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-    if (line.ends_with('\r')) line.remove_suffix(1);
-    if (number == 1 && line == "quantile,elevation_m") continue;
-    if (number == 1) refuse("must begin with the line quantile,elevation_m");
-    if (line.empty() || line.starts_with('#')) continue;
-    double fraction = 0.0, elevation_m = 0.0;
-    const char* const stop = line.data() + line.size();
-    const auto [comma, error] = std::from_chars(line.data(), stop, fraction);
-    const bool pair = error == std::errc() && comma != stop && *comma == ',';
-    const auto [last, error_2] = pair ? std::from_chars(comma + 1, stop, elevation_m)
-                                      : std::from_chars_result{comma, std::errc::invalid_argument};
-    if (error_2 != std::errc() || last != stop || !std::isfinite(elevation_m)) {
-      refuse("must be two numbers, quantile,elevation_m");
-    }
-    if (curve.fraction.empty() && fraction != 0.0) refuse("the first quantile must be 0");
-    if (!curve.fraction.empty() && !(fraction > curve.fraction.back())) {
-      refuse("quantiles must ascend");
-    }
-    if (!curve.elevation_m.empty() && elevation_m < curve.elevation_m.back()) {
-      refuse("elevations must not fall");
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const double fraction = table.number(row, 0), elevation_m = table.number(row, 1);
+    if (row == 0 && fraction != 0.0) table.refuse(row, "the first quantile must be 0");
+    if (row > 0 && !(fraction > curve.fraction.back())) table.refuse(row, "quantiles must ascend");
+    if (row > 0 && elevation_m < curve.elevation_m.back()) {
+      table.refuse(row, "elevations must not fall");
     }
     curve.fraction.push_back(fraction);
     curve.elevation_m.push_back(elevation_m);
   }
   if (curve.fraction.size() < 2 || curve.fraction.back() != 1.0) {
-    refuse("the last quantile must be 1");
+    table.refuse(table.rows() - 1, "the last quantile must be 1");
   }
   return curve;
 }
@@ -128,14 +107,14 @@ Hypsography with_ocean_share(Hypsography curve, double share) {
 }
 
 Hypsography read_hypsography(const std::string& name_or_file) {
-  if (name_or_file == "earth") return parse(embedded_file("targets/earth.csv"), "earth");
+  if (name_or_file == "earth") return curve_of(embedded_table("targets/earth.csv"));
   if (name_or_file == "earth-statistical") return statistical_earth();
   if (!std::filesystem::exists(name_or_file)) {
     throw InputError(fmt::format(
         "fields.hypsography: {}: no such file; must be earth, earth-statistical or a CSV file",
         name_or_file));
   }
-  return parse(read_text(name_or_file), name_or_file);
+  return curve_of(Table::of_file(name_or_file));
 }
 
 }  // namespace geo::io

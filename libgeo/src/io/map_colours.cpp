@@ -35,9 +35,10 @@ namespace {
 
 std::vector<ColourMap::Stop> stops_named(std::string_view name) {
   std::vector<ColourMap::Stop> stops;
-  for (const auto& row : table_rows(embedded_file("colour_maps/" + std::string(name) + ".csv"))) {
-    stops.push_back(
-        {static_cast<float>(number(row.at(0))), parse_colour(row.at(1)), std::string(row.at(2))});
+  const Table table = embedded_table("colour_maps/" + std::string(name) + ".csv");
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    stops.push_back({static_cast<float>(table.number(row, 0)), parse_colour(table.text(row, 1)),
+                     table.text(row, 2)});
   }
   const auto descends = [](const auto& a, const auto& b) { return a.value >= b.value; };
   if (stops.size() < 2 || std::adjacent_find(stops.begin(), stops.end(), descends) != stops.end()) {

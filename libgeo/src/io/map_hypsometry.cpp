@@ -35,9 +35,10 @@ class Hypsometry {
 
   static Hypsometry of_earth() {
     std::vector<double> elevation_m, below;
-    for (const auto& row : table_rows(embedded_file("targets/earth.csv"))) {
-      below.push_back(number(row.at(0)));
-      elevation_m.push_back(number(row.at(1)));
+    const Table table = embedded_table("targets/earth.csv");
+    for (std::size_t row = 0; row < table.rows(); ++row) {
+      below.push_back(table.number(row, 0));
+      elevation_m.push_back(table.number(row, 1));
     }
     return {std::move(elevation_m), std::move(below)};
   }

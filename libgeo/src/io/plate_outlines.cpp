@@ -90,10 +90,11 @@ class Feature {
   [[nodiscard]] bool take_known_motion(PlateOutline& plate) const {
     const auto code = text("Code");
     if (!code) return false;
-    for (const auto& row : table_rows(embedded_file("plates/pb2002_poles.csv"))) {
-      if (row[0] != *code) continue;
-      plate.pole = {io::number(row[1]), io::number(row[2])};
-      plate.rate_deg_myr = io::number(row[3]);
+    const Table poles = embedded_table("plates/pb2002_poles.csv");
+    for (std::size_t row = 0; row < poles.rows(); ++row) {
+      if (poles.text(row, 0) != *code) continue;
+      plate.pole = {poles.number(row, 1), poles.number(row, 2)};
+      plate.rate_deg_myr = poles.number(row, 3);
       return true;
     }
     return false;

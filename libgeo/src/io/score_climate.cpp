@@ -30,9 +30,8 @@ constexpr int kBands = 18;
 /// Earth's zonal means from the south.
 std::vector<double> earth_bands(std::size_t column) {
   std::vector<double> bands;
-  for (const auto& row : table_rows(embedded_file("targets/earth_zonal.csv"))) {
-    bands.push_back(number(row.at(column)));
-  }
+  const Table table = embedded_table("targets/earth_zonal.csv");
+  for (std::size_t row = 0; row < table.rows(); ++row) bands.push_back(table.number(row, column));
   return bands;
 }
 

@@ -33,14 +33,15 @@ std::vector<const FieldSpec*> fields_named(std::string_view names) {
 
 std::vector<Target> targets() {
   std::vector<Target> all;
-  for (const auto& row : table_rows(embedded_file("targets/earth_scorecard.csv"))) {
+  const Table table = embedded_table("targets/earth_scorecard.csv");
+  for (std::size_t row = 0; row < table.rows(); ++row) {
     Target target;
-    target.line = {std::string(row.at(0)), std::string(row.at(1)), std::string(row.at(2)),
-                   std::string(row.at(3)), std::string(row.at(8))};
-    target.line.earth = number(row.at(4));
-    target.line.tolerance = number(row.at(5));
-    target.line.judged = row.at(6) == "judged";
-    target.needs = fields_named(row.at(7));
+    target.line = {table.text(row, 0), table.text(row, 1), table.text(row, 2), table.text(row, 3),
+                   table.text(row, 8)};
+    target.line.earth = table.number(row, 4);
+    target.line.tolerance = table.number(row, 5);
+    target.line.judged = table.text(row, 6) == "judged";
+    target.needs = fields_named(table.text(row, 7));
     all.push_back(std::move(target));
   }
   return all;

@@ -3,6 +3,8 @@
 #include <string_view>
 #include <vector>
 
+#include "geo/io/table.hpp"
+
 namespace geo::io {
 
 /// A file of `data/` that the build put into the program.
@@ -17,9 +19,7 @@ const std::vector<EmbeddedFile>& embedded_files();
 /// Text of one; throws Bug when the build left it out.
 std::string_view embedded_file(std::string_view name);
 
-/// Rows of a comma-separated table without its header line. Cells have no quotes in our files.
-std::vector<std::vector<std::string_view>> table_rows(std::string_view text);
-/// A cell as a number; throws Bug when it is none.
-double number(std::string_view cell);
+/// One that is a table. Throws Bug when the build left it out.
+Table embedded_table(std::string_view name);
 
 }  // namespace geo::io

@@ -23,16 +23,17 @@ void fill_sea(const Crust<V>& crust, const V& level_m) {
   using std::log;
   const IsostasyParameters& p = crust.parameters;
   const bool shelves = p.crust != "blueprint" && p.crust != "given" && p.shelf_depth_m > 0.0;
-  const double whole_shelf = p.shelf_edge + 0.8 * (1.0 - p.shelf_edge);
+  const Number edge = crust.lift(p.shelf_edge);
+  const Number whole_shelf = edge + 0.8 * (1.0 - edge);
   const Number shelf_depth_m = crust.lift(p.shelf_depth_m);
 #pragma omp parallel for schedule(static)
   for (Index cell = 0; cell < crust.grid.size(); ++cell) {
     V& z = crust.elevation_m[cell];
     z -= level_m;
     if (!shelves || value_of(z) >= 0.0) continue;
-    const double on_shelf =
-        smooth_step(p.shelf_edge, whole_shelf, static_cast<double>(crust.fraction[cell]));
-    if (on_shelf <= 0.0) continue;
+    const Number share(static_cast<double>(crust.fraction[cell]));
+    const Number on_shelf = smooth_step(edge, whole_shelf, share);
+    if (value_of(on_shelf) <= 0.0) continue;
     const Number deep_m(z);
     const Number filled = -shelf_depth_m * log(Number(1.0 - deep_m / shelf_depth_m));
     z = lesser(V(-1e-3F), V(deep_m + on_shelf * (filled - deep_m)));
