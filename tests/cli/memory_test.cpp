@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
+#include <csignal>
 
 #include "cli/program.hpp"
 #include "cli/sample_run.hpp"
@@ -132,6 +132,8 @@ TEST(Threads, WaitAsleepUnlessTheUserSaysOtherwise) {
                          .working_folder = {}});
     EXPECT_TRUE(running.until([&] { return fs::exists(folder / "out/manifest.json"); }));
     std::string seen = running.environment();
+    running.send(SIGKILL);
+    running.finish();
     fs::remove_all(folder / "out");
     std::replace(seen.begin(), seen.end(), '\0', '\n');
     return "\n" + seen;
