@@ -7,6 +7,7 @@
 #include <clocale>
 #include <filesystem>
 #include <fstream>
+#include <locale>
 
 #include "geo/core/error.hpp"
 #include "geo/io/embedded_data.hpp"
@@ -91,6 +92,20 @@ TEST(Table, OfNothingHasNothing) {
     EXPECT_THROW(table.refuse_header("must have one"), InputError);
     EXPECT_THROW(table.refuse(7, "must have one"), InputError);
   }
+}
+
+/// Decimal commas and points between thousands, on any machine.
+struct Commas : std::numpunct<char> {
+  [[nodiscard]] char do_decimal_point() const override { return ','; }
+  [[nodiscard]] char do_thousands_sep() const override { return '.'; }
+  [[nodiscard]] std::string do_grouping() const override { return "\3"; }
+};
+
+TEST(Table, DoesNotAskTheLocaleOfStreamsForItsPoint) {
+  const std::locale before = std::locale::global({std::locale::classic(), new Commas});
+  const double read = Table("a\n1234.5\n", "t.csv").number(0, 0);
+  std::locale::global(before);
+  EXPECT_EQ(read, 1234.5);
 }
 
 TEST(Table, DoesNotAskTheLocaleForItsPoint) {
