@@ -67,6 +67,7 @@ Manifest sample_manifest(const Snapshot& snapshot) {
   Manifest manifest{"0.1.0",
                     "abc",
                     "g++ 12",
+                    "0123456789abcdef",
                     library_versions(),
                     18446744073709551615ULL,
                     2,

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "geo/core/error.hpp"
+#include "geo/core/parallel_errors.hpp"
 
 namespace geo {
 namespace {
@@ -129,19 +130,22 @@ bool RasterSphere::advance() {
 
 void RasterSphere::move() {
   constexpr int kTighten = 32;
-#pragma omp parallel for schedule(dynamic, 1) if (pays_)
-  for (int p = 0; p < static_cast<int>(plates_.size()); ++p) {
+  const auto move_plate = [&](int p) {
     RasterSpherePlate& plate = plates_[p];
-    if (!plate.alive) continue;
+    if (!plate.alive) return;
     const auto period = static_cast<std::int64_t>(
         settings_.of(p, &RasterPlateSettings::erosion_steps, settings_.erosion_steps));
     if (period > 0 && budget_.steps % period == 0) plate.erode(settings_.erosion);
     if (budget_.steps % kTighten == 0) plate.tighten();
-    if (!plate.alive) continue;
+    if (!plate.alive) return;
     plate.move();
     turn_[p] = plate.turn.matrix();
     plate.find_continents(settings_.continent_steps);
-  }
+  };
+  ParallelErrors errors;
+#pragma omp parallel for schedule(dynamic, 1) if (pays_)
+  for (int p = 0; p < static_cast<int>(plates_.size()); ++p) errors.guard([&] { move_plate(p); });
+  errors.rethrow();
 }
 
 /// Which plates may have crust in a page of the world; one alone that fills all of it is calm.
@@ -200,14 +204,13 @@ void RasterSphere::meet() {
   std::swap(owner_, previous_);
   std::vector<std::vector<Crowd>> crowds(pages_.count());
   std::vector<std::vector<std::int32_t>> gaps(pages_.count());
-#pragma omp parallel for schedule(dynamic, 8) if (pays_)
-  for (std::int32_t number = 0; number < pages_.count(); ++number) {
+  const auto meet_in_page = [&](std::int32_t number) {
     const auto samples = pages_.samples(number);
     Page& page = page_[number];
     if (is_calm(number)) {
       page.watched.clear();
       for (const std::int32_t at : samples) owner_[at] = page.plates.front();
-      continue;
+      return;
     }
     find_seats(number);
     for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -226,7 +229,13 @@ void RasterSphere::meet() {
       owner_[samples[k]] = first.plate;
       if (first.plate < 0) gaps[number].push_back(samples[k]);
     }
+  };
+  ParallelErrors errors;
+#pragma omp parallel for schedule(dynamic, 8) if (pays_)
+  for (std::int32_t number = 0; number < pages_.count(); ++number) {
+    errors.guard([&] { meet_in_page(number); });
   }
+  errors.rethrow();
   arcs_.clear();
   overlaps_.clear();
   gaps_.clear();

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "geo/core/error.hpp"
+#include "geo/core/parallel_errors.hpp"
 #include "geo/core/random.hpp"
 #include "geo/kernels/raster_start.hpp"
 
@@ -119,13 +120,18 @@ bool RasterTectonics::advance() {
   ++budget_.steps;
   cycle_.begin_step();
   move();
+  ParallelErrors errors;
 #pragma omp parallel for schedule(dynamic, 1) if (pays_)
   for (int p = 0; p < static_cast<int>(plates_.size()); ++p) {
-    if (plates_[p].alive) plates_[p].find_continents(settings_.continent_steps);
+    errors.guard([&] {
+      if (plates_[p].alive) plates_[p].find_continents(settings_.continent_steps);
+    });
   }
+  errors.rethrow();
   std::swap(owner_, previous_);
 #pragma omp parallel for schedule(dynamic, 8) if (pays_)
-  for (int row = 0; row < settings_.world.rows; ++row) meet_along(row);
+  for (int row = 0; row < settings_.world.rows; ++row) errors.guard([&] { meet_along(row); });
+  errors.rethrow();
   raise_arcs();
   slow_down();
   fill_gaps();
@@ -134,10 +140,9 @@ bool RasterTectonics::advance() {
 
 void RasterTectonics::move() {
   constexpr int kTighten = 32;
-#pragma omp parallel for schedule(dynamic, 1) if (pays_)
-  for (int p = 0; p < static_cast<int>(plates_.size()); ++p) {
+  const auto move_plate = [&](int p) {
     RasterPlate& plate = plates_[p];
-    if (!plate.alive) continue;
+    if (!plate.alive) return;
     const auto period = static_cast<std::int64_t>(
         settings_.of(p, &RasterPlateSettings::erosion_steps, settings_.erosion_steps));
     if (period > 0 && budget_.steps % period == 0) plate.erode(settings_.erosion);
@@ -151,7 +156,11 @@ void RasterTectonics::move() {
     plate.y += plate.north;
     plate.angle += plate.spin;
     plate.settle();
-  }
+  };
+  ParallelErrors errors;
+#pragma omp parallel for schedule(dynamic, 1) if (pays_)
+  for (int p = 0; p < static_cast<int>(plates_.size()); ++p) errors.guard([&] { move_plate(p); });
+  errors.rethrow();
 }
 
 /// Where magma of what went down rises: inland, along the motion of the lower plate as the upper

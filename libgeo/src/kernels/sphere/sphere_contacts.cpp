@@ -182,10 +182,14 @@ void SphereTectonics::spread_fronts() {
   for (std::size_t k = 0; k < fronts_.size(); ++k) {
     of_plate[crust.plate[fronts_[k].sample]].push_back(static_cast<std::int32_t>(k));
   }
+  ParallelErrors errors;
 #pragma omp parallel for schedule(dynamic, 1)
   for (std::size_t p = 0; p < of_plate.size(); ++p) {
-    if (!of_plate[p].empty()) spread(static_cast<int>(p), of_plate[p], nullptr);
+    errors.guard([&] {
+      if (!of_plate[p].empty()) spread(static_cast<int>(p), of_plate[p], nullptr);
+    });
   }
+  errors.rethrow();
 #pragma omp parallel for schedule(static)
   for (std::int32_t i = 0; i < n; ++i) front_of_[i] = spots_[i].front;
 }
