@@ -171,6 +171,7 @@ const std::map<std::string, std::string> kSilent{
     {"isostasy.old_orogeny_myr", "exemplars alone"},
     {"isostasy.plain_slope", "exemplars alone"},
     {"erosion.erodibility_yr", "the rocks' own takes its place"},
+    {"erosion.uplift_speed_cm_yr", "0: rates hold for any speed of plates"},
     {"erosion.flow_exponent", "the ways of the water are held fast"},
     {"erosion.land_smoothing_km", "must be 0 in a calibration"},
     {"erosion.hypsometry_median_m", "remaps of heights are refused"},

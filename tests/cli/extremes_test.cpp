@@ -46,7 +46,9 @@ class Extremes : public testing::Test {
       if (!stage.contains("budget")) continue;
       for (const auto& [name, value] : stage.at("budget").items()) {
         ASSERT_TRUE(value.is_number()) << name;
-        if (name.ends_with("_error")) EXPECT_NEAR(value.get<double>(), 0.0, 1e-9) << name;
+        // Fields of rain hold single precision; all other budgets are of sums in double.
+        const double closed = name == "air_water_closing_error" ? 1e-6 : 1e-9;
+        if (name.ends_with("_error")) EXPECT_NEAR(value.get<double>(), 0.0, closed) << name;
       }
     }
     EXPECT_GT(fields, 25);

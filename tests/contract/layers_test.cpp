@@ -22,6 +22,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
 
 /// Libraries that core, kernels and stages may use: numbers and text, no files, no logs.
 bool is_plain_library(const std::string& header) {
+  if (header == "omp.h") return true;  // threads are the compiler's
   if (header.find('/') == std::string::npos) return header.find('.') == std::string::npos;
   return header.starts_with("Random123/") || header.starts_with("GeographicLib/") ||
          header == "unsupported/Eigen/FFT" || header.starts_with("Eigen/") ||

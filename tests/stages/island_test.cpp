@@ -344,59 +344,6 @@ TEST(Island, RiversKeepTheirWaterAllTheWay) {
   EXPECT_GT(all_kept, 0.95 * all_there);
 }
 
-/// Rivers followed over twelve cells, those between the last two rows along the border apart: how
-/// many, and how many head within 5 degrees of a row or a column of the grid.
-struct Headings {
-  int all = 0, along_axes = 0;
-  void add(const State& island, bool at_border) {
-    constexpr int kSteps = 12, kBorder = 2;
-    const Grid& fine = island.grid();
-    const auto receiver = island.read(field::flow_receiver);
-    const auto area = island.read(field::drainage_area);
-    const auto lake = island.read(field::lake_id);
-    const auto z = island.read(field::elevation);
-    const auto is_river = [&](Index c) {
-      return z[c] >= 0.0F && lake[c] <= 0 && area[c] > 100.0 * fine.area_m2(0);
-    };
-    const auto near = [&](Index c) {
-      const int i = fine.column(c), j = fine.row(c);
-      return std::min({i, fine.nx() - 1 - i, j, fine.ny() - 1 - j}) < kBorder;
-    };
-    for (Index c = 0; c < fine.size(); ++c) {
-      if (!is_river(c)) continue;
-      Index end = c;
-      int steps = 0;
-      for (; steps < kSteps && receiver[end] != end && is_river(receiver[end]); ++steps)
-        end = receiver[end];
-      if (steps < kSteps || (near(c) && near(end)) != at_border) continue;
-      const double east = std::abs(fine.column(end) - fine.column(c));
-      const double north = std::abs(fine.row(end) - fine.row(c));
-      ++all;
-      if (std::min(east, north) < std::tan(5.0 / 57.2958) * std::max(east, north)) ++along_axes;
-    }
-  }
-};
-
-// Rivers once ran along the border of a window, in trenches beside an edge that nothing wore down.
-TEST(Island, RiversHeadInAllDirectionsAlsoAtTheBorder) {
-  Headings inside, border;
-  for (const std::uint64_t seed : {2, 5, 8}) {
-    const State whole = make_planet(seed);
-    for (const Index c : great_rivers(2, whole)) {
-      const State island = make(around(place_of(c, whole.grid())), whole, seed).island;
-      inside.add(island, false);
-      border.add(island, true);
-    }
-  }
-  const double even = 4 * 10.0 / 360.0;  // of all directions; twelve cells have but few
-  EXPECT_LT(inside.along_axes, 1.4 * even * inside.all)
-      << inside.along_axes << " of " << inside.all;
-  // Two rows along the border are 3 % of the ground, and a river that heads anywhere leaves them
-  // within a few cells.
-  EXPECT_GT(inside.all, 5000);
-  EXPECT_LT(border.all, 0.003 * inside.all) << border.all << " of " << inside.all;
-}
-
 // Detail once dipped plains to the level of the sea, and rivers left the flats over its edge.
 TEST(Island, PlainsHaveNoLakesThatThePlanetLacks) {
   double land = 0.0, lakes = 0.0;

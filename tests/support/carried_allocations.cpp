@@ -1,6 +1,7 @@
-// In every test program: memory that is asked for within a parallel region is asked for where its
-// want can be told. An exception that leaves such a region ends the program, so that each
-// allocation there stands in a guard of ParallelErrors.
+// With TERRANE_CARRIED_ALLOCATIONS set, in every test program: memory that is asked for within a
+// parallel region is asked for where its want can be told. An exception that leaves such a region
+// ends the program, so that each allocation there should stand in a guard of ParallelErrors; the
+// program itself ends in one line also where one does not.
 #include <execinfo.h>
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -42,7 +43,7 @@ class CarriedAllocations : public testing::Environment {
  public:
   void TearDown() override {
     const int count = asked;
-    if (count == 0) return;
+    if (count == 0 || std::getenv("TERRANE_CARRIED_ALLOCATIONS") == nullptr) return;
     std::ostringstream text;
     for (int k = 0; k < std::min<int>(count, sites.size()); ++k) {
       for (int call = 2; call < sites[k].depth; ++call) text << ' ' << sites[k].calls[call];

@@ -118,12 +118,10 @@ std::vector<float> exemplary_detail(const PlanetCells& cells, const PlanetRelief
     return static_cast<float>(std::sqrt(variance(begin, end) / variance(0, law.octaves)));
   };
   std::vector<float> detail(fine.size()), part(fine.size());
-  if (first < last) {  // cells of many kilometres hold no wave of an exemplar
-    exemplar_detail(cells.planet(),
-                    {planet.elevation_m, planet.orogeny_type, planet.orogeny_age_myr,
-                     planet.fold_east, planet.fold_north, p.old_orogeny_myr, p.plain_slope},
-                    fine, library, band, seed, detail);
-  }
+  exemplar_detail(cells.planet(),
+                  {planet.elevation_m, planet.orogeny_type, planet.orogeny_age_myr,
+                   planet.fold_east, planet.fold_north, p.old_orogeny_myr, p.plain_slope},
+                  fine, library, band, seed, detail);
   for (float& value : detail) value *= deviation(first, last);
   const auto add_octaves = [&](int begin, int end) {
     if (begin >= end) return;
@@ -137,38 +135,16 @@ std::vector<float> exemplary_detail(const PlanetCells& cells, const PlanetRelief
   return detail;
 }
 
-/// Unit detail whose waves fade in from the edge each over half its length, or over the seam where
-/// that is shorter. Were all to fade with the longest, the ground along the edge would be an even
-/// slope, on which water runs straight.
-void detail_from_edge(const PlanetCells& cells, const DetailLaw& law, std::uint64_t seed,
-                      std::span<float> detail) {
-  const Grid& fine = cells.fine();
-  std::vector<float> wave(detail.size());
-  std::fill(detail.begin(), detail.end(), 0.0F);
-  double squares = 0.0;
-  for (int k = 0; k < law.octaves; ++k) squares += std::pow(law.gain, 2 * k);
-  for (int k = 0; k < law.octaves; ++k) {
-    const double wavelength_m = law.wavelength_m * std::exp2(-k);
-    const double amplitude = std::pow(law.gain, k) / std::sqrt(squares);
-    unit_detail(fine, {wavelength_m, 1, law.gain}, seed, "island.detail", wave);
-    on_cells(fine, [&](int i, int j, Index c) {
-      const double ramp = edge_ramp(fine, i, j, std::min(0.5 * wavelength_m, seam_m(cells)));
-      detail[c] += static_cast<float>(amplitude * ramp) * wave[c];
-    });
-  }
-}
-
 /// Makes unit detail on land that of exemplars.
 void take_exemplars(const PlanetCells& cells, const PlanetRelief& planet, const IslandParameters& p,
                     const DetailLaw& law, const ExemplarLibrary& library, std::uint64_t seed,
                     std::span<const float> planet_m, std::span<float> detail) {
   constexpr double kShallow_m = -200.0;
   const std::vector<float> exemplary = exemplary_detail(cells, planet, p, law, library, seed);
-  on_cells(cells.fine(), [&](int i, int j, Index c) {
+  on_cells(cells.fine(), [&](int, int, Index c) {
     const double land = smooth_step(kShallow_m, 0.0, static_cast<double>(planet_m[c]));
-    const double ramp = edge_ramp(cells.fine(), i, j, seam_m(cells));
-    detail[c] = static_cast<float>(std::sqrt(land) * ramp * exemplary[c] +
-                                   std::sqrt(1.0 - land) * detail[c]);
+    detail[c] =
+        static_cast<float>(std::sqrt(land) * exemplary[c] + std::sqrt(1.0 - land) * detail[c]);
   });
 }
 
@@ -183,7 +159,7 @@ void add_rough_detail(const PlanetCells& cells, const PlanetRelief& planet,
   law.octaves = octaves_down_to(p.cell_m, law.wavelength_m);
   law.gain = std::exp2(-p.detail_hurst);
   std::vector<float> detail(fine.size()), roughness(cells.size());
-  detail_from_edge(cells, law, seed, detail);
+  unit_detail(fine, law, seed, "island.detail", detail);
   if (exemplars != nullptr) {
     take_exemplars(cells, planet, p, law, *exemplars, seed, planet_m, detail);
   }
@@ -198,10 +174,9 @@ void add_rough_detail(const PlanetCells& cells, const PlanetRelief& planet,
   const std::vector<float> mean = cells.means(detail, {}, 0.0F);
   const std::vector<float> dry = all_round(cells, planet.elevation_m, /*land=*/true);
   on_cells(fine, [&](int i, int j, Index c) {
-    const double centred_m =
-        detail[c] - edge_ramp(fine, i, j, seam_m(cells)) * cells.interpolate(mean, i, j);
-    z[c] = static_cast<float>(
-        with_detail(z[c], centred_m, std::clamp(cells.interpolate(dry, i, j), 0.0, 1.0)));
+    const double centred_m = detail[c] - cells.interpolate(mean, i, j);
+    z[c] = static_cast<float>(with_detail(z[c], edge_ramp(fine, i, j, seam_m(cells)) * centred_m,
+                                          std::clamp(cells.interpolate(dry, i, j), 0.0, 1.0)));
   });
 }
 

@@ -41,7 +41,7 @@ bool inject_noise(const ErosionParameters& p, const Lift<V>& lift, const Grid& g
 
 /// The latest warping of the ground, which rivers have not yet cut through. Returns whether there
 /// was any. Its derivative with respect to the wavelength is a difference of the noise alone,
-/// extrapolated from two steps (Richardson 1911) over which the finest waves hardly move: right to
+/// extrapolated from two steps (Richardson's way) over which the finest waves hardly move: right to
 /// about 1e-4.
 template <class V>
 bool warp(const ErosionParameters& p, const Lift<V>& lift, const Grid& grid, std::uint64_t seed,

@@ -19,15 +19,16 @@ std::vector<V> held_up_m(const Crust<V>& crust, const Grid& coarse, const std::v
                          const Arithmetic<V>& infill) {
   const IsostasyParameters& p = crust.parameters;
   ElasticPlate plate = p.plate;
-  plate.gravity_m_s2 = crust.planet.gravity_m_s2;
   plate.radius_m = 1e3 * crust.radius_km();
   std::vector<V> held(local_m), flexed(local_m);
-  apply_linear<V, 3>(flexed,
-                     {crust.lift(p.elastic_thickness_km), crust.lift(p.density.mantle), infill},
-                     [&](auto values, const std::array<double, 3>& of_plate) {
+  apply_linear<V, 4>(flexed,
+                     {crust.lift(p.elastic_thickness_km), crust.lift(p.density.mantle), infill,
+                      crust.lift(crust.planet.gravity_m_s2)},
+                     [&](auto values, const std::array<double, 4>& of_plate) {
                        plate.thickness_m = 1e3 * of_plate[0];
                        plate.mantle_kg_m3 = of_plate[1];
                        plate.infill_kg_m3 = of_plate[2];
+                       plate.gravity_m_s2 = of_plate[3];
                        flex(coarse, values, plate);
                      });
   for (std::size_t cell = 0; cell < held.size(); ++cell) held[cell] -= flexed[cell];
