@@ -18,7 +18,7 @@ import time
 from pathlib import Path
 
 PLANET = ["run", "--preset", "preview", "--grid", "96x48", "--to", "island", "--set", "output.vtk=true",
-          "--set", "output.globe=true", "--set", "output.map_width_px=240", "--set", "island.nx=64", "--set", "island.ny=32", "--set", "erosion.steps=10",
+          "--set", "output.globe=true", "--set", "output.map_width_px=300", "--set", "island.nx=64", "--set", "island.ny=32", "--set", "erosion.steps=10",
           "--threads", "2"]
 DRIFT = ["run", "--preset", "sphere", "--grid", "64x32", "--to", "erosion", "--no-maps", "--set",
          "plates.samples=3000", "--set", "plates.time_myr=120", "--set", "plates.frames_myr=10", "--threads", "2"]
