@@ -189,8 +189,8 @@ class Beds {
   [[nodiscard]] bool on_lake(Index planet_cell) const {
     return !water_.lake_id.empty() && water_.lake_id[planet_cell] > 0;
   }
-  /// The lowest place within a quarter of a planet cell of the centre, away from the edge: what the planet
-  /// knows is which cell the water goes through, and not where.
+  /// The lowest place within a quarter of a planet cell of the centre, away from the edge: what the
+  /// planet knows is which cell the water goes through, and not where.
   End operator()(Index planet_cell) {
     const auto [found, is_new] = bed_.try_emplace(planet_cell, End{});
     if (is_new) found->second = {lowest(planet_cell), level_m(planet_cell)};

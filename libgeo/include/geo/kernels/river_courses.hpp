@@ -26,12 +26,11 @@ inline constexpr std::int32_t kCourseEnds = -1;
 ///   integral of exp(1.2 n) (1 + 6 s^2) (1 + max(0, z - b) / 20 m) ds,
 /// b = level - min(level / 2, 100 m), level = the planet's, linear between, n = noise of unit
 /// variance, s = 1 at the edge to 0 an eighth of a planet cell from it, over the fine relief. It
-/// keeps clear of other courses, of the edge and of the sea where it can. Courses end at the sea, at the edge or at
-/// the bottom of an endorheic basin. On lakes the level is that of their outlet, and does not sink;
-/// elsewhere it may sink to a quarter of the planet's, and by 30 m anywhere: plains near the level
-/// of the sea have no other way out. `elevation_m`: one
-/// value per fine cell. Cost: n log n in the fine cells that each step passes. The same bits for
-/// any number of threads.
+/// keeps clear of other courses, of the edge and of the sea where it can. Courses end at the sea,
+/// at the edge or at the bottom of an endorheic basin. On lakes the level is that of their outlet,
+/// and does not sink; elsewhere it may sink to a quarter of the planet's, and by 30 m anywhere:
+/// plains near the level of the sea have no other way out. `elevation_m`: one value per fine cell.
+/// Cost: n log n in the fine cells that each step passes. The same bits for any number of threads.
 RiverCourses trace_river_courses(const PlanetCells& cells, const PlanetWater& water,
                                  std::span<const RiverCrossing> crossings, std::uint64_t seed,
                                  std::span<const float> elevation_m);
