@@ -21,7 +21,6 @@ namespace geo {
 namespace {
 
 constexpr double kPi = std::numbers::pi, kDegree = kPi / 180.0;
-constexpr int kColumns = 512;
 
 struct Relief {
   std::shared_ptr<const Grid> grid;
@@ -35,8 +34,8 @@ void run(const Stage& stage, State& state, std::uint64_t seed) {
   stage.run(io, context);
 }
 
-Relief planet(std::uint64_t seed, const Vector3& turn) {
-  auto grid = std::make_shared<const Grid>(Grid::sphere(kColumns, kColumns / 2, {}, turn));
+Relief planet(std::uint64_t seed, int columns, const Vector3& turn) {
+  auto grid = std::make_shared<const Grid>(Grid::sphere(columns, columns / 2, {}, turn));
   State state(grid);
   run(*make_plates_stage(), state, seed);
   run(*make_isostasy_stage(), state, seed);
@@ -86,11 +85,11 @@ struct Pair {
   Relief plain, turned;
 };
 
-Pair planets(std::uint64_t seed) {
-  Relief plain = planet(seed, {});
+Pair planets(std::uint64_t seed, int columns) {
+  Relief plain = planet(seed, columns, {});
   const Vector3 middle = middle_of_a_continent(plain), pole{0, 0, 1};
   const Vector3 turn = scaled(normalised(cross(pole, middle)), angle_between(pole, middle));
-  Relief turned = planet(seed, turn);
+  Relief turned = planet(seed, columns, turn);
   return {std::move(plain), std::move(turned)};
 }
 
@@ -208,10 +207,12 @@ void expect_the_same_slopes(const Pair& pair) {
   }
 }
 
+// Cells of 40 km: a continental slope is a few of them wide. On cells of 80 km a cap holds so few
+// of a slope's that a quantile which falls on one moves by 100 m with where the centres lie.
 TEST(TurnedPlanet, LooksTheSameWithAContinentOnThePole) {
-  for (const std::uint64_t seed : {2, 3}) {
+  for (const std::uint64_t seed : {2, 3, 4, 5}) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
-    const Pair pair = planets(seed);
+    const Pair pair = planets(seed, 1024);
     expect_the_same_land(pair);
     expect_the_same_distribution(pair);
     expect_the_same_slopes(pair);
@@ -224,7 +225,7 @@ TEST(TurnedPlanet, IsAsRoughInTheRowsNextToThePole) {
   constexpr int kSeeds = 6;
   std::map<std::string, std::map<double, double>> added;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    const Pair pair = planets(seed);
+    const Pair pair = planets(seed, 512);
     for (const auto* name : kFields) {
       for (const double from : {86.0, 80.0, 74.0, 68.0}) {
         const Both band(pair, name, from, from + 6.0);
