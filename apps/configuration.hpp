@@ -6,7 +6,7 @@
 #include "calibration/settings.hpp"
 #include "geo/core/pipeline.hpp"
 #include "geo/core/planet.hpp"
-#include "geo/io/run_settings.hpp"
+#include "geo/io/config/run_settings.hpp"
 #include "geo/stages/stages.hpp"
 
 namespace terrane {

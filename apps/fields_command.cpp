@@ -13,7 +13,7 @@
 #include "commands.hpp"
 #include "geo/core/error.hpp"
 #include "geo/core/field.hpp"
-#include "geo/io/config.hpp"
+#include "geo/io/config/config.hpp"
 #include "geo/stages/stages.hpp"
 
 namespace terrane {

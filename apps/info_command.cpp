@@ -10,9 +10,9 @@
 
 #include "commands.hpp"
 #include "geo/core/error.hpp"
-#include "geo/io/digest.hpp"
-#include "geo/io/recorded_file.hpp"
-#include "geo/io/stage_file.hpp"
+#include "geo/io/files/digest.hpp"
+#include "geo/io/netcdf/stage_file.hpp"
+#include "geo/io/run/recorded_file.hpp"
 #include "thread_count.hpp"
 
 namespace terrane {

@@ -10,10 +10,10 @@
 #include "commands.hpp"
 #include "configuration.hpp"
 #include "geo/core/error.hpp"
-#include "geo/io/config.hpp"
-#include "geo/io/recorded_file.hpp"
-#include "geo/io/run_folder.hpp"
-#include "geo/io/run_pictures.hpp"
+#include "geo/io/config/config.hpp"
+#include "geo/io/run/recorded_file.hpp"
+#include "geo/io/run/run_folder.hpp"
+#include "geo/io/run/run_pictures.hpp"
 #include "thread_count.hpp"
 
 namespace terrane {

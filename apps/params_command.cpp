@@ -14,7 +14,7 @@
 #include "configuration.hpp"
 #include "geo/core/error.hpp"
 #include "geo/core/event.hpp"
-#include "geo/io/config.hpp"
+#include "geo/io/config/config.hpp"
 
 namespace terrane {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "commands.hpp"
-#include "geo/io/presets.hpp"
+#include "geo/io/config/presets.hpp"
 
 namespace terrane {
 

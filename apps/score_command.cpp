@@ -9,8 +9,8 @@
 
 #include "commands.hpp"
 #include "geo/core/error.hpp"
-#include "geo/io/planet_file.hpp"
-#include "geo/io/scorecard.hpp"
+#include "geo/io/netcdf/planet_file.hpp"
+#include "geo/io/score/scorecard.hpp"
 #include "thread_count.hpp"
 
 namespace terrane {

@@ -1,6 +1,6 @@
 #include "bandwidth.hpp"
-#include "geo/kernels/diffusion.hpp"
-#include "geo/kernels/smoothing.hpp"
+#include "geo/kernels/numerics/diffusion.hpp"
+#include "geo/kernels/numerics/smoothing.hpp"
 #include "terrain.hpp"
 
 namespace geo::bench {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "geo/kernels/great_circles.hpp"
+#include "geo/kernels/noise/great_circles.hpp"
 
 namespace geo {
 namespace {

@@ -1,7 +1,7 @@
 #include "bandwidth.hpp"
-#include "geo/kernels/depressions.hpp"
-#include "geo/kernels/flow_graph.hpp"
-#include "geo/kernels/multiple_flow.hpp"
+#include "geo/kernels/water/depressions.hpp"
+#include "geo/kernels/water/flow_graph.hpp"
+#include "geo/kernels/water/multiple_flow.hpp"
 #include "terrain.hpp"
 
 namespace geo::bench {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "geo/kernels/oriented_noise.hpp"
+#include "geo/kernels/noise/oriented_noise.hpp"
 
 namespace geo {
 namespace {

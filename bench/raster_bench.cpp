@@ -1,7 +1,7 @@
 // Plates as height maps: whole worlds with Viitanen's defaults, and a step of one.
 #include <benchmark/benchmark.h>
 
-#include "geo/kernels/raster_tectonics.hpp"
+#include "geo/kernels/plates/raster/raster_tectonics.hpp"
 
 namespace geo {
 namespace {

@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "geo/kernels/sphere_start.hpp"
-#include "geo/kernels/sphere_tectonics.hpp"
+#include "geo/kernels/plates/sphere/sphere_start.hpp"
+#include "geo/kernels/plates/sphere/sphere_tectonics.hpp"
 
 namespace geo {
 namespace {

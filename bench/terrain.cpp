@@ -4,8 +4,8 @@
 #include <map>
 #include <string>
 
-#include "geo/kernels/noise.hpp"
-#include "geo/kernels/quantiles.hpp"
+#include "geo/kernels/noise/noise.hpp"
+#include "geo/kernels/numerics/quantiles.hpp"
 
 namespace geo::bench {
 

@@ -2,9 +2,9 @@
 #include <algorithm>
 
 #include "bandwidth.hpp"
-#include "geo/kernels/depressions.hpp"
-#include "geo/kernels/flow_graph.hpp"
-#include "geo/kernels/stream_power.hpp"
+#include "geo/kernels/landscape/stream_power.hpp"
+#include "geo/kernels/water/depressions.hpp"
+#include "geo/kernels/water/flow_graph.hpp"
 #include "terrain.hpp"
 
 namespace geo::bench {

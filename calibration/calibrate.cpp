@@ -10,14 +10,14 @@
 
 #include "calibration/checkpoint.hpp"
 #include "calibration/fit.hpp"
-#include "calibration/report.hpp"
+#include "calibration/report/report.hpp"
 #include "calibration/uncertainty.hpp"
 #include "geo/core/error.hpp"
 #include "geo/core/random.hpp"
-#include "geo/io/config.hpp"
-#include "geo/io/digest.hpp"
-#include "geo/io/run_folder.hpp"
-#include "geo/io/run_settings.hpp"
+#include "geo/io/config/config.hpp"
+#include "geo/io/config/run_settings.hpp"
+#include "geo/io/files/digest.hpp"
+#include "geo/io/run/run_folder.hpp"
 
 namespace geo::calibration {
 namespace {

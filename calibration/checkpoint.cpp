@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "geo/core/error.hpp"
-#include "geo/io/atomic_file.hpp"
-#include "geo/io/config.hpp"
+#include "geo/io/config/config.hpp"
+#include "geo/io/files/atomic_file.hpp"
 
 namespace geo::calibration {
 namespace {

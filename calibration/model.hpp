@@ -7,8 +7,8 @@
 
 #include "geo/core/parameter.hpp"
 #include "geo/core/planet.hpp"
-#include "geo/stages/erosion.hpp"
-#include "geo/stages/isostasy.hpp"
+#include "geo/stages/erosion/erosion.hpp"
+#include "geo/stages/isostasy/isostasy.hpp"
 
 namespace geo::calibration {
 

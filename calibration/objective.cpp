@@ -9,7 +9,7 @@
 
 #include "geo/core/error.hpp"
 #include "geo/core/parallel_errors.hpp"
-#include "geo/kernels/receiver_distance.hpp"
+#include "geo/kernels/water/receiver_distance.hpp"
 
 namespace geo::calibration {
 namespace {

@@ -10,9 +10,9 @@
 
 #include "calibration/ranking.hpp"
 #include "geo/core/error.hpp"
-#include "geo/io/dem.hpp"
-#include "geo/io/hypsography.hpp"
-#include "geo/io/table.hpp"
+#include "geo/io/input/dem.hpp"
+#include "geo/io/input/hypsography.hpp"
+#include "geo/io/input/table.hpp"
 
 namespace geo::calibration {
 namespace {

@@ -10,7 +10,7 @@ function(terrane_embed target folder)
   endforeach()
   set(source ${CMAKE_CURRENT_BINARY_DIR}/${target}_embedded_data.cpp)
   file(CONFIGURE OUTPUT ${source} CONTENT [[
-#include "geo/io/embedded_data.hpp"
+#include "geo/io/files/embedded_data.hpp"
 
 namespace geo::io {
 const std::vector<EmbeddedFile>& embedded_files() {

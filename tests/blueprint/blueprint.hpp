@@ -16,9 +16,9 @@
 
 #include "geo/core/field.hpp"
 #include "geo/core/state.hpp"
-#include "geo/io/config.hpp"
-#include "geo/io/presets.hpp"
-#include "geo/kernels/noise.hpp"
+#include "geo/io/config/config.hpp"
+#include "geo/io/config/presets.hpp"
+#include "geo/kernels/noise/noise.hpp"
 #include "geo/stages/stages.hpp"
 
 namespace geo::test {

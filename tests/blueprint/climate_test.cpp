@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "blueprint.hpp"
-#include "geo/kernels/blueprint_climate.hpp"
-#include "geo/kernels/overlay.hpp"
+#include "geo/kernels/climate/blueprint_climate.hpp"
+#include "geo/kernels/remapping/overlay.hpp"
 
 namespace geo {
 namespace {

@@ -4,8 +4,8 @@
 #include <set>
 
 #include "blueprint.hpp"
-#include "geo/kernels/continents.hpp"
-#include "geo/kernels/smoothing.hpp"
+#include "geo/kernels/numerics/smoothing.hpp"
+#include "geo/kernels/plates/growth/continents.hpp"
 
 namespace geo {
 namespace {

@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "blueprint.hpp"
-#include "geo/kernels/quantiles.hpp"
-#include "geo/kernels/sea_level.hpp"
-#include "geo/kernels/smoothing.hpp"
+#include "geo/kernels/landscape/sea_level.hpp"
+#include "geo/kernels/numerics/quantiles.hpp"
+#include "geo/kernels/numerics/smoothing.hpp"
 
 namespace geo {
 namespace {

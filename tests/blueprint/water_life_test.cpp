@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "blueprint.hpp"
-#include "geo/kernels/blueprint_climate.hpp"
-#include "geo/kernels/rivers.hpp"
-#include "geo/kernels/whittaker.hpp"
+#include "geo/kernels/climate/blueprint_climate.hpp"
+#include "geo/kernels/life/whittaker.hpp"
+#include "geo/kernels/water/rivers.hpp"
 
 namespace geo {
 namespace {

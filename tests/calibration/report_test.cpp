@@ -1,5 +1,5 @@
 // What a calibration hands over: five files that hold all it found.
-#include "calibration/report.hpp"
+#include "calibration/report/report.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,11 +11,11 @@
 #include <regex>
 #include <set>
 
-#include "calibration/report_curves.hpp"
+#include "calibration/report/report_curves.hpp"
 #include "calibration/sample_result.hpp"
 #include "geo/core/error.hpp"
-#include "geo/io/build_info.hpp"
-#include "geo/io/config.hpp"
+#include "geo/io/config/config.hpp"
+#include "geo/io/files/build_info.hpp"
 #include "io/temporary_folder.hpp"
 #include "support/declarations.hpp"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "calibration/objective.hpp"
-#include "geo/io/config.hpp"
+#include "geo/io/config/config.hpp"
 #include "geo/stages/stages.hpp"
 
 namespace geo::calibration {

@@ -13,7 +13,7 @@
 #include "calibration/settings.hpp"
 #include "geo/core/error.hpp"
 #include "geo/core/random.hpp"
-#include "geo/io/hypsography.hpp"
+#include "geo/io/input/hypsography.hpp"
 
 namespace geo::calibration {
 namespace {

@@ -13,7 +13,7 @@
 #include "geo/core/checkpoint.hpp"
 #include "geo/core/error.hpp"
 #include "geo/core/random.hpp"
-#include "geo/io/stage_file.hpp"
+#include "geo/io/netcdf/stage_file.hpp"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "geo/core/grid.hpp"
-#include "geo/kernels/quantiles.hpp"
+#include "geo/kernels/numerics/quantiles.hpp"
 
 int main() {
   const geo::Grid grid = geo::Grid::sphere(64, 32);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geo/kernels/noise.hpp"
+#include "geo/kernels/noise/noise.hpp"
 #include "geo/stages/stages.hpp"
 #include "support.hpp"
 

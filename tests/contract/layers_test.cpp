@@ -1,6 +1,7 @@
 // Who may include whom: apps -> calibration -> stages -> kernels -> core, and io -> kernels, core.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <regex>
 
@@ -69,15 +70,67 @@ TEST(Layers, IncludesPointOneWay) {
   }
 }
 
-TEST(Layers, PrivateHeadersStayInTheirFolder) {
+TEST(Layers, PrivateHeadersStayInTheirLayer) {
   for (const auto& [layer, allowed] : kMayInclude) {
     for (const Include& include : includes_of(layer)) {
       if (!include.quoted || !layer_of(include.header).empty()) continue;
       if (include.header == "terrane_commit.hpp") continue;  // written by the build
-      EXPECT_TRUE(fs::exists(include.file.parent_path() / include.header))
+      const bool of_another_room = include.header.starts_with(layer + "/");
+      EXPECT_TRUE(of_another_room || fs::exists(include.file.parent_path() / include.header))
           << include.file << " includes " << include.header;
     }
   }
+}
+
+/// Folders below a layer that hold code, and how many files each holds.
+std::map<std::string, int> rooms_in(const std::string& folder) {
+  std::map<std::string, int> rooms;
+  for (const fs::path& path : test::files_in({folder}, {".hpp", ".cpp"})) {
+    ++rooms[fs::relative(path.parent_path(), test::repository() / folder).string()];
+  }
+  return rooms;
+}
+
+TEST(Rooms, AreSmall) {
+  constexpr int kMost = 25;
+  for (const char* tree : {"libgeo/include/geo", "libgeo/src", "calibration", "tests"}) {
+    for (const auto& [room, files] : rooms_in(tree)) EXPECT_LE(files, kMost) << tree << '/' << room;
+  }
+}
+
+TEST(Rooms, OfKernelsAreTheSameForHeadersAndSources) {
+  const auto headers = rooms_in("libgeo/include/geo/kernels"),
+             sources = rooms_in("libgeo/src/kernels");
+  EXPECT_GT(headers.size(), 10U);
+  for (const auto& [room, files] : headers) EXPECT_TRUE(sources.contains(room)) << room;
+  for (const auto& [room, files] : sources) EXPECT_TRUE(headers.contains(room)) << room;
+}
+
+TEST(Rooms, OfKernelsHaveNoCycles) {
+  std::map<std::string, std::set<std::string>> needs;
+  static const std::regex kKernel("(?:geo/)?kernels/(.*)/[^/]+");
+  for (const Include& include : includes_of("kernels")) {
+    std::smatch match;
+    if (!include.quoted || !std::regex_match(include.header, match, kKernel)) continue;
+    const std::string path = include.file.parent_path().string();
+    const std::string room = path.substr(path.rfind("kernels/") + 8);
+    if (match[1] != room) needs[room].insert(match[1]);
+  }
+  EXPECT_GT(needs.size(), 8U);
+  // Rooms that need nothing but what stands below are built; in the end none is left.
+  std::set<std::string> built;
+  for (bool any = true; any;) {
+    any = false;
+    for (const auto& [room, files] : rooms_in("libgeo/src/kernels")) {
+      if (built.contains(room)) continue;
+      const auto& below = needs[room];
+      if (std::includes(built.begin(), built.end(), below.begin(), below.end())) {
+        built.insert(room);
+        any = true;
+      }
+    }
+  }
+  for (const auto& [room, below] : needs) EXPECT_TRUE(built.contains(room)) << room;
 }
 
 TEST(Layers, PhysicsKnowsNoFilesAndNoLogs) {

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geo/kernels/noise.hpp"
+#include "geo/kernels/noise/noise.hpp"
 #include "support.hpp"
 
 namespace geo {

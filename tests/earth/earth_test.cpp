@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <optional>
 
-#include "geo/io/dem.hpp"
-#include "geo/io/scorecard.hpp"
-#include "geo/kernels/depressions.hpp"
-#include "geo/kernels/flow_graph.hpp"
+#include "geo/io/input/dem.hpp"
+#include "geo/io/score/scorecard.hpp"
+#include "geo/kernels/water/depressions.hpp"
+#include "geo/kernels/water/flow_graph.hpp"
 #include "geo/stages/stages.hpp"
 
 namespace geo {

@@ -1,6 +1,6 @@
 // Headers of NetCDF's classic format, which are walked before the library opens a file.
-#include "classic_size.hpp"
 #include "fuzz.hpp"
+#include "io/netcdf/classic_size.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const geo::fuzz::InputFile file("input.nc");

@@ -2,7 +2,7 @@
 #include "configuration.hpp"
 
 #include "fuzz.hpp"
-#include "geo/io/config.hpp"
+#include "geo/io/config/config.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static terrane::Configuration configuration;

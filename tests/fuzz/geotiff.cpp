@@ -1,5 +1,5 @@
 // GeoTIFF: bytes as they come, through libtiff and libgeotiff.
-#include "geotiff.hpp"
+#include "io/input/geotiff.hpp"
 
 #include "fuzz.hpp"
 

@@ -1,8 +1,8 @@
 // The manifest of a run, as --resume and others read it.
-#include "geo/io/manifest.hpp"
+#include "geo/io/run/manifest.hpp"
 
 #include "fuzz.hpp"
-#include "geo/io/config.hpp"
+#include "geo/io/config/config.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const geo::fuzz::InputFile file("manifest.json"), again("again.json");

@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "fuzz.hpp"
-#include "geo/io/plate_outlines.hpp"
-#include "geo/kernels/region_outline.hpp"
+#include "geo/io/input/plate_outlines.hpp"
+#include "geo/kernels/plates/region_outline.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const geo::fuzz::InputFile file("input.geojson");

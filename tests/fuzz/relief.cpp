@@ -1,7 +1,7 @@
 // Reliefs and other rasters of others, as --dem and [fields] name them.
 #include <cmath>
 
-#include "geo/io/dem.hpp"
+#include "geo/io/input/dem.hpp"
 #include "made_netcdf.hpp"
 
 namespace {

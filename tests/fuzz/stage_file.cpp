@@ -1,5 +1,5 @@
 // Stage files and frames of drift, as `info`, `score`, `maps` and --resume read them.
-#include "geo/io/stage_file.hpp"
+#include "geo/io/netcdf/stage_file.hpp"
 
 #include "made_netcdf.hpp"
 

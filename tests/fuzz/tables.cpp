@@ -3,7 +3,7 @@
 
 #include "calibration/target.hpp"
 #include "fuzz.hpp"
-#include "geo/io/hypsography.hpp"
+#include "geo/io/input/hypsography.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const geo::fuzz::InputFile file("input.csv");

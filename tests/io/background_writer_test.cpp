@@ -1,4 +1,4 @@
-#include "geo/io/background_writer.hpp"
+#include "geo/io/files/background_writer.hpp"
 
 #include <gtest/gtest.h>
 

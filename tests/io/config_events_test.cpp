@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "geo/core/error.hpp"
-#include "geo/io/config.hpp"
+#include "geo/io/config/config.hpp"
 
 namespace geo::io {
 namespace {

@@ -1,4 +1,4 @@
-#include "geo/io/config.hpp"
+#include "geo/io/config/config.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 
 #include "geo/core/error.hpp"
 #include "geo/core/planet.hpp"
-#include "geo/io/presets.hpp"
+#include "geo/io/config/presets.hpp"
 
 namespace geo::io {
 namespace {

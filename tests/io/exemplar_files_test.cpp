@@ -1,5 +1,5 @@
 // Exemplars as files hold them, and the cache of those that terrane grows.
-#include "geo/io/exemplar_files.hpp"
+#include "geo/io/input/exemplar_files.hpp"
 
 #include <geotiff.h>
 #include <geovalues.h>

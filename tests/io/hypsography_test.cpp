@@ -1,4 +1,4 @@
-#include "geo/io/hypsography.hpp"
+#include "geo/io/input/hypsography.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "geo/io/manifest.hpp"
+#include "geo/io/run/manifest.hpp"
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -8,9 +8,9 @@
 #include <limits>
 
 #include "geo/core/error.hpp"
+#include "io/files/vouched_bytes.hpp"
 #include "io/sample_snapshot.hpp"
 #include "io/temporary_folder.hpp"
-#include "vouched_bytes.hpp"
 
 namespace geo::io {
 namespace {

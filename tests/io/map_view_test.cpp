@@ -1,5 +1,5 @@
 // Maps in projections, windows and of any field.
-#include "geo/io/map_view.hpp"
+#include "geo/io/drawing/map_view.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "geo/io/maps.hpp"
+#include "geo/io/maps/maps.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "geo/core/error.hpp"
-#include "geo/io/report.hpp"
+#include "geo/io/report/report.hpp"
 #include "io/picture.hpp"
 #include "io/temporary_folder.hpp"
 

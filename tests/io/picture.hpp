@@ -8,7 +8,7 @@
 #include <set>
 #include <vector>
 
-#include "geo/io/maps.hpp"
+#include "geo/io/maps/maps.hpp"
 
 namespace geo::io {
 

@@ -1,5 +1,5 @@
 // Plates of GeoJSON files.
-#include "geo/io/plate_outlines.hpp"
+#include "geo/io/input/plate_outlines.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "geo/core/error.hpp"
-#include "geo/io/dem.hpp"
+#include "geo/io/input/dem.hpp"
 #include "io/temporary_folder.hpp"
 
 namespace geo::io {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "geo/core/random.hpp"
-#include "geo/io/stage_file.hpp"
+#include "geo/io/netcdf/stage_file.hpp"
 
 namespace geo {
 

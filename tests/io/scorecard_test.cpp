@@ -1,4 +1,4 @@
-#include "geo/io/scorecard.hpp"
+#include "geo/io/score/scorecard.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 #include <set>
 
 #include "geo/core/error.hpp"
-#include "geo/io/planet_file.hpp"
-#include "geo/io/stage_file.hpp"
+#include "geo/io/netcdf/planet_file.hpp"
+#include "geo/io/netcdf/stage_file.hpp"
 #include "io/sample_snapshot.hpp"
 #include "io/temporary_folder.hpp"
 

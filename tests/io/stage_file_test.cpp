@@ -1,4 +1,4 @@
-#include "geo/io/stage_file.hpp"
+#include "geo/io/netcdf/stage_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@
 #include <sstream>
 
 #include "geo/core/error.hpp"
-#include "geo/io/atomic_file.hpp"
+#include "geo/io/files/atomic_file.hpp"
 #include "io/sample_snapshot.hpp"
 #include "io/temporary_folder.hpp"
 

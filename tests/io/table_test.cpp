@@ -1,5 +1,5 @@
 // The one reader of comma-separated tables.
-#include "geo/io/table.hpp"
+#include "geo/io/input/table.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <locale>
 
 #include "geo/core/error.hpp"
-#include "geo/io/embedded_data.hpp"
+#include "geo/io/files/embedded_data.hpp"
 #include "temporary_folder.hpp"
 
 namespace geo::io {

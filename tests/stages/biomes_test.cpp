@@ -1,4 +1,4 @@
-#include "geo/stages/biomes.hpp"
+#include "geo/stages/biomes/biomes.hpp"
 
 #include <gtest/gtest.h>
 #include <omp.h>

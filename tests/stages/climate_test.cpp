@@ -1,4 +1,4 @@
-#include "geo/stages/climate.hpp"
+#include "geo/stages/climate/climate.hpp"
 
 #include <gtest/gtest.h>
 #include <omp.h>

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "geo/stages/plates.hpp"
+#include "geo/stages/plates/plates.hpp"
 
 namespace geo {
 

@@ -1,4 +1,4 @@
-#include "geo/stages/erosion.hpp"
+#include "geo/stages/erosion/erosion.hpp"
 
 #include <gtest/gtest.h>
 #ifdef _OPENMP
@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "geo/core/pipeline.hpp"
-#include "geo/kernels/flow_graph.hpp"
+#include "geo/kernels/water/flow_graph.hpp"
 #include "support/terrain.hpp"
 
 namespace geo {

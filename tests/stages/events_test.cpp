@@ -7,9 +7,9 @@
 
 #include "geo/core/error.hpp"
 #include "geo/core/vector3.hpp"
-#include "geo/kernels/impact_crater.hpp"
-#include "geo/stages/climate.hpp"
-#include "geo/stages/erosion.hpp"
+#include "geo/kernels/landscape/impact_crater.hpp"
+#include "geo/stages/climate/climate.hpp"
+#include "geo/stages/erosion/erosion.hpp"
 
 namespace geo {
 namespace {

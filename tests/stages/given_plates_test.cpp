@@ -10,7 +10,7 @@
 #include "drifted.hpp"
 #include "geo/core/error.hpp"
 #include "geo/core/place.hpp"
-#include "geo/kernels/ocean_depth.hpp"
+#include "geo/kernels/crust/ocean_depth.hpp"
 
 namespace geo {
 namespace {

@@ -1,4 +1,4 @@
-#include "geo/stages/hydrology.hpp"
+#include "geo/stages/hydrology/hydrology.hpp"
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -7,8 +7,8 @@
 #include <array>
 #include <cmath>
 
-#include "geo/kernels/depressions.hpp"
-#include "geo/kernels/noise.hpp"
+#include "geo/kernels/noise/noise.hpp"
+#include "geo/kernels/water/depressions.hpp"
 #include "support/terrain.hpp"
 
 namespace geo {

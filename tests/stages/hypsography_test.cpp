@@ -6,10 +6,10 @@
 #include <memory>
 
 #include "geo/core/error.hpp"
-#include "geo/kernels/crust_columns.hpp"
-#include "geo/kernels/quantiles.hpp"
-#include "geo/stages/isostasy.hpp"
-#include "geo/stages/plates.hpp"
+#include "geo/kernels/crust/crust_columns.hpp"
+#include "geo/kernels/numerics/quantiles.hpp"
+#include "geo/stages/isostasy/isostasy.hpp"
+#include "geo/stages/plates/plates.hpp"
 
 namespace geo {
 namespace {

@@ -1,5 +1,5 @@
 // An island against the planet that it is a part of.
-#include "geo/stages/island.hpp"
+#include "geo/stages/island/island.hpp"
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -12,12 +12,12 @@
 
 #include "geo/core/error.hpp"
 #include "geo/core/projection.hpp"
-#include "geo/kernels/blueprint_climate.hpp"
-#include "geo/kernels/catmull_rom.hpp"
-#include "geo/kernels/exemplar.hpp"
-#include "geo/kernels/fine_relief.hpp"
-#include "geo/kernels/water_balance.hpp"
-#include "geo/stages/climate.hpp"
+#include "geo/kernels/climate/blueprint_climate.hpp"
+#include "geo/kernels/exemplars/exemplar.hpp"
+#include "geo/kernels/landscape/fine_relief.hpp"
+#include "geo/kernels/remapping/catmull_rom.hpp"
+#include "geo/kernels/water/water_balance.hpp"
+#include "geo/stages/climate/climate.hpp"
 #include "geo/stages/stages.hpp"
 
 namespace geo {

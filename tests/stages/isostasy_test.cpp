@@ -1,5 +1,5 @@
 // Crust and relief of whole planets, from the plates on.
-#include "geo/stages/isostasy.hpp"
+#include "geo/stages/isostasy/isostasy.hpp"
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -12,11 +12,11 @@
 
 #include "geo/core/error.hpp"
 #include "geo/core/vector3.hpp"
-#include "geo/kernels/airy.hpp"
-#include "geo/kernels/area_sum.hpp"
-#include "geo/kernels/convergent_margins.hpp"
-#include "geo/kernels/quantiles.hpp"
-#include "geo/stages/plates.hpp"
+#include "geo/kernels/crust/airy.hpp"
+#include "geo/kernels/numerics/area_sum.hpp"
+#include "geo/kernels/numerics/quantiles.hpp"
+#include "geo/kernels/plates/growth/convergent_margins.hpp"
+#include "geo/stages/plates/plates.hpp"
 
 namespace geo {
 namespace {

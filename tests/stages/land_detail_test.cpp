@@ -5,10 +5,10 @@
 #include <cmath>
 #include <memory>
 
-#include "geo/kernels/exemplar.hpp"
-#include "geo/kernels/smoothing.hpp"
-#include "geo/stages/isostasy.hpp"
-#include "geo/stages/plates.hpp"
+#include "geo/kernels/exemplars/exemplar.hpp"
+#include "geo/kernels/numerics/smoothing.hpp"
+#include "geo/stages/isostasy/isostasy.hpp"
+#include "geo/stages/plates/plates.hpp"
 
 namespace geo {
 namespace {

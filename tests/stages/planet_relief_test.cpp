@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "geo/kernels/quantiles.hpp"
-#include "geo/stages/erosion.hpp"
-#include "geo/stages/isostasy.hpp"
-#include "geo/stages/plates.hpp"
+#include "geo/kernels/numerics/quantiles.hpp"
+#include "geo/stages/erosion/erosion.hpp"
+#include "geo/stages/isostasy/isostasy.hpp"
+#include "geo/stages/plates/plates.hpp"
 
 namespace geo {
 namespace {

@@ -1,5 +1,5 @@
 // The plates of whole planets.
-#include "geo/stages/plates.hpp"
+#include "geo/stages/plates/plates.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <numeric>
 
 #include "geo/core/vector3.hpp"
-#include "geo/kernels/plate_figures.hpp"
-#include "geo/kernels/quantiles.hpp"
+#include "geo/kernels/figures/plate_figures.hpp"
+#include "geo/kernels/numerics/quantiles.hpp"
 
 namespace geo {
 namespace {

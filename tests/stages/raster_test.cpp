@@ -8,9 +8,9 @@
 #include <set>
 
 #include "geo/core/error.hpp"
-#include "geo/stages/erosion.hpp"
-#include "geo/stages/isostasy.hpp"
-#include "geo/stages/plates.hpp"
+#include "geo/stages/erosion/erosion.hpp"
+#include "geo/stages/isostasy/isostasy.hpp"
+#include "geo/stages/plates/plates.hpp"
 
 namespace geo {
 namespace {

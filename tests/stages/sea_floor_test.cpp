@@ -5,8 +5,8 @@
 #include <cmath>
 #include <memory>
 
-#include "geo/stages/isostasy.hpp"
-#include "geo/stages/plates.hpp"
+#include "geo/stages/isostasy/isostasy.hpp"
+#include "geo/stages/plates/plates.hpp"
 
 namespace geo {
 namespace {

@@ -11,9 +11,9 @@
 #include "drifted.hpp"
 #include "geo/core/error.hpp"
 #include "geo/core/place.hpp"
-#include "geo/kernels/ocean_depth.hpp"
-#include "geo/stages/isostasy.hpp"
-#include "geo/stages/plates.hpp"
+#include "geo/kernels/crust/ocean_depth.hpp"
+#include "geo/stages/isostasy/isostasy.hpp"
+#include "geo/stages/plates/plates.hpp"
 
 namespace geo {
 namespace {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "geo/core/planet.hpp"
-#include "geo/io/run_settings.hpp"
+#include "geo/io/config/run_settings.hpp"
 #include "geo/stages/stages.hpp"
 
 namespace geo::test {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <numbers>
 
-#include "geo/kernels/sphere_mesh.hpp"
+#include "geo/kernels/plates/sphere/sphere_mesh.hpp"
 
 namespace geo::test {
 

@@ -5,9 +5,9 @@
 #include <numbers>
 #include <vector>
 
-#include "geo/kernels/energy_balance.hpp"
-#include "geo/kernels/evaporation.hpp"
-#include "geo/kernels/insolation.hpp"
+#include "geo/kernels/climate/energy_balance.hpp"
+#include "geo/kernels/climate/evaporation.hpp"
+#include "geo/kernels/climate/insolation.hpp"
 
 namespace geo {
 namespace {

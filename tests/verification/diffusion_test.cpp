@@ -1,4 +1,4 @@
-#include "geo/kernels/diffusion.hpp"
+#include "geo/kernels/numerics/diffusion.hpp"
 
 #include <gtest/gtest.h>
 

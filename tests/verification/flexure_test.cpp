@@ -1,5 +1,5 @@
 // The elastic shell against published and closed solutions.
-#include "geo/kernels/flexure.hpp"
+#include "geo/kernels/crust/flexure.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "geo/core/error.hpp"
-#include "geo/kernels/spherical_filter.hpp"
+#include "geo/kernels/numerics/spherical_filter.hpp"
 #include "support/terrain.hpp"
 
 namespace geo {

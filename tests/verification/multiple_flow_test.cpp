@@ -1,4 +1,4 @@
-#include "geo/kernels/multiple_flow.hpp"
+#include "geo/kernels/water/multiple_flow.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "geo/kernels/flow_graph.hpp"
+#include "geo/kernels/water/flow_graph.hpp"
 
 namespace geo {
 namespace {

@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "geo/core/vector3.hpp"
-#include "geo/kernels/smoothing.hpp"
-#include "geo/stages/erosion.hpp"
-#include "geo/stages/isostasy.hpp"
-#include "geo/stages/plates.hpp"
+#include "geo/kernels/numerics/smoothing.hpp"
+#include "geo/stages/erosion/erosion.hpp"
+#include "geo/stages/isostasy/isostasy.hpp"
+#include "geo/stages/plates/plates.hpp"
 
 namespace geo {
 namespace {

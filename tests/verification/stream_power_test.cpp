@@ -1,5 +1,5 @@
 // Exact solutions of dz/dt = U - K A^m S^n along a river of drainage area A = ka x^h.
-#include "geo/kernels/stream_power.hpp"
+#include "geo/kernels/landscape/stream_power.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "geo/core/error.hpp"
-#include "geo/kernels/depressions.hpp"
-#include "geo/kernels/flow_graph.hpp"
+#include "geo/kernels/water/depressions.hpp"
+#include "geo/kernels/water/flow_graph.hpp"
 #include "support/terrain.hpp"
 
 namespace geo {

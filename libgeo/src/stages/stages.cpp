@@ -3,13 +3,13 @@
 #include <array>
 #include <vector>
 
-#include "geo/stages/biomes.hpp"
-#include "geo/stages/climate.hpp"
-#include "geo/stages/erosion.hpp"
-#include "geo/stages/hydrology.hpp"
-#include "geo/stages/island.hpp"
-#include "geo/stages/isostasy.hpp"
-#include "geo/stages/plates.hpp"
+#include "geo/stages/biomes/biomes.hpp"
+#include "geo/stages/climate/climate.hpp"
+#include "geo/stages/erosion/erosion.hpp"
+#include "geo/stages/hydrology/hydrology.hpp"
+#include "geo/stages/island/island.hpp"
+#include "geo/stages/isostasy/isostasy.hpp"
+#include "geo/stages/plates/plates.hpp"
 
 namespace geo {
 

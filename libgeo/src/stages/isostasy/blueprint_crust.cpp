@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "geo/core/parallel_errors.hpp"
-#include "geo/kernels/cubic_rows.hpp"
-#include "geo/kernels/noise.hpp"
-#include "geo/kernels/smoothing.hpp"
+#include "geo/kernels/noise/noise.hpp"
+#include "geo/kernels/numerics/smoothing.hpp"
+#include "geo/kernels/remapping/cubic_rows.hpp"
 
 namespace geo {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "geo/core/parallel_errors.hpp"
-#include "geo/kernels/cubic_rows.hpp"
+#include "geo/kernels/remapping/cubic_rows.hpp"
 
 namespace geo {
 

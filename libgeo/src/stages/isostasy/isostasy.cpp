@@ -1,18 +1,18 @@
-#include "geo/stages/isostasy.hpp"
+#include "geo/stages/isostasy/isostasy.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "../guided_by_folds.hpp"
 #include "blueprint_crust.hpp"
 #include "geo/core/error.hpp"
 #include "geo/stages/isostasy/floating_crust.hpp"
 #include "geo/stages/isostasy/freeboard.hpp"
 #include "geo/stages/isostasy/rocks.hpp"
-#include "geo/stages/sea_level.hpp"
+#include "geo/stages/relief/sea_level.hpp"
 #include "given_crust.hpp"
 #include "land_detail.hpp"
 #include "sea_floor_fabric.hpp"
+#include "stages/relief/guided_by_folds.hpp"
 #include "torus_crust.hpp"
 
 namespace geo {

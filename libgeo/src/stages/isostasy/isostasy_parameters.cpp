@@ -1,4 +1,4 @@
-#include "geo/stages/isostasy.hpp"
+#include "geo/stages/isostasy/isostasy.hpp"
 
 namespace geo {
 

@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "geo/core/parallel_errors.hpp"
-#include "geo/kernels/cubic_rows.hpp"
-#include "geo/kernels/exemplar_detail.hpp"
-#include "geo/kernels/fine_relief.hpp"
-#include "geo/kernels/shapes.hpp"
-#include "geo/kernels/smoothing.hpp"
+#include "geo/kernels/exemplars/exemplar_detail.hpp"
+#include "geo/kernels/landscape/fine_relief.hpp"
+#include "geo/kernels/numerics/shapes.hpp"
+#include "geo/kernels/numerics/smoothing.hpp"
+#include "geo/kernels/remapping/cubic_rows.hpp"
 
 namespace geo {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "geo/kernels/exemplar.hpp"
+#include "geo/kernels/exemplars/exemplar.hpp"
 #include "geo/stages/isostasy/coarse_grid.hpp"
 #include "geo/stages/isostasy/crust.hpp"
 

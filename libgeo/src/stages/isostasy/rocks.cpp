@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "geo/core/parallel_errors.hpp"
-#include "geo/kernels/noise_row.hpp"
-#include "geo/kernels/smoothing.hpp"
+#include "geo/kernels/noise/noise_row.hpp"
+#include "geo/kernels/numerics/smoothing.hpp"
 
 namespace geo {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "geo/kernels/oriented_noise.hpp"
-#include "geo/kernels/shapes.hpp"
+#include "geo/kernels/noise/oriented_noise.hpp"
+#include "geo/kernels/numerics/shapes.hpp"
 
 namespace geo {
 namespace {

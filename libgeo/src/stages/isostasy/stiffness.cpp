@@ -1,7 +1,7 @@
 #include "geo/stages/isostasy/stiffness.hpp"
 
 #include "blueprint_crust.hpp"
-#include "geo/kernels/cubic_rows.hpp"
+#include "geo/kernels/remapping/cubic_rows.hpp"
 
 namespace geo {
 

@@ -3,7 +3,7 @@
 
 #include "geo/core/field.hpp"
 #include "geo/core/parallel_errors.hpp"
-#include "geo/kernels/smoothing.hpp"
+#include "geo/kernels/numerics/smoothing.hpp"
 #include "geo/stages/isostasy/tectonics.hpp"
 
 namespace geo {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "geo/core/error.hpp"
-#include "geo/kernels/distance_to_coast.hpp"
-#include "geo/kernels/smoothing.hpp"
+#include "geo/kernels/climate/distance_to_coast.hpp"
+#include "geo/kernels/numerics/smoothing.hpp"
 
 namespace geo {
 namespace {

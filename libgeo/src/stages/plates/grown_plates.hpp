@@ -7,17 +7,17 @@
 
 #include "geo/core/parallel_errors.hpp"
 #include "geo/core/random.hpp"
-#include "geo/kernels/continents.hpp"
-#include "geo/kernels/crust_age.hpp"
-#include "geo/kernels/cubed_sphere.hpp"
-#include "geo/kernels/mesh_sampling.hpp"
-#include "geo/kernels/plate_boundaries.hpp"
-#include "geo/kernels/plate_evolution.hpp"
-#include "geo/kernels/plate_growth.hpp"
-#include "geo/kernels/plate_motion.hpp"
-#include "geo/kernels/plate_pieces.hpp"
-#include "geo/kernels/smoothing.hpp"
-#include "geo/stages/plates.hpp"
+#include "geo/kernels/numerics/smoothing.hpp"
+#include "geo/kernels/plates/growth/continents.hpp"
+#include "geo/kernels/plates/growth/crust_age.hpp"
+#include "geo/kernels/plates/growth/plate_evolution.hpp"
+#include "geo/kernels/plates/growth/plate_growth.hpp"
+#include "geo/kernels/plates/growth/plate_pieces.hpp"
+#include "geo/kernels/plates/plate_boundaries.hpp"
+#include "geo/kernels/plates/plate_motion.hpp"
+#include "geo/kernels/remapping/cubed_sphere.hpp"
+#include "geo/kernels/remapping/mesh_sampling.hpp"
+#include "geo/stages/plates/plates.hpp"
 
 namespace geo {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "geo/stages/plates.hpp"
+#include "geo/stages/plates/plates.hpp"
 
 namespace geo {
 

@@ -7,13 +7,13 @@
 
 #include "geo/core/error.hpp"
 #include "geo/core/parallel_errors.hpp"
-#include "geo/kernels/crust_columns.hpp"
-#include "geo/kernels/great_circles.hpp"
-#include "geo/kernels/noise_row.hpp"
-#include "geo/kernels/ocean_depth.hpp"
-#include "geo/kernels/quantiles.hpp"
-#include "geo/kernels/rank_match.hpp"
-#include "geo/kernels/smoothing.hpp"
+#include "geo/kernels/crust/crust_columns.hpp"
+#include "geo/kernels/crust/ocean_depth.hpp"
+#include "geo/kernels/noise/great_circles.hpp"
+#include "geo/kernels/noise/noise_row.hpp"
+#include "geo/kernels/numerics/quantiles.hpp"
+#include "geo/kernels/numerics/rank_match.hpp"
+#include "geo/kernels/numerics/smoothing.hpp"
 
 namespace geo {
 namespace {

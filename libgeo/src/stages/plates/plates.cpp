@@ -1,4 +1,4 @@
-#include "geo/stages/plates.hpp"
+#include "geo/stages/plates/plates.hpp"
 
 #include "growth.hpp"
 #include "hypsography.hpp"

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "geo/core/parameter.hpp"
-#include "geo/stages/plates.hpp"
+#include "geo/stages/plates/plates.hpp"
 
 namespace geo {
 

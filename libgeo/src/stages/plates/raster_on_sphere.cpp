@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "geo/core/field.hpp"
-#include "geo/kernels/sphere_tectonics.hpp"
+#include "geo/kernels/plates/sphere/sphere_tectonics.hpp"
 #include "raster.hpp"
 #include "sphere_on_grid.hpp"
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "geo/kernels/raster_relief.hpp"
-#include "geo/kernels/raster_sphere.hpp"
-#include "geo/stages/plates.hpp"
+#include "geo/kernels/plates/raster/raster_relief.hpp"
+#include "geo/kernels/plates/raster/raster_sphere.hpp"
+#include "geo/stages/plates/plates.hpp"
 
 namespace geo {
 

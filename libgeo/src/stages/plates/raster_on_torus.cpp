@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geo/kernels/plate_boundaries.hpp"
+#include "geo/kernels/plates/plate_boundaries.hpp"
 #include "raster.hpp"
 
 namespace geo {

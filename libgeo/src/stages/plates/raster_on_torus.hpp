@@ -1,7 +1,7 @@
 #pragma once
 
-#include "geo/kernels/raster_relief.hpp"
-#include "geo/stages/plates.hpp"
+#include "geo/kernels/plates/raster/raster_relief.hpp"
+#include "geo/stages/plates/plates.hpp"
 
 namespace geo {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "geo/core/grid.hpp"
-#include "geo/kernels/cubic_rows.hpp"
+#include "geo/kernels/remapping/cubic_rows.hpp"
 #include "grown_plates.hpp"
 
 namespace geo {

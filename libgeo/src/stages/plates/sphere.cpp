@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "geo/core/error.hpp"
-#include "geo/kernels/sphere_start.hpp"
+#include "geo/kernels/plates/sphere/sphere_start.hpp"
 #include "sphere_beginning.hpp"
 #include "sphere_checkpoint.hpp"
 #include "sphere_on_grid.hpp"

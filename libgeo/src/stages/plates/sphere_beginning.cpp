@@ -10,8 +10,8 @@
 #include "geo/core/error.hpp"
 #include "geo/core/place.hpp"
 #include "geo/core/random.hpp"
-#include "geo/kernels/region_outline.hpp"
-#include "geo/kernels/sphere_boundaries.hpp"
+#include "geo/kernels/plates/region_outline.hpp"
+#include "geo/kernels/plates/sphere/sphere_boundaries.hpp"
 #include "hypsography.hpp"
 
 namespace geo {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "geo/kernels/sphere_start.hpp"
-#include "geo/stages/plates.hpp"
+#include "geo/kernels/plates/sphere/sphere_start.hpp"
+#include "geo/stages/plates/plates.hpp"
 
 namespace geo {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "geo/core/checkpoint.hpp"
-#include "geo/kernels/sphere_state.hpp"
+#include "geo/kernels/plates/sphere/sphere_state.hpp"
 
 namespace geo {
 

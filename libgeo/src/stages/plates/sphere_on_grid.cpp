@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "geo/core/random.hpp"
-#include "geo/kernels/noise_row.hpp"
-#include "geo/kernels/plate_motion.hpp"
+#include "geo/kernels/noise/noise_row.hpp"
+#include "geo/kernels/plates/plate_motion.hpp"
 
 namespace geo {
 namespace {

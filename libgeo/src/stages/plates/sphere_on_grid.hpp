@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "geo/kernels/sphere_boundaries.hpp"
-#include "geo/kernels/sphere_tectonics.hpp"
-#include "geo/stages/plates.hpp"
+#include "geo/kernels/plates/sphere/sphere_boundaries.hpp"
+#include "geo/kernels/plates/sphere/sphere_tectonics.hpp"
+#include "geo/stages/plates/plates.hpp"
 
 namespace geo {
 

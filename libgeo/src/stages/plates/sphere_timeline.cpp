@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "geo/kernels/great_circle_line.hpp"
-#include "geo/kernels/plate_motion.hpp"
-#include "geo/kernels/region_outline.hpp"
+#include "geo/kernels/plates/great_circle_line.hpp"
+#include "geo/kernels/plates/plate_motion.hpp"
+#include "geo/kernels/plates/region_outline.hpp"
 #include "sphere_beginning.hpp"
 
 namespace geo {

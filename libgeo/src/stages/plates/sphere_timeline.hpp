@@ -1,7 +1,7 @@
 #pragma once
 
 #include "geo/core/stage.hpp"
-#include "geo/kernels/sphere_tectonics.hpp"
+#include "geo/kernels/plates/sphere/sphere_tectonics.hpp"
 
 namespace geo {
 

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "geo/kernels/flow_graph.hpp"
-#include "geo/stages/erosion.hpp"
+#include "geo/kernels/water/flow_graph.hpp"
+#include "geo/stages/erosion/erosion.hpp"
 
 namespace geo {
 

@@ -10,8 +10,8 @@
 #include "geo/core/grid.hpp"
 #include "geo/core/numeric.hpp"
 #include "geo/core/parallel_errors.hpp"
-#include "geo/kernels/noise_row.hpp"
-#include "geo/stages/erosion.hpp"
+#include "geo/kernels/noise/noise_row.hpp"
+#include "geo/stages/erosion/erosion.hpp"
 
 namespace geo {
 

@@ -10,8 +10,8 @@
 #include "geo/core/grid.hpp"
 #include "geo/core/numeric.hpp"
 #include "geo/core/parameter.hpp"
-#include "geo/kernels/valley_width.hpp"
-#include "geo/stages/erosion.hpp"
+#include "geo/kernels/water/valley_width.hpp"
+#include "geo/stages/erosion/erosion.hpp"
 
 namespace geo {
 

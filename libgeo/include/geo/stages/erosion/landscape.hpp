@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "geo/core/numeric.hpp"
-#include "geo/kernels/area_sum.hpp"
-#include "geo/kernels/diffusion.hpp"
-#include "geo/kernels/smoothing.hpp"
-#include "geo/kernels/stream_power.hpp"
-#include "geo/kernels/valley_width.hpp"
+#include "geo/kernels/landscape/stream_power.hpp"
+#include "geo/kernels/numerics/area_sum.hpp"
+#include "geo/kernels/numerics/diffusion.hpp"
+#include "geo/kernels/numerics/smoothing.hpp"
+#include "geo/kernels/water/valley_width.hpp"
 #include "geo/stages/erosion/drainage.hpp"
 
 namespace geo {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "geo/kernels/shapes.hpp"
+#include "geo/kernels/numerics/shapes.hpp"
 #include "geo/stages/isostasy/deformation.hpp"
 #include "geo/stages/isostasy/swell.hpp"
 

@@ -4,8 +4,8 @@
 #include <span>
 
 #include "geo/core/stage.hpp"
-#include "geo/kernels/airy.hpp"
-#include "geo/stages/isostasy.hpp"
+#include "geo/kernels/crust/airy.hpp"
+#include "geo/stages/isostasy/isostasy.hpp"
 #include "geo/stages/isostasy/swell.hpp"
 
 namespace geo {

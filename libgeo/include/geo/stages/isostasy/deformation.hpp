@@ -1,7 +1,7 @@
 #pragma once
 
 #include "geo/core/parallel_errors.hpp"
-#include "geo/kernels/smoothing.hpp"
+#include "geo/kernels/numerics/smoothing.hpp"
 #include "geo/stages/isostasy/tectonics.hpp"
 
 namespace geo {

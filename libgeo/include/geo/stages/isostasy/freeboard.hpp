@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "geo/kernels/area_sum.hpp"
-#include "geo/kernels/shapes.hpp"
+#include "geo/kernels/numerics/area_sum.hpp"
+#include "geo/kernels/numerics/shapes.hpp"
 #include "geo/stages/isostasy/crust.hpp"
 
 namespace geo {

@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
-#include "geo/kernels/cubic_rows.hpp"
-#include "geo/kernels/ocean_depth.hpp"
-#include "geo/kernels/shapes.hpp"
+#include "geo/kernels/crust/ocean_depth.hpp"
+#include "geo/kernels/numerics/shapes.hpp"
+#include "geo/kernels/remapping/cubic_rows.hpp"
 #include "geo/stages/isostasy/swell.hpp"
 #include "geo/stages/isostasy/tectonics.hpp"
 

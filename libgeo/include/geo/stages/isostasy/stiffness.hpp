@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "geo/kernels/flexure.hpp"
+#include "geo/kernels/crust/flexure.hpp"
 #include "geo/stages/isostasy/tectonics.hpp"
 
 namespace geo {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "geo/kernels/noise_row.hpp"
+#include "geo/kernels/noise/noise_row.hpp"
 
 namespace geo {
 

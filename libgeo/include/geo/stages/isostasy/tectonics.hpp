@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "geo/kernels/convergent_margins.hpp"
+#include "geo/kernels/plates/growth/convergent_margins.hpp"
 #include "geo/stages/isostasy/coarse_grid.hpp"
 #include "geo/stages/isostasy/crust.hpp"
 

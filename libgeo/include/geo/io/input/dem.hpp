@@ -1,0 +1,48 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "geo/core/field.hpp"
+#include "geo/core/grid.hpp"
+#include "geo/core/planet.hpp"
+#include "geo/kernels/remapping/resample.hpp"
+
+namespace geo::io {
+
+/// A relief as a file holds it, put in order: rows from south to north, columns from west to east.
+struct Relief {
+  std::vector<float> elevation_m;  ///< on `grid`
+  Grid grid;  ///< cells of the source's size: sphere for global files, window or plane else
+  std::string source;  ///< path and variable, for the history
+  std::string variable;
+  /// The file's own cells and values where no Grid has them (nodes at the poles or on the 180th
+  /// meridian); else empty. `resample` starts from these.
+  Raster raster;
+  std::vector<float> raster_m;
+};
+
+/// Reads `FILE[:VARIABLE]`, any NetCDF with a two-dimensional elevation over latitude and longitude
+/// (or projected x and y in metres). Node- and cell-registered, latitudes up or down, longitudes
+/// 0..360 or -180..180, packed integers, repeated end column, any unit of length (none: metres).
+/// Without VARIABLE the one two-dimensional variable that looks like relief, else an error that
+/// lists the candidates. Throws InputError for unusable data (missing or NaN cells with their
+/// index, wrong units, truncated file, irregular axes), IoError when it cannot be opened.
+Relief read_relief(const std::string& file_and_variable, const Planet& planet);
+/// The same where cells may be missing: they are NaN.
+Relief read_relief_with_gaps(const std::string& file_and_variable, const Planet& planet);
+/// The same for any other field that is given as a raster (`elevation_m` then holds its values in
+/// the units of the vocabulary, or of the file where those are empty). Without VARIABLE the one
+/// named as the field, else the only raster.
+Relief read_field(const std::string& file_and_variable, const FieldSpec& spec,
+                  const Planet& planet);
+
+/// The same where cells may be missing: they are NaN.
+Relief read_field_with_gaps(const std::string& file_and_variable, const FieldSpec& spec,
+                            const Planet& planet);
+
+/// Area-weighted mean of a relief on another grid (conservative where coarser, bilinear where
+/// finer). Both must cover the same region, or `target` lie within. Throws InputError otherwise.
+std::vector<float> resample(const Relief& relief, const Grid& target);
+
+}  // namespace geo::io

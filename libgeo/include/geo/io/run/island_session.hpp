@@ -1,0 +1,53 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "geo/core/pipeline.hpp"
+#include "geo/core/planet.hpp"
+#include "geo/io/config/run_settings.hpp"
+#include "geo/io/run/manifest.hpp"
+#include "geo/io/run/run_folder.hpp"
+#include "geo/io/run/run_session.hpp"
+
+namespace geo::io {
+
+/// ParaView collections of a run: planet.pvd with the stages of the planet, island.pvd with its
+/// islands (none when there is none). Lists the VTK files of the manifest.
+void write_collection_files(const RunFolder& folder, const Manifest& manifest);
+
+/// One more island from the files of a finished planet: 07-island-2.nc and .vti, then -3 and so on,
+/// each with an entry of its own in the manifest, in island.pvd, on maps and in the report. The
+/// run's own configuration and files stay as they are.
+class IslandSession {
+ public:
+  /// `parameters` are all declarations, set to the configuration of the folder and then to what is
+  /// asked of the island; they are bound to `settings`, `planet` and the stages of `pipeline`.
+  IslandSession(const Pipeline& pipeline, int stage_number, const RunSettings& settings,
+                const Planet& planet, std::span<const Parameter> parameters,
+                std::filesystem::path folder);
+
+  /// Checks that the folder holds all that an island is made from. Throws ConfigurationError,
+  /// InputError, IoError.
+  void prepare();
+  /// Computes and writes; returns the name of the island ("island-2").
+  std::string execute(const RunEvents& events);
+
+ private:
+  [[nodiscard]] State read_planet() const;
+  [[nodiscard]] std::string next_name() const;
+
+  const Pipeline& pipeline_;
+  int stage_number_;
+  const RunSettings& settings_;
+  const Planet& planet_;
+  std::span<const Parameter> parameters_;
+  RunFolder folder_;
+  Manifest manifest_;
+  int stage_ = -1;
+  std::shared_ptr<const ExemplarLibrary> exemplars_;
+};
+
+}  // namespace geo::io

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "geo/core/event.hpp"
+#include "geo/io/files/digest.hpp"
+#include "geo/io/netcdf/stage_file.hpp"
+
+namespace geo::io {
+
+/// The build of terrane that wrote something; see BuildInfo.
+struct Builder {
+  std::string version, commit, id;
+  bool operator==(const Builder&) const = default;
+  /// "0.1.0", or if the other has that too "0.1.0 of commit 1f3c, build 8a2b".
+  [[nodiscard]] std::string words_beside(const Builder& other) const;
+};
+/// This build.
+Builder this_builder();
+
+/// What the manifest keeps of one stage. It is written after the stage's files.
+struct StageRecord {
+  std::string name;
+  double seconds = 0.0;
+  std::map<std::string, double> budget;
+  std::vector<EventRecord> events;  ///< what they did in this stage
+  std::vector<std::string> warnings;
+  std::vector<std::string> files;                   ///< relative to the folder of the run
+  std::map<std::string, std::string> file_digests;  ///< of their bytes
+  std::vector<FieldRecord> fields;
+  Builder builder;
+
+  /// Adds a file of the run's folder with its digest, once. Throws IoError.
+  void list(const std::filesystem::path& folder, const std::string& file);
+};
+
+/// manifest.json of a run.
+struct Manifest {
+  std::string version, commit, compiler, build;
+  std::map<std::string, std::string> libraries;
+  std::uint64_t seed = 1;
+  int threads = 1;
+  std::string config_digest;
+  std::vector<StageRecord> stages;  ///< those that are done
+  bool complete = false;            ///< the run went to its end
+  /// What the user allowed: "other-build" that stages are of several builds.
+  std::vector<std::string> allowed;
+  /// Of what lies beside the stages' files: the digest of its bytes by its path in the folder.
+  std::map<std::string, std::string> files;
+
+  /// The build that wrote a stage: what its record says, else that of the run.
+  [[nodiscard]] Builder builder_of(const StageRecord& record) const;
+};
+
+/// Writes manifest.json whole or not at all. Throws IoError.
+void write_manifest(const std::filesystem::path& path, const Manifest& manifest);
+/// Throws IoError when there is none, InputError when it cannot be understood.
+Manifest read_manifest(const std::filesystem::path& path);
+
+/// Why a stage's file and its record disagree ("elevation: digest differs"), or empty: then the
+/// stage is complete.
+std::string disagreement(const StageRecord& record, const Snapshot& file);
+/// The same of one field of the file.
+std::string disagreement(const StageRecord& record, const FieldSpec& spec, const Values& values);
+
+/// Name of the NetCDF file of a stage, relative to the folder. Throws InputError if it has none.
+std::string netcdf_of(const StageRecord& record);
+/// Whether the record is that of an island: the run's own ("island") or a further one
+/// ("island-2"), whose file lies on a grid of its own.
+bool is_island(const StageRecord& record);
+/// "island" of the run's own, "island-2" of the second.
+std::string island_name(int number);
+
+/// Versions of the libraries that this program runs with.
+std::map<std::string, std::string> library_versions();
+
+}  // namespace geo::io

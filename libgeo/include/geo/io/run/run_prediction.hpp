@@ -1,0 +1,21 @@
+#pragma once
+
+#include "geo/core/pipeline.hpp"
+#include "geo/io/run/machine_speed.hpp"
+
+namespace geo::io {
+
+/// What a run will take. Time holds for the machine as busy as it was when it was measured.
+struct Prediction {
+  double memory_bytes = 0.0;
+  double seconds = 0.0;
+  double disk_bytes = 0.0;
+};
+
+/// Predicts stages first..last of a pipeline on `cells` cells from costs per cell, one table in the
+/// source, scaled to the speed of this machine. `vtk` as in RunSettings; `map_width_px` is 0 where
+/// no maps are drawn.
+Prediction predict(const Pipeline& pipeline, int first, int last, double cells,
+                   const MachineSpeed& speed, bool vtk, double map_width_px);
+
+}  // namespace geo::io

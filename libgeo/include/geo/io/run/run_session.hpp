@@ -1,0 +1,140 @@
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "geo/core/pipeline.hpp"
+#include "geo/io/config/run_settings.hpp"
+#include "geo/io/files/background_writer.hpp"
+#include "geo/io/netcdf/stage_file.hpp"
+#include "geo/io/run/manifest.hpp"
+#include "geo/io/run/run_folder.hpp"
+#include "geo/io/run/run_pictures.hpp"
+#include "geo/io/run/run_prediction.hpp"
+
+namespace geo::io {
+
+class FrameFiles;
+
+/// What a command line asks of a run besides its configuration.
+struct RunRequest {
+  std::filesystem::path folder;
+  /// First stage to compute. In a new folder the run starts there, from the relief itself. With
+  /// `overwrite` on a folder that holds a run, earlier stages keep their files.
+  std::string from;
+  std::string to;                  ///< last stage; empty: as configured
+  bool resume = false;             ///< go on after the last complete stage
+  bool allow_other_build = false;  ///< go on behind stages that another build wrote
+  /// The configuration is the one that the folder holds. A run that reached its own `run.to` is
+  /// then resumed to the last stage there is.
+  bool folders_configuration = false;
+  bool overwrite = false;  ///< replace what the folder holds
+  int threads = 1;
+};
+
+/// How a run is heard. Any may be empty.
+struct RunEvents {
+  std::function<void(std::string_view stage, double cells)> stage_begins;
+  std::function<void(std::string_view stage, double seconds)> stage_ends;
+  std::function<void(double fraction)> progress;
+  std::function<void(std::string_view)> info, warning;
+  const std::atomic<bool>* stop = nullptr;
+};
+
+/// One run of a pipeline into a folder: configuration, relief, stages, files.
+///
+/// A stage is complete when its files are there whole and the manifest has its entry; the manifest
+/// is replaced after each stage. So whatever ends a run, the folder holds complete stages and
+/// nothing that only looks like one, and `resume` goes on behind them with the same bits.
+class RunSession {
+ public:
+  /// `numbers` are the places of the pipeline's stages in the full order. `parameters` are all
+  /// declarations, bound to `settings`, `planet` and the stages; the session resolves run.grid,
+  /// run.from and run.to in `settings`. All must outlive the session.
+  RunSession(const Pipeline& pipeline, std::vector<int> numbers, RunSettings& settings,
+             const Planet& planet, std::span<const Parameter> parameters, RunRequest request);
+
+  /// Checks everything that can be checked before a cell is computed, and reads the input: names of
+  /// stages, the folder, the relief, the wiring, room on the disk. Writes nothing. Throws
+  /// ConfigurationError, InputError, IoError.
+  void prepare();
+  /// What the prepared run will take on a machine of some speed.
+  [[nodiscard]] Prediction prediction(const MachineSpeed& speed) const;
+  /// Names of the stages that are still to be computed.
+  [[nodiscard]] std::vector<std::string_view> stages_to_run() const;
+  [[nodiscard]] const Grid& grid() const { return state_->grid(); }
+
+  /// Computes and writes. Throws Interrupted when `events.stop` was set: the files of finished
+  /// stages are whole then.
+  void execute(const RunEvents& events);
+
+ private:
+  void choose_stages();
+  void look_at_folder();
+  void take_open_settings(const std::string& before);
+  void check_builders(std::string_view asked_by);
+  void go_on_from(const std::string& before);
+  void keep_earlier_stages(const std::string& before, int old_begin);
+  void load_complete_stages();
+  void leave_out_island();
+  [[nodiscard]] bool events_are_felt() const;
+  [[nodiscard]] int first_stage_of_input() const;
+  [[nodiscard]] bool needs_relief() const;
+  void begin_with_bare_planet();
+  void read_initial_relief();
+  void read_given_fields();
+  void read_beginning();
+  void read_given_exemplars();
+  void find_exemplars();
+  void refuse_beginning() const;
+  [[nodiscard]] Hypsography hypsography() const;
+  [[nodiscard]] bool follows_hypsography() const;
+  [[nodiscard]] Planet planet_with_sea() const;
+  [[nodiscard]] int count_complete_stages() const;
+  [[nodiscard]] bool is_complete(int position) const;
+  [[nodiscard]] bool is_still_read(const FieldSpec& spec) const;
+  [[nodiscard]] std::string resolved_config() const;
+  [[nodiscard]] std::filesystem::path file_of(int position, std::string_view extension) const;
+  [[nodiscard]] std::string_view name_of(int position) const;
+  [[nodiscard]] int position_of(const std::string& stage, std::string_view asked_by) const;
+
+  void clear_for_this_run();
+  void compute(const RunEvents& events);
+  void write_stage(BackgroundWriter& writer, FrameFiles& frames, int position, const State& state,
+                   const Context& context, double seconds);
+  void keep_for_pictures(int position, const State& state);
+  void write_summaries(const RunEvents& events);
+  void write_collections();
+  [[nodiscard]] Provenance provenance_of(int position) const;
+  [[nodiscard]] std::string references_of(int position) const;
+
+  const Pipeline& pipeline_;
+  std::vector<int> numbers_;
+  RunSettings& settings_;
+  const Planet& planet_;
+  std::span<const Parameter> parameters_;
+  RunRequest request_;
+  RunFolder folder_;
+  Manifest manifest_;
+
+  int begin_ = 0;  // where the run as a whole starts from the relief
+  int first_ = 0;  // where this session starts to compute
+  int last_ = 0;   // where it ends
+  std::string config_;
+  std::string note_;  // why a stage of the pipeline is left out
+  std::optional<State> state_;
+  FieldsAtHand at_hand_;
+  std::vector<PlateOutline> plates_;
+  std::shared_ptr<const GivenRelief> first_relief_;
+  std::shared_ptr<const ExemplarLibrary> exemplars_, planet_exemplars_;
+  std::vector<std::string> warnings_;  ///< of what was given
+};
+
+}  // namespace geo::io

@@ -1,0 +1,132 @@
+#include "geo/io/config/run_settings.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <limits>
+
+#include "geo/core/error.hpp"
+#include "geo/io/maps/maps.hpp"
+
+namespace geo::io {
+namespace {
+
+std::vector<std::string_view> names_of_projections() {
+  std::vector<std::string_view> names;
+  for (const MapProjection& each : map_projections()) names.push_back(each.name);
+  return names;
+}
+
+}  // namespace
+
+std::vector<Parameter> RunSettings::parameters() {
+  return {
+      integer("run.seed", seed, "1", 0, std::numeric_limits<std::int64_t>::max(),
+              "seed of every random number", "design"),
+      text("run.grid", grid,
+           "cells as WIDTHxHEIGHT; auto takes the relief's own size, without one 4096x2048, of a "
+           "torus "
+           "1024x1024",
+           "design"),
+      choice("run.topology", topology, {"sphere", "torus"},
+             "a whole planet, or a tile as wide as the planet's girth whose opposite sides meet, "
+             "for plates.model = raster",
+             "design"),
+      text("run.from", from, "first stage to run; empty is the first there is", "design"),
+      text("run.to", to, "last stage to run; empty is the last there is", "design"),
+      text("dem.file", dem_file,
+           "NetCDF file of a real relief, which takes the place of plates and isostasy", "design"),
+      text("dem.variable", dem_variable,
+           "variable of that file; empty is the one that looks like relief", "design"),
+      choice("dem.sea_level", dem_sea_level, {"datum", "fraction"},
+             "where the sea stands: at the relief's own zero, or where planet.ocean_fraction of "
+             "the area lies below it",
+             "design"),
+      text("fields.erodibility", erodibility,
+           "FILE[:VARIABLE] with the erodibility of each place, yr-1; empty is "
+           "erosion.erodibility_yr everywhere",
+           "design"),
+      text("fields.uplift_rate", uplift_rate,
+           "FILE[:VARIABLE] with the rock uplift of each place, as a velocity", "design"),
+      text("fields.hypsography", hypsography,
+           "what plates.model = hypsography and erosion.hypsometry = rank aim at: earth, "
+           "earth-statistical, or a CSV file with columns quantile,elevation_m",
+           "design"),
+      choice(
+          "fields.hypsography_ocean", hypsography_ocean, {"planet", "curve"},
+          "its parts below and above 0 are mixed so that planet.ocean_fraction lies below (where "
+          "planet.sea_level is fraction), or it is taken as it stands and its 0 is the sea of all "
+          "stages",
+          "davidson2013"),
+      text("fields.ranking", ranking,
+           "FILE[:VARIABLE] of any unit, a mask or a relief, that orders places by height where "
+           "plates follow a hypsography",
+           "davidson2013"),
+      text("fields.plates", plates,
+           "plates from which drift begins: earth, or a GeoJSON file of polygons with their Euler "
+           "poles; empty draws plates.count of them",
+           "bird2003"),
+      text("fields.first_relief", first_relief,
+           "FILE[:VARIABLE] of a planet's relief from which drift begins where plates.first_relief "
+           "is given",
+           "cortial2019"),
+      text("fields.first_age", first_age,
+           "FILE[:VARIABLE] of the age of its sea floor, Myr, missing on land; empty tells it by "
+           "depth",
+           "muller2008"),
+      text("fields.start_frame", start_frame,
+           "frame of an earlier run, from which drifting plates go on, bit for bit", "design"),
+      text(
+          "fields.exemplars", exemplars,
+          "folder of NetCDF or GeoTIFF files, elevations in m, that terrain is made like where "
+          "island.detail or isostasy.detail is exemplars; empty is those that terrane grows itself",
+          "cortial2019"),
+      flag("output.vtk", vtk, "write a VTK file beside each NetCDF file", "design"),
+      flag("output.globe", globe,
+           "write each stage of the planet also as a closed surface that ParaView shows as a globe",
+           "design"),
+      real("output.globe_exaggeration", globe_exaggeration, "1", 0.0, 1000.0,
+           "by what heights are multiplied on those surfaces; 0 is a smooth globe", "design"),
+      flag("output.maps", maps, "draw the maps and the report", "design"),
+      integer("output.map_width_px", map_width_px, "1", 300, 20000, "width of the maps in pixels",
+              "design"),
+      choice("output.map_projection", map_projection, names_of_projections(),
+             "projection of the maps of a planet; islands keep their own", "snyder1987"),
+      text("output.map_center", map_center,
+           "LAT,LON of the middle of the maps; empty is 0,0; only azimuthal projections take a "
+           "latitude",
+           "design"),
+      integer("output.compression", compression, "1", 0, 9,
+              "how hard NetCDF files are compressed; 0 stores them as they are", "design"),
+  };
+}
+
+MapView RunSettings::map_view() const {
+  MapView view(static_cast<int>(map_width_px));
+  view.projection = map_projection;
+  if (!map_center.empty()) view.centre = parse_centre("output.map_center", map_center);
+  static_cast<void>(map_layout(Grid::sphere(8, 4), view));
+  return view;
+}
+
+GridSize parse_grid_size(const std::string& text) {
+  GridSize size{};
+  const char* const end = text.data() + text.size();
+  const auto [after_width, width_error] = std::from_chars(text.data(), end, size.nx);
+  if (width_error == std::errc() && after_width != end && *after_width == 'x') {
+    const auto [after_height, height_error] = std::from_chars(after_width + 1, end, size.ny);
+    if (height_error == std::errc() && after_height == end) return size;
+  }
+  throw ConfigurationError(
+      fmt::format("run.grid = \"{}\": must be WIDTHxHEIGHT, such as 4096x2048, or auto", text));
+}
+
+std::pair<std::filesystem::path, std::string> split_dem(const std::string& file_and_variable) {
+  const auto colon = file_and_variable.rfind(':');
+  if (colon == std::string::npos || std::filesystem::exists(file_and_variable)) {
+    return {file_and_variable, ""};
+  }
+  return {file_and_variable.substr(0, colon), file_and_variable.substr(colon + 1)};
+}
+
+}  // namespace geo::io

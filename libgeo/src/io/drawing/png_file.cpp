@@ -1,0 +1,110 @@
+#include "png_file.hpp"
+
+#include <libdeflate.h>
+#include <png.h>
+
+#include <array>
+#include <bit>
+#include <csetjmp>
+#include <cstdio>
+#include <memory>
+#include <new>
+#include <span>
+
+#include "geo/io/files/atomic_file.hpp"
+
+namespace geo::io {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "Cairo's pixels are read as B G R X");
+
+// Compressing is a good part of drawing: higher levels take twice the time for a few per cent.
+constexpr int kCompression = 1;
+constexpr int kComponents = 3;
+
+/// Bytes that nothing sets before they are written.
+struct Bytes {
+  explicit Bytes(std::size_t most)
+      : data(std::make_unique_for_overwrite<std::uint8_t[]>(most)), size(most) {}
+  std::unique_ptr<std::uint8_t[]> data;
+  std::size_t size;
+};
+
+/// Rows of R G B behind their filter type: 1, each byte less that of the pixel to the west.
+Bytes filtered(const PixelView& pixels) {
+  const std::size_t row_bytes = 1 + static_cast<std::size_t>(pixels.width) * kComponents;
+  Bytes rows(row_bytes * pixels.height);
+  for (int y = 0; y < pixels.height; ++y) {
+    const std::uint8_t* from = pixels.data + static_cast<std::ptrdiff_t>(y) * pixels.stride_bytes;
+    std::uint8_t* to = rows.data.get() + row_bytes * y;
+    *to++ = PNG_FILTER_VALUE_SUB;
+    std::uint8_t west[kComponents] = {0, 0, 0};
+    for (int x = 0; x < pixels.width; ++x, from += 4, to += kComponents) {
+      const std::uint8_t red = from[2], green = from[1], blue = from[0];
+      to[0] = static_cast<std::uint8_t>(red - west[0]);
+      to[1] = static_cast<std::uint8_t>(green - west[1]);
+      to[2] = static_cast<std::uint8_t>(blue - west[2]);
+      west[0] = red;
+      west[1] = green;
+      west[2] = blue;
+    }
+  }
+  return rows;
+}
+
+Bytes compressed(const Bytes& rows) {
+  const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> compressor(
+      libdeflate_alloc_compressor(kCompression), &libdeflate_free_compressor);
+  if (!compressor) throw std::bad_alloc();
+  Bytes packed(libdeflate_zlib_compress_bound(compressor.get(), rows.size));
+  packed.size = libdeflate_zlib_compress(compressor.get(), rows.data.get(), rows.size,
+                                         packed.data.get(), packed.size);
+  return packed;
+}
+
+/// Width and height, 8 bits, true colour, the one compression and filter method, no interlacing.
+std::array<std::uint8_t, 13> header_of(const PixelView& pixels) {
+  std::array<std::uint8_t, 13> header{};
+  png_save_uint_32(header.data(), static_cast<png_uint_32>(pixels.width));
+  png_save_uint_32(header.data() + 4, static_cast<png_uint_32>(pixels.height));
+  header[8] = 8;
+  header[9] = PNG_COLOR_TYPE_RGB;
+  return header;
+}
+
+void write_chunk(png_structp png, const char* name, std::span<const std::uint8_t> data) {
+  png_write_chunk(png, reinterpret_cast<png_const_bytep>(name), data.data(), data.size());
+}
+
+// Kept free of objects with destructors, for libpng leaves it with longjmp on errors.
+bool write_chunks(std::FILE* stream, std::span<const std::uint8_t> header,
+                  std::span<const std::uint8_t> image) {
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+  if (png == nullptr) return false;
+  if (setjmp(png_jmpbuf(png)) != 0) {
+    png_destroy_write_struct(&png, nullptr);
+    return false;
+  }
+  png_init_io(png, stream);
+  png_write_sig(png);
+  write_chunk(png, "IHDR", header);
+  write_chunk(png, "IDAT", image);
+  write_chunk(png, "IEND", {});
+  png_destroy_write_struct(&png, nullptr);
+  return true;
+}
+
+}  // namespace
+
+void write_png(const std::filesystem::path& path, const PixelView& pixels) {
+  const auto header = header_of(pixels);
+  const auto image = compressed(filtered(pixels));
+  AtomicFile file(path);
+  std::FILE* stream = std::fopen(file.temporary().c_str(), "wb");
+  if (stream == nullptr) file.fail("cannot open");
+  const bool written = write_chunks(stream, header, {image.data.get(), image.size});
+  if (std::fclose(stream) != 0 || !written) file.fail("the PNG library refused");
+  file.commit();
+}
+
+}  // namespace geo::io

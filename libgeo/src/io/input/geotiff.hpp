@@ -1,0 +1,15 @@
+#pragma once
+
+#include <filesystem>
+
+#include "geo/core/planet.hpp"
+#include "geo/io/input/dem.hpp"
+
+namespace geo::io {
+
+/// Reads a GeoTIFF of elevations in metres, north up, of one band, as window (geographic) or plane
+/// (projected); cells without a value are NaN. Throws InputError (names the file and what is wrong
+/// with it), IoError when it cannot be opened.
+Relief read_geotiff(const std::filesystem::path& path, const Planet& planet);
+
+}  // namespace geo::io

@@ -1,0 +1,143 @@
+#include "geo/io/report/report.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <pugixml.hpp>
+#include <sstream>
+
+#include "geo/io/files/atomic_file.hpp"
+#include "geo/io/files/embedded_data.hpp"
+#include "report_scorecard.hpp"
+
+namespace geo::io {
+namespace {
+
+void add_head(pugi::xml_node html, const std::string& title) {
+  auto head = add_element(html, "head");
+  add_element(head, "meta").append_attribute("charset") = "utf-8";
+  auto viewport = add_element(head, "meta");
+  viewport.append_attribute("name") = "viewport";
+  viewport.append_attribute("content") = "width=device-width, initial-scale=1";
+  add_element(head, "title", title);
+  add_element(head, "style", std::string(embedded_file("report/report.css")));
+}
+
+void add_pictures(pugi::xml_node main, const std::filesystem::path& folder,
+                  const std::vector<MapFile>& maps) {
+  for (const auto& map : maps) {
+    auto figure = add_element(main, "figure");
+    const std::string path = map.path.lexically_proximate(folder).generic_string();
+    auto link = add_element(figure, "a");
+    link.append_attribute("href") = path.c_str();
+    auto image = add_element(link, "img");
+    image.append_attribute("src") = path.c_str();
+    image.append_attribute("alt") = map.title.c_str();
+    image.append_attribute("loading") = "lazy";
+    if (map.width_px > 0) {
+      image.append_attribute("width") = map.width_px;
+      image.append_attribute("height") = map.height_px;
+    }
+    auto caption = add_element(figure, "figcaption");
+    add_element(caption, "strong", map.title);
+    caption.append_child(pugi::node_pcdata).set_value((" " + map.caption).c_str());
+  }
+}
+
+std::string shown(double value) {
+  return std::isfinite(value) ? fmt::format("{:.5g}", value) : "–";
+}
+
+void add_fields(pugi::xml_node main, const std::vector<FieldFigures>& fields) {
+  add_element(main, "h2", "Fields");
+  auto scroll = add_element(main, "div");
+  scroll.append_attribute("class") = "wide";
+  auto table = add_element(scroll, "table");
+  auto heads = add_element(add_element(table, "thead"), "tr");
+  for (const char* head : {"field", "min", "mean", "max", "unit", "meaning"}) {
+    add_element(heads, "th", head).append_attribute("scope") = "col";
+  }
+  auto body = add_element(table, "tbody");
+  for (const auto& field : fields) {
+    auto row = add_element(body, "tr");
+    add_element(add_element(row, "td"), "code", field.name);
+    for (const double value : {field.min, field.mean, field.max}) {
+      add_element(row, "td", shown(value)).append_attribute("class") = "number";
+    }
+    add_element(row, "td", field.units);
+    add_element(row, "td", field.doc);
+  }
+}
+
+void add_events(pugi::xml_node main, const std::vector<std::string>& events) {
+  add_element(main, "h2", "Events");
+  auto list = add_element(main, "ol");
+  for (const auto& event : events) add_element(list, "li", event);
+}
+
+void add_provenance(pugi::xml_node main,
+                    const std::vector<std::pair<std::string, std::string>>& provenance) {
+  add_element(main, "h2", "Provenance");
+  auto list = add_element(main, "dl");
+  for (const auto& [name, value] : provenance) {
+    add_element(list, "dt", name);
+    add_element(list, "dd", value);
+  }
+}
+
+// Numbers of cells, lakes and basins are integers without flags.
+bool is_measured(const FieldSpec& spec) {
+  return spec.type == Type::float32 || spec.type == Type::float64;
+}
+
+}  // namespace
+
+std::vector<FieldFigures> field_figures(const Manifest& manifest) {
+  std::vector<FieldFigures> figures;
+  for (const FieldSpec* spec : field::all()) {
+    if (!is_measured(*spec)) continue;
+    const FieldRecord* last = nullptr;
+    for (const StageRecord& stage : manifest.stages) {
+      if (stage.name.starts_with("island")) continue;  // a grid of its own
+      for (const FieldRecord& field : stage.fields) {
+        if (field.name == spec->name) last = &field;
+      }
+    }
+    if (last == nullptr) continue;
+    figures.push_back({std::string(spec->name), std::string(spec->units), std::string(spec->doc),
+                       last->min, last->mean, last->max});
+  }
+  return figures;
+}
+
+std::filesystem::path write_report(const std::filesystem::path& folder, const Report& report) {
+  pugi::xml_document document;
+  document.append_child(pugi::node_doctype).set_value("html");
+  auto html = document.append_child("html");
+  html.append_attribute("lang") = "en";
+  add_head(html, report.title);
+  auto main = add_element(add_element(html, "body"), "main");
+  add_element(main, "h1", report.title);
+  if (!report.introduction.empty()) add_element(main, "p", report.introduction);
+  add_pictures(main, folder, report.maps);
+  if (report.scorecard && !report.scorecard->lines.empty()) {
+    add_scorecard(main, *report.scorecard);
+  }
+  if (!report.events.empty()) add_events(main, report.events);
+  if (!report.fields.empty()) add_fields(main, report.fields);
+  if (!report.parameters.empty()) {
+    auto details = add_element(main, "details");
+    add_element(details, "summary", "Parameters");
+    add_element(details, "pre", report.parameters);
+  }
+  if (!report.provenance.empty()) add_provenance(main, report.provenance);
+
+  std::ostringstream text;
+  // As HTML wants it: no XML declaration, and no indentation that `pre` would show.
+  document.save(text, "", pugi::format_raw | pugi::format_no_declaration, pugi::encoding_utf8);
+  const auto path = folder / "report.html";
+  write_text_file(path, text.str() + "\n");
+  return path;
+}
+
+}  // namespace geo::io

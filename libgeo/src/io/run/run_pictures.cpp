@@ -1,0 +1,285 @@
+#include "geo/io/run/run_pictures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "geo/core/error.hpp"
+#include "geo/core/parameter.hpp"
+#include "geo/io/config/config.hpp"
+#include "geo/io/maps/maps.hpp"
+#include "geo/io/netcdf/planet_file.hpp"
+#include "geo/io/report/report.hpp"
+#include "geo/io/run/manifest.hpp"
+#include "geo/io/run/recorded_file.hpp"
+#include "geo/io/score/scorecard.hpp"
+#include "io/config/event_words.hpp"
+#include "io/drawing/map_canvas.hpp"
+#include "io/maps/map_set.hpp"
+#include "io/report/side_by_side.hpp"
+
+namespace geo::io {
+namespace {
+
+bool lists(std::span<const FieldSpec* const> specs, const FieldSpec& spec) {
+  return std::find(specs.begin(), specs.end(), &spec) != specs.end();
+}
+
+std::vector<const FieldSpec*> picture_fields() {
+  auto wanted = map_fields();
+  for (const FieldSpec* spec : scorecard_fields()) wanted.push_back(spec);
+  return wanted;
+}
+
+bool holds(const StageRecord& record, std::string_view field) {
+  return std::any_of(record.fields.begin(), record.fields.end(),
+                     [&](const FieldRecord& held) { return held.name == field; });
+}
+
+/// The fields of all complete stages of the planet that pictures and scorecard are made from: where
+/// two stages wrote the same, the later one's.
+State final_state(const RunFolder& folder, const Manifest& manifest, const FieldsAtHand& at_hand) {
+  const auto wanted = picture_fields();
+  std::optional<State> state = at_hand.planet();
+  const auto is_missing = [&](const FieldSpec& spec) {
+    return lists(wanted, spec) && !(state && state->has(spec));
+  };
+  for (auto record = manifest.stages.rbegin(); record != manifest.stages.rend(); ++record) {
+    if (is_island(*record)) continue;
+    const bool has_missing = std::any_of(wanted.begin(), wanted.end(), [&](const FieldSpec* spec) {
+      return is_missing(*spec) && holds(*record, spec->name);
+    });
+    if (state && !has_missing) continue;
+    const Snapshot snapshot = read_recorded(folder.path(), *record, is_missing);
+    if (!state) state.emplace(snapshot.grid);
+    for (const auto& [spec, values] : snapshot.fields) state->share(*spec, values);
+  }
+  if (!state) {
+    throw InputError(fmt::format("{}: holds no complete stage to draw", folder.path().string()));
+  }
+  return std::move(*state);
+}
+
+std::optional<Scorecard> scorecard_of(const State& state) {
+  if (state.grid().topology() != Topology::sphere) return {};
+  return score_planet(state);
+}
+
+State island_state(const RunFolder& folder, const StageRecord& record,
+                   const FieldsAtHand& at_hand) {
+  if (const State* const held = at_hand.island(record.name)) return *held;
+  const auto wanted = island_map_fields();
+  const Snapshot snapshot = read_recorded(
+      folder.path(), record, [&](const FieldSpec& spec) { return lists(wanted, spec); });
+  State state(snapshot.grid);
+  for (const auto& [spec, values] : snapshot.fields) state.share(*spec, values);
+  return state;
+}
+
+std::string note_of(const Manifest& manifest) {
+  return fmt::format("seed {}, terrane {}", manifest.seed, manifest.version);
+}
+
+const StageRecord* stage_named(const Manifest& manifest, std::string_view name) {
+  const auto at = std::find_if(manifest.stages.begin(), manifest.stages.end(),
+                               [&](const StageRecord& record) { return record.name == name; });
+  return at == manifest.stages.end() ? nullptr : &*at;
+}
+
+/// ", perhaps slope, elevation": the nearest of some words first, three at most.
+std::string perhaps(std::string_view word, std::vector<std::string_view> candidates) {
+  std::string text;
+  for (int i = 0; i < 3; ++i) {
+    const std::string near = nearest_word(word, candidates);
+    if (near.empty()) break;
+    text += fmt::format("{}{}", text.empty() ? ", perhaps " : ", ", near);
+    std::erase(candidates, near);
+  }
+  return text;
+}
+
+/// The stage that a field is drawn of.
+const StageRecord& stage_of(const Manifest& manifest, const FieldOfRun& wanted,
+                            const std::string& folder) {
+  std::vector<std::string_view> stages, fields;
+  for (const StageRecord& record : manifest.stages) stages.push_back(record.name);
+  if (!wanted.stage.empty() && stage_named(manifest, wanted.stage) == nullptr) {
+    throw ConfigurationError(fmt::format("{} has no stage \"{}\"{}: it has {}", folder,
+                                         wanted.stage, perhaps(wanted.stage, stages),
+                                         fmt::join(stages, ", ")));
+  }
+  const StageRecord* found = nullptr;
+  for (const StageRecord& record : manifest.stages) {
+    if (!wanted.stage.empty() && record.name != wanted.stage) continue;
+    for (const FieldRecord& field : record.fields) fields.push_back(field.name);
+    // Of the planet rather than of an island, the last.
+    if (holds(record, wanted.field) &&
+        (found == nullptr || is_island(*found) || !is_island(record))) {
+      found = &record;
+    }
+  }
+  if (found != nullptr) return *found;
+  std::sort(fields.begin(), fields.end());
+  fields.erase(std::unique(fields.begin(), fields.end()), fields.end());
+  const std::string near = perhaps(wanted.field, fields);
+  throw ConfigurationError(
+      fmt::format("{} of {} has no field \"{}\"{}",
+                  wanted.stage.empty() ? "the run" : "stage " + wanted.stage, folder, wanted.field,
+                  near.empty() ? ": it has " + fmt::format("{}", fmt::join(fields, ", ")) : near));
+}
+
+/// The fields of that stage that a map of one of them is drawn from, with the rivers of an island's
+/// relief; where the stage has no elevation, the planet's last.
+State state_for(const RunFolder& folder, const Manifest& manifest, const StageRecord& record,
+                std::string_view field) {
+  const std::array<const FieldSpec*, 4> water{&field::lake_depth, &field::flow_receiver,
+                                              &field::discharge, &field::drainage_area};
+  const bool with_water = is_island(record) && field == field::elevation.name;
+  const Snapshot snapshot = read_recorded(folder.path(), record, [&](const FieldSpec& spec) {
+    return spec.name == field || spec.name == field::elevation.name ||
+           (with_water && std::find(water.begin(), water.end(), &spec) != water.end());
+  });
+  State state(snapshot.grid);
+  for (const auto& [spec, values] : snapshot.fields) state.share(*spec, values);
+  if (!state.has(field::elevation) && !is_island(record)) {
+    std::vector<std::filesystem::path> files;
+    for (const StageRecord& each : manifest.stages) {
+      if (!is_island(each) && holds(each, field::elevation.name)) {
+        files.push_back(folder.path() / netcdf_of(each));
+      }
+    }
+    if (files.empty()) return state;
+    const std::array<const FieldSpec*, 1> wanted{&field::elevation};
+    const State planet = read_planet(std::array{files.back()}, wanted);
+    if (planet.grid().size() == state.grid().size()) {
+      state.share(field::elevation, planet.values(field::elevation));
+    }
+  }
+  return state;
+}
+
+/// What a report says besides what is measured and drawn.
+Report report_of(const RunFolder& folder, const Manifest& manifest, const Grid& grid) {
+  Report report;
+  report.title = fmt::format("terrane: planet of seed {}", manifest.seed);
+  report.introduction = fmt::format("{} x {} cells.", grid.nx(), grid.ny());
+  report.events = event_lines(manifest);
+  report.fields = field_figures(manifest);
+  report.parameters = read_text(folder.config());
+  report.provenance = {{"version", manifest.version},
+                       {"commit", manifest.commit},
+                       {"compiler", manifest.compiler},
+                       {"seed", fmt::format("{}", manifest.seed)}};
+  return report;
+}
+
+}  // namespace
+
+void FieldsAtHand::keep_planet(const State& state, std::span<const FieldSpec* const> fields) {
+  const auto wanted = picture_fields();
+  if (!planet_) planet_.emplace(state.shared_grid());
+  for (const FieldSpec* spec : fields) {
+    if (lists(wanted, *spec)) planet_->share(*spec, state.values(*spec));
+  }
+}
+
+void FieldsAtHand::keep_island(const std::string& name, const State& state) {
+  State kept(state.shared_grid());
+  for (const FieldSpec* spec : island_map_fields()) {
+    if (state.has(*spec)) kept.share(*spec, state.values(*spec));
+  }
+  islands_.insert_or_assign(name, std::move(kept));
+}
+
+const State* FieldsAtHand::island(const std::string& name) const {
+  const auto at = islands_.find(name);
+  return at == islands_.end() ? nullptr : &at->second;
+}
+
+std::vector<std::filesystem::path> draw_run(const RunFolder& folder, const MapView& asked,
+                                            std::string_view only_island,
+                                            const FieldsAtHand& at_hand) {
+  const Manifest manifest = read_manifest(folder.manifest());
+  const State state = final_state(folder, manifest, at_hand);
+  const bool all = only_island.empty();
+  const MapView as_it_lies(asked.width_px);
+  const MapView& view = state.grid().is_latitude_longitude() ? asked : as_it_lies;
+  const std::string note = note_of(manifest);
+  Report report = report_of(folder, manifest, state.grid());
+
+  // Scorecard and islands take longest, each on one thread, and are begun first.
+  std::vector<std::function<void()>> pieces;
+  pieces.emplace_back([&] { report.scorecard = scorecard_of(state); });
+  std::vector<const StageRecord*> islands;
+  for (const StageRecord& record : manifest.stages) {
+    if (is_island(record)) islands.push_back(&record);
+  }
+  std::vector<std::vector<MapFile>> island_maps(islands.size());
+  for (std::size_t k = 0; k < islands.size(); ++k) {
+    pieces.emplace_back([&, k] {
+      const StageRecord& record = *islands[k];
+      const State island = island_state(folder, record, at_hand);
+      MapSet maps = MapSet::of_island(island, folder.maps(), record.name, as_it_lies, note);
+      if (all || record.name == only_island) maps.draw_all();
+      island_maps[k] = maps.files();
+    });
+  }
+  MapSet planet = MapSet::of_planet(state, folder.maps(), view, note, event_marks(manifest));
+  if (all) {
+    planet.prepare();
+    for (auto& piece : planet.pieces()) pieces.push_back(std::move(piece));
+  }
+  std::optional<MapFile> hypsometry;
+  if (state.has(field::elevation)) {
+    pieces.emplace_back([&] { hypsometry = draw_hypsometry_file(state, folder.maps(), note); });
+  }
+  do_side_by_side(pieces);
+
+  report.maps = planet.files();
+  for (const auto& maps : island_maps) {
+    report.maps.insert(report.maps.end(), maps.begin(), maps.end());
+  }
+  if (hypsometry) report.maps.push_back(*hypsometry);
+  std::erase_if(report.maps, [](const MapFile& map) { return !std::filesystem::exists(map.path); });
+  std::vector<std::filesystem::path> written;
+  for (const MapFile& map : report.maps) written.push_back(map.path);
+  written.push_back(write_report(folder.path(), report));
+  return written;
+}
+
+std::vector<std::filesystem::path> draw_view(const RunFolder& folder, const MapView& view,
+                                             const std::filesystem::path& pictures) {
+  const Manifest manifest = read_manifest(folder.manifest());
+  const State state = final_state(folder, manifest, {});
+  std::vector<std::filesystem::path> written;
+  for (const MapFile& map :
+       draw_map_files(state, pictures, view, note_of(manifest), event_marks(manifest))) {
+    written.push_back(map.path);
+  }
+  return written;
+}
+
+std::filesystem::path draw_field(const RunFolder& folder, const MapView& view,
+                                 const FieldOfRun& wanted, const std::filesystem::path& pictures) {
+  const Manifest manifest = read_manifest(folder.manifest());
+  const StageRecord& record = stage_of(manifest, wanted, folder.path().string());
+  const FieldSpec* const spec = field::find(wanted.field);
+  if (spec == nullptr) {
+    throw InputError(fmt::format("{}: {} is no field that terrane knows",
+                                 folder.manifest().string(), wanted.field));
+  }
+  const State state = state_for(folder, manifest, record, spec->name);
+  static_cast<void>(map_layout(state.grid(), view));  // refuses a view before there is a folder
+  make_folder(pictures);
+  const std::string name =
+      wanted.stage.empty() ? wanted.field : fmt::format("{}-{}", wanted.stage, wanted.field);
+  return draw_field_file(state, *spec, pictures / (name + ".png"), view,
+                         fmt::format("{}, {}", record.name, note_of(manifest)))
+      .path;
+}
+
+}  // namespace geo::io

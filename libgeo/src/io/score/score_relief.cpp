@@ -1,0 +1,74 @@
+// Figures of the relief: hypsometry and spectrum.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "geo/kernels/figures/hypsometry_figures.hpp"
+#include "geo/kernels/numerics/quantiles.hpp"
+#include "geo/kernels/numerics/spectrum.hpp"
+#include "score_figures.hpp"
+#include "score_grid.hpp"
+
+namespace geo::io {
+namespace {
+
+constexpr std::array kPercents{5, 25, 50, 75, 90, 95};
+constexpr std::array kLevelsM{-6000.0, -5000.0, -4000.0, -3000.0, -2000.0, -1000.0, -200.0,
+                              0.0,     200.0,   500.0,   1000.0,  2000.0,  3000.0};
+
+void measure_quantiles(const CoarseField& relief, bool land, Figures& figures) {
+  std::vector<std::uint8_t> mask(relief.values.size());
+  for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = (relief.values[i] >= 0.0F) == land;
+  if (std::find(mask.begin(), mask.end(), 1) == mask.end()) return;
+  std::vector<double> fractions;
+  for (const int percent : kPercents) fractions.push_back(percent / 100.0);
+  const auto values = quantiles(*relief.grid, relief.values, fractions, mask);
+  for (std::size_t i = 0; i < kPercents.size(); ++i) {
+    figures[fmt::format("{}_q{:02}", land ? "land" : "ocean", kPercents[i])] = values[i];
+  }
+}
+
+void measure_shares(const CoarseField& relief, Figures& figures) {
+  const auto shares = shares_between(*relief.grid, relief.values, kLevelsM);
+  for (std::size_t k = 0; k < shares.size(); ++k) {
+    const std::string name = k == 0 ? fmt::format("share_below_{:g}", kLevelsM.front())
+                             : k == kLevelsM.size()
+                                 ? fmt::format("share_above_{:g}", kLevelsM.back())
+                                 : fmt::format("share_{:g}_{:g}", kLevelsM[k - 1], kLevelsM[k]);
+    figures[name] = 100.0 * shares[k];
+  }
+}
+
+void measure_spectrum(const State& state, Figures& figures) {
+  // Continents themselves are too few for a law; finer relief than 200 km depends on the grid.
+  constexpr int kFirst = 3, kLast = 96;
+  constexpr double kStepDeg = 0.5;
+  const CoarseField relief = coarsen(state, field::elevation, kStepDeg);
+  if (relief.grid->ny() < 2 * kLast) return;
+  figures["spectral_slope"] =
+      spectral_slope(harmonic_power(*relief.grid, relief.values, kLast), kFirst, kLast);
+}
+
+}  // namespace
+
+void measure_relief(const State& state, Figures& figures) {
+  if (!state.has(field::elevation)) return;
+  const CoarseField relief = coarsen(state, field::elevation, kReliefStepDeg);
+  const auto hypsometry = measure_hypsometry(*relief.grid, relief.values);
+  figures["land_fraction"] = 100.0 * hypsometry.land_fraction;
+  figures["land_mean"] = hypsometry.land_mean_m;
+  figures["ocean_mean"] = hypsometry.ocean_mean_m;
+  figures["water_volume"] = hypsometry.water_volume_m3 / 1e18;
+  measure_quantiles(relief, true, figures);
+  measure_quantiles(relief, false, figures);
+  const auto modes = elevation_modes(*relief.grid, relief.values);
+  figures["ocean_mode"] = modes.ocean_m;
+  figures["land_mode"] = modes.land_m;
+  figures["antimode"] = modes.antimode_m;
+  measure_shares(relief, figures);
+  measure_spectrum(state, figures);
+}
+
+}  // namespace geo::io

@@ -1,0 +1,86 @@
+#include "geo/kernels/landscape/fine_relief.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geo/kernels/noise/noise_row.hpp"
+
+namespace geo {
+
+void local_roughness(const PlanetCells& cells, std::span<const float> planet_elevation_m,
+                     std::span<float> covered) {
+  const Grid& planet = cells.planet();
+  std::vector<float> variance(cells.size());
+  const int end = cells.first_row() + cells.rows();
+#pragma omp parallel for schedule(static)
+  for (int j = cells.first_row(); j < end; ++j) {
+    for (int i = 0; i < planet.nx(); ++i) {
+      const float here = planet_elevation_m[planet.cell(i, j)];
+      const auto seen = [&](int k) {
+        const float there = planet_elevation_m[planet.neighbour(i, j, k)];
+        return here < 0.0F ? std::min(there, 0.0F) : std::max(there, 0.0F);
+      };
+      double sum = 0.0;
+      for (int k = 0; k < 4; ++k) {
+        const double bump = here - 0.5 * (seen(k) + seen(k + 4));
+        sum += bump * bump;
+      }
+      variance[cells.at(i, j)] = static_cast<float>(0.25 * sum);
+    }
+  }
+#pragma omp parallel for schedule(static)
+  for (int j = cells.first_row(); j < end; ++j) {
+    for (int i = 0; i < planet.nx(); ++i) {
+      double sum = variance[cells.at(i, j)];
+      int count = 1;
+      for (int k = 0; k < kDirections; ++k) {
+        const Index next = planet.neighbour(i, j, k);
+        const int row = planet.row(next);
+        if (row < cells.first_row() || row >= end) continue;
+        sum += variance[cells.at(planet.column(next), row)];
+        ++count;
+      }
+      covered[cells.at(i, j)] = static_cast<float>(std::sqrt(sum / count));
+    }
+  }
+}
+
+void unit_detail(const Grid& fine, const DetailLaw& law, std::uint64_t seed,
+                 std::string_view stream, std::span<float> detail) {
+  const Noise noise(seed, stream);
+  double sum = 0.0, squares = 0.0, amplitude = 1.0;
+  for (int octave = 0; octave < law.octaves; ++octave) {
+    sum += amplitude;
+    squares += amplitude * amplitude;
+    amplitude *= law.gain;
+  }
+  constexpr double kDeviation = 0.29;  // of gradient noise
+  const double scale = squares > 0.0 ? sum / (kDeviation * std::sqrt(squares)) : 0.0;
+  const double frequency = fine.figure().radius_m / law.wavelength_m;
+#pragma omp parallel
+  {
+    NoiseRow row(fine);
+#pragma omp for schedule(static)
+    for (int j = 0; j < fine.ny(); ++j) {
+      const auto line = detail.subspan(fine.cell(0, j), fine.nx());
+      row.choose_all(j);
+      row.fbm(noise, frequency, law.octaves, law.gain, line);
+      for (float& value : line) value = static_cast<float>(scale * value);
+    }
+  }
+}
+
+double with_detail(double height_m, double detail_m, double inland) {
+  const double plainly = height_m + detail_m;
+  if (!(detail_m < 0.0 && height_m > 0.0 && inland > 0.0)) return plainly;
+  return plainly + inland * (height_m * std::exp(detail_m / height_m) - plainly);
+}
+
+double edge_ramp(const Grid& fine, int column, int row, double width_m) {
+  const double east = std::min(column, fine.nx() - 1 - column) * fine.spacing_east_m(row);
+  const double north = std::min(row, fine.ny() - 1 - row) * fine.step_north_m();
+  const double t = width_m > 0.0 ? std::clamp(std::min(east, north) / width_m, 0.0, 1.0) : 1.0;
+  return t * t * (3.0 - 2.0 * t);
+}
+
+}  // namespace geo

@@ -1,0 +1,171 @@
+#include "geo/kernels/landscape/region_score.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <vector>
+
+#include "geo/core/error.hpp"
+#include "geo/kernels/noise/noise.hpp"
+
+namespace geo {
+namespace {
+
+constexpr std::array<int, 4> kCardinal{kNorth, kEast, kSouth, kWest};
+
+/// Cells of a window, reaching equally far on both sides of its centre.
+struct Reach {
+  int columns, rows;  ///< on either side
+};
+
+Reach reach_at(const Grid& planet, int row, double width_m, double height_m) {
+  const int most = (planet.nx() - 1) / 2;
+  const double columns = 0.5 * (width_m / planet.spacing_east_m(row) - 1.0);
+  const double rows = 0.5 * (height_m / planet.face_east_m(row) - 1.0);
+  return {static_cast<int>(std::lround(std::clamp(columns, 0.0, static_cast<double>(most)))),
+          static_cast<int>(
+              std::lround(std::clamp(rows, 0.0, static_cast<double>((planet.ny() - 1) / 2))))};
+}
+
+/// A window that is chosen by its shores and its relief is looked at with the cells around it.
+Reach with_surroundings(const Reach& reach) {
+  return {std::max(1, reach.columns), std::max(1, reach.rows)};
+}
+
+/// Sums and extremes over the rows of a window, one entry per column.
+struct ColumnSums {
+  std::vector<double> land, coast, boundary;
+  std::vector<float> lowest, highest;
+  double area = 0.0;
+
+  explicit ColumnSums(int nx) : land(nx), coast(nx), boundary(nx), lowest(nx), highest(nx) {}
+};
+
+bool is_coast(const Grid& planet, std::span<const float> z, int i, int j) {
+  if (z[planet.cell(i, j)] < 0.0F) return false;
+  return std::any_of(kCardinal.begin(), kCardinal.end(),
+                     [&](int k) { return z[planet.neighbour(i, j, k)] < 0.0F; });
+}
+
+void add_rows(const Grid& planet, std::span<const float> z,
+              std::span<const std::int8_t> boundary_type, int first, int last, int begin, int end,
+              ColumnSums& sums) {
+  for (int j = first; j <= last; ++j) {
+    const double area = planet.area_m2(j);
+    sums.area += area;
+    for (int column = begin; column < end; ++column) {
+      const int i = ((column % planet.nx()) + planet.nx()) % planet.nx();
+      const std::size_t at = static_cast<std::size_t>(column - begin);
+      const Index cell = planet.cell(i, j);
+      if (z[cell] >= 0.0F) sums.land[at] += area;
+      if (is_coast(planet, z, i, j)) sums.coast[at] += area;
+      if (!boundary_type.empty() && boundary_type[cell] != 0) sums.boundary[at] += area;
+      sums.lowest[at] = j == first ? z[cell] : std::min(sums.lowest[at], z[cell]);
+      sums.highest[at] = j == first ? z[cell] : std::max(sums.highest[at], z[cell]);
+    }
+  }
+}
+
+/// Figures of the window of columns first .. first + count - 1, wrapping.
+RegionFigures figures_of(const ColumnSums& sums, int first, int count) {
+  const int nx = static_cast<int>(sums.land.size());
+  RegionFigures figures;
+  float lowest = std::numeric_limits<float>::infinity(), highest = -lowest;
+  for (int k = 0; k < count; ++k) {
+    const int i = ((first + k) % nx + nx) % nx;
+    figures.land_fraction += sums.land[i];
+    figures.coast_fraction += sums.coast[i];
+    figures.boundary_fraction += sums.boundary[i];
+    lowest = std::min(lowest, sums.lowest[i]);
+    highest = std::max(highest, sums.highest[i]);
+  }
+  const double area = sums.area * count;
+  figures.land_fraction /= area;
+  figures.coast_fraction /= area;
+  figures.boundary_fraction /= area;
+  figures.elevation_range_m = highest - lowest;
+  return figures;
+}
+
+void check_sphere(const Grid& planet) {
+  if (planet.topology() == Topology::sphere) return;
+  throw InputError("the choice of an island needs a whole planet, this grid is a part of one");
+}
+
+}  // namespace
+
+double RegionFigures::score(double noise) const {
+  const double mix = 1.0 - std::abs(land_fraction - 0.4) * 2.5;
+  const double range = std::min(elevation_range_m / 5000.0, 1.0);
+  const double boundary = 1.0 + 2.0 * std::min(boundary_fraction, 0.5);
+  return mix * coast_fraction * range * boundary + 0.3 * noise;
+}
+
+RegionFigures region_figures(const Grid& planet, std::span<const float> elevation_m,
+                             std::span<const std::int8_t> boundary_type, Index centre,
+                             double width_m, double height_m) {
+  check_sphere(planet);
+  const int i = planet.column(centre), j = planet.row(centre);
+  const Reach reach = reach_at(planet, j, width_m, height_m);
+  const int count = 2 * reach.columns + 1;
+  ColumnSums sums(count);
+  add_rows(planet, elevation_m, boundary_type, std::max(0, j - reach.rows),
+           std::min(planet.ny() - 1, j + reach.rows), i - reach.columns, i + reach.columns + 1,
+           sums);
+  return figures_of(sums, 0, count);
+}
+
+double region_noise(const Grid& planet, Index centre, double width_m, std::uint64_t seed) {
+  const Noise noise(seed, "island.region");
+  const auto p = planet.unit_vector(planet.column(centre), planet.row(centre));
+  const double frequency = planet.figure().radius_m / width_m;
+  return 0.5 + 0.5 * noise.value(static_cast<float>(p[0] * frequency),
+                                 static_cast<float>(p[1] * frequency),
+                                 static_cast<float>(p[2] * frequency));
+}
+
+Index best_region(const Grid& planet, std::span<const float> elevation_m,
+                  std::span<const std::int8_t> boundary_type, double width_m, double height_m,
+                  std::uint64_t seed) {
+  check_sphere(planet);
+  const int ny = planet.ny(), middle = ny / 2;
+  const int tenth = static_cast<int>(std::ceil(0.1 * ny));
+  const int row_reach = with_surroundings(reach_at(planet, middle, width_m, height_m)).rows;
+  std::vector<int> rows;
+  for (int j = tenth + row_reach; j + row_reach < ny - tenth;
+       j += std::max(1, (2 * row_reach + 1) / 8)) {
+    rows.push_back(j);
+  }
+  if (rows.empty()) rows.push_back(middle);
+
+  struct Best {
+    bool has_land = false;
+    double score = -std::numeric_limits<double>::infinity();
+    Index cell = 0;
+    [[nodiscard]] bool operator<(const Best& other) const {
+      return std::tie(has_land, score) < std::tie(other.has_land, other.score);
+    }
+  };
+  std::vector<Best> best_of_row(rows.size());
+#pragma omp parallel for schedule(dynamic, 1)
+  for (std::size_t at = 0; at < rows.size(); ++at) {
+    const int j = rows[at];
+    const Reach reach = with_surroundings(reach_at(planet, j, width_m, height_m));
+    ColumnSums sums(planet.nx());
+    add_rows(planet, elevation_m, boundary_type, std::max(0, j - reach.rows),
+             std::min(ny - 1, j + reach.rows), 0, planet.nx(), sums);
+    const int count = 2 * reach.columns + 1;
+    for (int i = 0; i < planet.nx(); i += std::max(1, count / 8)) {
+      const Index cell = planet.cell(i, j);
+      const RegionFigures figures = figures_of(sums, i - reach.columns, count);
+      const bool is_small = reach.columns == 1 || reach.rows == 1;
+      const Best here{is_small ? elevation_m[cell] >= 0.0F : figures.land_fraction > 0.0,
+                      figures.score(region_noise(planet, cell, width_m, seed)), cell};
+      if (best_of_row[at] < here) best_of_row[at] = here;
+    }
+  }
+  return std::max_element(best_of_row.begin(), best_of_row.end())->cell;
+}
+
+}  // namespace geo

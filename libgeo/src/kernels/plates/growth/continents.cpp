@@ -1,0 +1,162 @@
+#include "geo/kernels/plates/growth/continents.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "geo/core/random.hpp"
+#include "geo/kernels/noise/noise.hpp"
+
+namespace geo {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+struct Craton {
+  Vector3 centre;
+  double radius;  // radians
+};
+
+std::vector<double> plate_areas_sr(const CubedSphere& mesh, std::span<const std::int16_t> plate,
+                                   std::size_t plates) {
+  std::vector<double> area(plates, 0.0);
+  for (std::int32_t cell = 0; cell < mesh.size(); ++cell) area[plate[cell]] += mesh.area_sr(cell);
+  return area;
+}
+
+std::vector<int> by_falling_buoyancy(const std::vector<Plate>& plates) {
+  std::vector<int> order(plates.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return plates[a].buoyancy > plates[b].buoyancy; });
+  return order;
+}
+
+/// Cratons of one plate: the first anywhere on it, each other one beside an elder, not too near.
+void place_cratons(const Cratons& model, const CubedSphere& mesh,
+                   std::span<const std::int16_t> plate, int number, int count,
+                   const RandomStream& random, std::vector<Craton>& cratons) {
+  const auto key = static_cast<std::uint64_t>(number) << 20;
+  std::uint64_t draw = 0;
+  const double spread = 2200.0 / model.radius_km, clearance = 1250.0 / model.radius_km;
+  const std::size_t first = cratons.size();
+  const auto radius = [&] {
+    return random.uniform(key + draw++, 0, model.smallest_km, model.largest_km) / model.radius_km;
+  };
+  constexpr int kTries = 200;
+  for (int attempt = 0; attempt < kTries && cratons.size() == first; ++attempt) {
+    const Vector3 candidate = random.direction(key + draw++);
+    if (plate[mesh.locate(candidate)] == number) cratons.push_back({candidate, radius()});
+  }
+  if (cratons.size() == first) {  // a plate too small to be hit at random
+    const auto cell = std::find(plate.begin(), plate.end(), number) - plate.begin();
+    cratons.push_back({mesh.position(static_cast<std::int32_t>(cell)), radius()});
+  }
+  for (int k = 1; k < count; ++k) {
+    for (int attempt = 0; attempt < kTries; ++attempt) {
+      const auto elders = static_cast<double>(cratons.size() - first);
+      const auto elder = first + static_cast<std::size_t>(random.uniform(key + draw++) * elders);
+      const Vector3 jump = random.direction(key + draw++);
+      const double far = spread * std::abs(random.normal(key + draw++));
+      const Vector3 candidate = normalised(add(cratons[elder].centre, jump, far));
+      const bool apart = std::all_of(
+          cratons.begin() + static_cast<std::ptrdiff_t>(first), cratons.end(),
+          [&](const Craton& c) { return angle_between(c.centre, candidate) > clearance; });
+      if (!apart || plate[mesh.locate(candidate)] != number) continue;
+      cratons.push_back({candidate, radius()});
+      break;
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> continental_plates(const CubedSphere& mesh,
+                                             std::span<const std::int16_t> plate,
+                                             const std::vector<Plate>& plates, double share) {
+  const auto area_sr = plate_areas_sr(mesh, plate, plates.size());
+  std::vector<std::uint8_t> continental(plates.size(), 0);
+  double missing = 4.0 * kPi * share;
+  for (const int k : by_falling_buoyancy(plates)) {
+    if (missing <= 0.5 * area_sr[k]) continue;  // too large to bring it nearer
+    continental[k] = 1;
+    missing -= area_sr[k];
+  }
+  return continental;
+}
+
+std::vector<std::uint8_t> continental_plates_reaching(const CubedSphere& mesh,
+                                                      std::span<const std::int16_t> plate,
+                                                      const std::vector<Plate>& plates,
+                                                      double share) {
+  const auto area_sr = plate_areas_sr(mesh, plate, plates.size());
+  std::vector<std::uint8_t> continental(plates.size(), 0);
+  double missing = 4.0 * kPi * share;
+  for (const int k : by_falling_buoyancy(plates)) {
+    if (missing <= 0.0) break;
+    continental[k] = 1;
+    missing -= area_sr[k];
+  }
+  return continental;
+}
+
+CratonNoise craton_noise(const CubedSphere& mesh, std::uint64_t seed) {
+  constexpr double kFrequency = 1.6;
+  const std::array<Noise, 3> bend{Noise(seed, "plates.craton_bend_x"),
+                                  Noise(seed, "plates.craton_bend_y"),
+                                  Noise(seed, "plates.craton_bend_z")};
+  CratonNoise noise;
+  for (int c = 0; c < 3; ++c) {
+    noise.bend[c] = fbm_at(bend[c], mesh.positions(), kFrequency, 6, 0.55);
+  }
+  noise.rifting = fbm_at(Noise(seed, "plates.rifting"), mesh.positions(), 1.2, 3);
+  return noise;
+}
+
+NearestCells nearest_ridges(const Cratons& model, const CubedSphere& mesh,
+                            std::span<const BoundaryPoint> boundaries) {
+  std::vector<std::int32_t> ridge;
+  for (const BoundaryPoint& point : boundaries) {
+    if (point.type == BoundaryType::divergent) ridge.push_back(point.cell);
+  }
+  return nearest_cells(mesh, ridge, 4.0 * model.ridge_clearance_km / model.radius_km);
+}
+
+std::vector<float> craton_potential(const Cratons& model, const CubedSphere& mesh,
+                                    std::span<const std::int16_t> plate,
+                                    const std::vector<Plate>& plates, const NearestCells& to_ridge,
+                                    const CratonNoise& noise, std::uint64_t seed) {
+  const auto area_sr = plate_areas_sr(mesh, plate, plates.size());
+  const auto carries = continental_plates(mesh, plate, plates, model.plate_share);
+  const RandomStream random(seed, "plates.cratons");
+  std::vector<Craton> cratons;
+  for (std::size_t k = 0; k < plates.size(); ++k) {
+    if (carries[k] == 0 || area_sr[k] == 0.0) continue;  // some plates are all consumed
+    const double count = model.per_sphere * area_sr[k] / (4.0 * kPi);
+    place_cratons(model, mesh, plate, static_cast<int>(k),
+                  std::max(1, static_cast<int>(std::lround(count))), random, cratons);
+  }
+  constexpr double kNormal = 3.2;  // fbm to a deviation of one half
+  std::vector<float> potential(mesh.size());
+#pragma omp parallel for schedule(static)
+  for (std::int32_t cell = 0; cell < mesh.size(); ++cell) {
+    Vector3 bent = mesh.position(cell);
+    for (int c = 0; c < 3; ++c) bent[c] += model.warp * kNormal * noise.bend[c][cell];
+    bent = normalised(bent);
+    double sum = 0.0;
+    for (const Craton& craton : cratons) {
+      const double far = length(add(craton.centre, bent, -1.0)) / craton.radius;
+      sum += std::exp(-far * far);
+    }
+    const double ridge_km = to_ridge.angle[cell] * model.radius_km;
+    // Some ridges have made oceans, others only begin to tear a continent.
+    const double begun = std::clamp(0.65 + 3.0 * noise.rifting[cell], 0.0, 1.0);
+    const double opened = 6.0 * begun * std::exp(-ridge_km / model.ridge_clearance_km);
+    potential[cell] = static_cast<float>(std::log(sum + 1e-26) - opened);
+  }
+  return potential;
+}
+
+}  // namespace geo

@@ -1,0 +1,218 @@
+#include "geo/kernels/plates/growth/convergent_margins.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "geo/core/field.hpp"
+#include "geo/kernels/numerics/nearest_source.hpp"
+#include "geo/kernels/numerics/shapes.hpp"
+
+namespace geo {
+namespace {
+
+constexpr float kFar_km = 1e9F;
+constexpr std::array<int, 4> kSides{kNorth, kEast, kSouth, kWest};
+
+std::array<float, 3> position(const Grid& grid, Index cell) {
+  const auto p = grid.unit_vector(grid.column(cell), grid.row(cell));
+  return {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
+}
+
+/// Points of a boundary and the cells nearest to them.
+struct Sources {
+  std::vector<std::array<float, 3>> position;
+  std::vector<float> handicap_m;
+  std::vector<Index> cell;
+  std::vector<std::int32_t> nearest;
+
+  explicit Sources(const Grid& grid) : nearest(grid.size(), -1) {}
+  void add(const Grid& grid, Index at, double handicap) {
+    nearest[at] = static_cast<std::int32_t>(position.size());
+    position.push_back(geo::position(grid, at));
+    handicap_m.push_back(static_cast<float>(handicap));
+    cell.push_back(at);
+  }
+  void propagate(const Grid& grid) { nearest_sources(grid, position, handicap_m, nearest); }
+  [[nodiscard]] double distance_km(const Grid& grid, Index at) const {
+    return 1e-3 *
+           distance_m(geo::position(grid, at), position[nearest[at]], grid.figure().radius_m);
+  }
+};
+
+bool touches_another_plate(const Grid& grid, std::span<const std::int16_t> plate, Index cell) {
+  return std::any_of(kSides.begin(), kSides.end(),
+                     [&](int k) { return plate[grid.neighbour(cell, k)] != plate[cell]; });
+}
+
+/// What one plate is like near a point of its boundary.
+struct Side {
+  std::int16_t plate = -1;
+  double fraction = 0.0, floor_myr = 0.0, speed = 0.0;
+  int cells = 0, floor_cells = 0;
+};
+
+}  // namespace
+
+double andean_thickening(double across_km, double strength) {
+  const double inner = 250.0 + 250.0 * strength, outer = inner + 600.0;
+  return std::pow(strength, 0.6) * smooth_step(50.0, 190.0, across_km) *
+         (1.0 - smooth_step(inner, outer, across_km));
+}
+
+double himalayan_thickening(double across_km, double strength) {
+  const double inner = 250.0 + 600.0 * strength, outer = inner + 750.0;
+  return std::pow(strength, 0.5) * smooth_step(-110.0, 60.0, across_km) *
+         (1.0 - smooth_step(inner, outer, across_km));
+}
+
+double island_arc(double across_km, double strength) {
+  return std::pow(strength, 0.4) * bell(across_km, 165.0, 50.0);
+}
+
+double trench_m(double across_km, double strength) {
+  return -(900.0 + 2100.0 * strength) * bell(across_km, -5.0, 36.0) +
+         320.0 * bell(across_km, -170.0, 65.0);
+}
+
+ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int16_t> plate,
+                                     std::span<const std::int8_t> boundary_type,
+                                     std::span<const float> boundary_strength,
+                                     std::span<const float> continental_fraction,
+                                     std::span<const float> age_myr,
+                                     std::span<const float> speed_mm_yr) {
+  constexpr auto kConvergent = static_cast<std::int8_t>(BoundaryType::convergent);
+  constexpr double kWindow_m = 220e3, kWidest_rad = 0.35, kHandicap_m = 150e3;
+  // On small planets a window of that width holds all plates.
+  const double window_m = std::min(kWindow_m, kWidest_rad * grid.figure().radius_m);
+  Sources sources(grid);
+  std::vector<std::int16_t> down;
+  std::vector<Convergence> kind;
+  for (Index cell = 0; cell < grid.size(); ++cell) {
+    if (boundary_type[cell] != kConvergent || !touches_another_plate(grid, plate, cell)) continue;
+    // Means of both plates over a window of constant size.
+    const int column = grid.column(cell), row = grid.row(cell);
+    const int rows = std::max(1, static_cast<int>(window_m / grid.spacing_north_m(grid.ny() / 2)));
+    const int columns =
+        std::clamp(static_cast<int>(window_m / grid.spacing_east_m(row)), 1, grid.nx() / 4);
+    const int stride = std::max(1, columns / (2 * rows));
+    std::array<Side, 2> side;
+    side[0].plate = plate[cell];
+    int nearest = 1 << 20;
+    for (int pass = 0; pass < 2; ++pass) {
+      for (int dj = -rows; dj <= rows; ++dj) {
+        const int j = row + dj;
+        if (j < 0 || j >= grid.ny()) continue;
+        for (int di = -columns; di <= columns; di += stride) {
+          const Index there = grid.cell((column + di + grid.nx()) % grid.nx(), j);
+          const int far = di * di / (stride * stride) + dj * dj;
+          if (pass == 0 && plate[there] != side[0].plate && far < nearest) {
+            nearest = far;
+            side[1].plate = plate[there];
+          }
+          if (pass == 0) continue;
+          for (Side& s : side) {
+            if (plate[there] != s.plate) continue;
+            s.fraction += continental_fraction[there];
+            s.speed += speed_mm_yr[there];
+            ++s.cells;
+            if (continental_fraction[there] >= 0.5F) continue;  // of another age
+            s.floor_myr += age_myr[there];
+            ++s.floor_cells;
+          }
+        }
+      }
+      if (side[1].plate < 0) break;
+    }
+    if (side[1].plate < 0) continue;
+    for (Side& s : side) {
+      s.fraction /= s.cells;
+      s.floor_myr /= std::max(1, s.floor_cells);
+      s.speed /= s.cells;
+    }
+    constexpr double kContinental = 0.45;
+    const bool a = side[0].fraction > kContinental, b = side[1].fraction > kContinental;
+    const auto decides = [&](double left, double right) {
+      return left < right || (left == right && side[0].plate < side[1].plate);
+    };
+    bool first_goes_down;
+    if (a != b) {
+      first_goes_down = b;
+      kind.push_back(Convergence::ocean_continent);
+    } else if (a) {
+      first_goes_down = decides(side[1].speed, side[0].speed);
+      kind.push_back(Convergence::continents);
+    } else {
+      first_goes_down = decides(side[1].floor_myr, side[0].floor_myr);
+      kind.push_back(Convergence::oceans);
+    }
+    down.push_back(side[first_goes_down ? 0 : 1].plate);
+    sources.add(grid, cell, kHandicap_m * (1.0 - boundary_strength[cell]));
+  }
+  sources.propagate(grid);
+  ConvergentMargins margins;
+  margins.across_km.assign(grid.size(), kFar_km);
+  margins.strength.assign(grid.size(), 0.0F);
+  margins.kind.assign(grid.size(), Convergence::none);
+  if (sources.position.empty()) return margins;
+#pragma omp parallel for schedule(static)
+  for (Index cell = 0; cell < grid.size(); ++cell) {
+    const std::int32_t source = sources.nearest[cell];
+    const double side = plate[cell] == down[source] ? -1.0 : 1.0;
+    margins.across_km[cell] = static_cast<float>(side * sources.distance_km(grid, cell));
+    margins.strength[cell] = boundary_strength[sources.cell[source]];
+    margins.kind[cell] = kind[source];
+  }
+  return margins;
+}
+
+DeformationSources deformation_sources(const Grid& grid, std::span<const std::int8_t> boundary_type,
+                                       std::span<const float> boundary_strength, std::int8_t type,
+                                       double length_km) {
+  Sources sources(grid);
+  for (Index cell = 0; cell < grid.size(); ++cell) {
+    if (boundary_type[cell] != type || boundary_strength[cell] <= 0.0F) continue;
+    // The largest strength exp(-d / L) is the least d - L ln strength.
+    sources.add(grid, cell, -1e3 * length_km * std::log(boundary_strength[cell]));
+  }
+  sources.propagate(grid);
+  DeformationSources found{std::vector<float>(grid.size(), 0.0F),
+                           std::vector<double>(grid.size(), 0.0)};
+  if (sources.position.empty()) return found;
+#pragma omp parallel for schedule(static)
+  for (Index cell = 0; cell < grid.size(); ++cell) {
+    found.strength[cell] = boundary_strength[sources.cell[sources.nearest[cell]]];
+    found.distance_km[cell] = sources.distance_km(grid, cell);
+  }
+  return found;
+}
+
+std::vector<float> propagated_deformation(const Grid& grid,
+                                          std::span<const std::int8_t> boundary_type,
+                                          std::span<const float> boundary_strength,
+                                          std::int8_t type, double length_km) {
+  const DeformationSources sources =
+      deformation_sources(grid, boundary_type, boundary_strength, type, length_km);
+  std::vector<float> deformation(sources.strength);
+  for (std::size_t cell = 0; cell < deformation.size(); ++cell) {
+    deformation[cell] *= static_cast<float>(std::exp(-sources.distance_km[cell] / length_km));
+  }
+  return deformation;
+}
+
+std::vector<float> distance_to_marked_km(const Grid& grid, std::span<const std::uint8_t> marked) {
+  Sources sources(grid);
+  for (Index cell = 0; cell < grid.size(); ++cell) {
+    if (marked[cell] != 0) sources.add(grid, cell, 0.0);
+  }
+  sources.propagate(grid);
+  std::vector<float> distance(grid.size(), kFar_km);
+  if (sources.position.empty()) return distance;
+#pragma omp parallel for schedule(static)
+  for (Index cell = 0; cell < grid.size(); ++cell) {
+    distance[cell] = static_cast<float>(sources.distance_km(grid, cell));
+  }
+  return distance;
+}
+
+}  // namespace geo

@@ -1,0 +1,185 @@
+#include "geo/kernels/plates/raster/raster_start.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "geo/core/error.hpp"
+#include "geo/core/random.hpp"
+
+namespace geo {
+namespace {
+
+/// One octave: unit gradients at the nodes of a lattice of nx by ny that wraps.
+class Octave {
+ public:
+  Octave(int nx, int ny, const RandomStream& random, int number)
+      : nx_(nx), ny_(ny), gradient_(static_cast<std::size_t>(nx) * ny) {
+    for (std::size_t k = 0; k < gradient_.size(); ++k) {
+      const double angle = 2.0 * std::numbers::pi * random.uniform(k, number);
+      gradient_[k] = {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))};
+    }
+  }
+  void add_row(float v, int columns, float amplitude, std::span<float> line) const {
+    const int j = static_cast<int>(v);
+    const float fy = v - static_cast<float>(j), wy = fade(fy);
+    const auto* low = &gradient_[static_cast<std::size_t>(j % ny_) * nx_];
+    const auto* high = &gradient_[static_cast<std::size_t>((j + 1) % ny_) * nx_];
+    for (int c = 0; c < columns; ++c) {
+      const float u = (static_cast<float>(c) + 0.5F) * static_cast<float>(nx_) / columns;
+      const int i = std::min(static_cast<int>(u), nx_ - 1), next = i + 1 == nx_ ? 0 : i + 1;
+      const float fx = u - static_cast<float>(i), wx = fade(fx);
+      const auto at = [&](const Gradient& g, float dx, float dy) { return g.x * dx + g.y * dy; };
+      const float south = mix(at(low[i], fx, fy), at(low[next], fx - 1.0F, fy), wx);
+      const float north = mix(at(high[i], fx, fy - 1.0F), at(high[next], fx - 1.0F, fy - 1.0F), wx);
+      line[c] += amplitude * mix(south, north, wy);
+    }
+  }
+  [[nodiscard]] int rows() const { return ny_; }
+
+ private:
+  struct Gradient {
+    float x, y;
+  };
+  static float fade(float t) { return t * t * t * (t * (t * 6.0F - 15.0F) + 10.0F); }
+  static float mix(float a, float b, float t) { return a + t * (b - a); }
+  int nx_, ny_;
+  std::vector<Gradient> gradient_;
+};
+
+}  // namespace
+
+std::vector<float> seamless_noise(const RasterWorld& world, double cells_across, double gain,
+                                  int octaves, std::uint64_t seed) {
+  const RandomStream random(seed, "raster.terrain");
+  std::vector<float> noise(world.size(), 0.0F);
+  // Over what all octaves may reach, also those too fine for this map: a finer one has them, too.
+  double amplitude = 1.0, sum = 0.0;
+  for (int k = 0; k < octaves; ++k) sum += std::pow(gain, k);
+  for (int k = 0; k < octaves; ++k, amplitude *= gain) {
+    const double across = cells_across * std::exp2(k);
+    const int nx = std::max(1, static_cast<int>(std::lround(across)));
+    const int ny = std::max(1, static_cast<int>(std::lround(across * world.rows / world.columns)));
+    // Finer than two cells a wave there is nothing to see.
+    if (2 * nx > world.columns && k > 0) break;
+    const Octave octave(nx, ny, random, k);
+#pragma omp parallel for schedule(static)
+    for (int row = 0; row < world.rows; ++row) {
+      const float v = (static_cast<float>(row) + 0.5F) * static_cast<float>(ny) / world.rows;
+      octave.add_row(
+          v, world.columns, static_cast<float>(amplitude),
+          std::span(noise).subspan(static_cast<std::size_t>(row) * world.columns, world.columns));
+    }
+  }
+  for (float& value : noise) value = static_cast<float>(value / sum);
+  return noise;
+}
+
+std::vector<RasterCrust> start_raster(const RasterWorld& world, double sea_share,
+                                      double ocean_crust, double cells_across, std::uint64_t seed) {
+  constexpr int kOctaves = 9;
+  constexpr double kGain = 0.55;
+  const std::vector<float> noise = seamless_noise(world, cells_across, kGain, kOctaves, seed);
+  std::vector<float> sorted = noise;
+  const auto place = std::min<std::size_t>(
+      noise.size() - 1, static_cast<std::size_t>(sea_share * static_cast<double>(noise.size())));
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(place),
+                   sorted.end());
+  const float sea = sea_share >= 1.0 ? INFINITY : sorted[place];
+  const auto [low, high] = std::minmax_element(noise.begin(), noise.end());
+  const float least = *low, range = std::max(1e-6F, *high - *low);
+  std::vector<RasterCrust> crust(noise.size());
+  // Floor of the first map is no longer young.
+  constexpr std::int16_t kBorn = -60;
+  for (std::size_t k = 0; k < noise.size(); ++k) {
+    crust[k].height =
+        noise[k] >= sea ? 1.0F + (noise[k] - least) / range : static_cast<float>(ocean_crust);
+    crust[k].born = kBorn;
+  }
+  return crust;
+}
+
+namespace {
+
+/// Grows plates on a lattice from random places of it.
+std::vector<std::int16_t> grow(const RasterWorld& lattice, int plates, std::uint64_t seed,
+                               std::uint64_t round) {
+  const RandomStream random(seed, "raster.growth");
+  std::uint64_t draw = 0;
+  const auto below = [&](std::size_t count) {
+    return static_cast<std::size_t>((std::uint64_t{random.words(draw++, round)[0]} * count) >> 32);
+  };
+  std::vector<std::int16_t> plate(lattice.size(), -1);
+  std::vector<std::vector<std::int32_t>> border(plates);
+  for (int p = 0; p < plates; ++p) {
+    std::int32_t cell = 0;
+    do {
+      cell = static_cast<std::int32_t>(below(plate.size()));
+    } while (plate[cell] >= 0);
+    plate[cell] = static_cast<std::int16_t>(p);
+    border[p].push_back(cell);
+  }
+  for (bool grows = true; grows;) {
+    grows = false;
+    for (int p = 0; p < plates; ++p) {
+      if (border[p].empty()) continue;
+      grows = true;
+      const std::size_t pick = below(border[p].size());
+      const std::int32_t cell = border[p][pick];
+      border[p][pick] = border[p].back();
+      border[p].pop_back();
+      const int x = cell % lattice.columns, y = cell / lattice.columns;
+      const std::int32_t row = y * lattice.columns;
+      for (const std::int32_t next :
+           {lattice.row(y + 1) * lattice.columns + x, lattice.row(y - 1) * lattice.columns + x,
+            row + lattice.column(x - 1), row + lattice.column(x + 1)}) {
+        if (plate[next] >= 0) continue;
+        plate[next] = static_cast<std::int16_t>(p);
+        border[p].push_back(next);
+      }
+    }
+  }
+  return plate;
+}
+
+}  // namespace
+
+std::vector<std::int16_t> grow_raster_plates(const RasterWorld& world, int plates,
+                                             std::uint64_t seed, std::uint64_t round) {
+  if (plates < 1 || plates > 32767 || plates > world.size()) {
+    throw ConfigurationError("raster plates: 1 to 32767, no more than cells, not " +
+                             std::to_string(plates));
+  }
+  constexpr double kPlaces = 9000.0, kPlacesOfAPlate = 60.0;
+  const double shape = static_cast<double>(world.rows) / world.columns;
+  const double places = std::max(kPlaces, kPlacesOfAPlate * plates);
+  const int across = std::max(1, static_cast<int>(std::lround(std::sqrt(places / shape))));
+  const RasterWorld lattice{across, std::max(1, static_cast<int>(std::lround(places / across)))};
+  const std::vector<std::int16_t> plate = grow(lattice, plates, seed, round);
+  // Outlines bend at scales below the lattice's.
+  constexpr double kMost = 2.2, kWavelength = 9.0;  // cells of the lattice
+  constexpr int kOctaves = 6;
+  constexpr double kGain = 0.55;
+  const RandomStream random(seed, "raster.bend");
+  const auto bend = [&](std::uint64_t component) {
+    const auto words = random.words(component);
+    return seamless_noise(world, lattice.columns / kWavelength, kGain, kOctaves,
+                          std::uint64_t{words[0]} << 32 | words[1]);
+  };
+  const std::vector<float> east = bend(0), north = bend(1);
+  std::vector<std::int16_t> seen(world.size());
+#pragma omp parallel for schedule(static)
+  for (int y = 0; y < world.rows; ++y) {
+    for (int x = 0; x < world.columns; ++x) {
+      const std::size_t cell = static_cast<std::size_t>(y) * world.columns + x;
+      const double u = (x + 0.5) * lattice.columns / world.columns + kMost * east[cell];
+      const double v = (y + 0.5) * lattice.rows / world.rows + kMost * north[cell];
+      seen[cell] = plate[static_cast<std::size_t>(lattice.row(static_cast<int>(std::floor(v)))) *
+                             lattice.columns +
+                         lattice.column(static_cast<int>(std::floor(u)))];
+    }
+  }
+  return seen;
+}
+
+}  // namespace geo

@@ -1,0 +1,163 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "geo/kernels/crust/ocean_depth.hpp"
+#include "geo/kernels/plates/sphere/sphere_tectonics.hpp"
+
+namespace geo {
+
+/// How plates have moved since the last resampling, and so when what lies open now has opened.
+class SphereTectonics::GapHistory {
+ public:
+  explicit GapHistory(const SphereState& state) : time_myr_(state.past_myr) {
+    time_myr_.push_back(state.time_myr);
+    for (const SpherePlate& plate : state.plates) {
+      std::vector<Matrix3>& frames = frames_.emplace_back();
+      for (const Quaternion& turn : plate.past) frames.push_back(turn.matrix());
+      frames.push_back(plate.turn.matrix());
+    }
+  }
+  /// Age of the floor at a place between two bodies, a share of the way from the ridge to the
+  /// nearer one: the time in which that share of what has parted them there did so. They part from
+  /// when they were closest, so that no floor is older than the rift, the reversal or the collision
+  /// that made their boundary.
+  [[nodiscard]] double age_myr(const Vector3& place, const Vector3& to_farther, int nearer,
+                               int farther, double share) const {
+    const std::vector<double> opened = opening(place, to_farther, nearer, farther);
+    const double whole = *std::max_element(opened.begin(), opened.end());
+    if (whole <= 0.0) return 0.0;
+    const double wanted = share * whole * (1.0 - kRoundOff);
+    auto k = std::ssize(opened) - 1;
+    while (opened[k] < wanted) --k;
+    const double now_myr = time_myr_.back();
+    if (k + 1 == std::ssize(opened)) return 0.0;
+    const double part = (wanted - opened[k + 1]) / (opened[k] - opened[k + 1]);
+    return now_myr - (time_myr_[k + 1] + part * (time_myr_[k] - time_myr_[k + 1]));
+  }
+
+ private:
+  static constexpr double kRoundOff = 1e-9;
+  /// Least share of the whole motion that is across a gap where plates part; where it is less they
+  /// pass each other, and any motion counts.
+  static constexpr double kAcross = 0.25;
+
+  /// By how much the bodies have parted since each of the times, radians.
+  [[nodiscard]] std::vector<double> opening(const Vector3& place, const Vector3& to_farther,
+                                            int nearer, int farther) const {
+    const auto &near = frames_[nearer], &far = frames_[farther];
+    const Vector3 own = back(near.back(), place), foreign = back(far.back(), place);
+    const Vector3 across = back(near.back(), normalised(tangent(to_farther, place)));
+    std::vector<double> apart, moved;
+    for (std::size_t k = 0; k < time_myr_.size(); ++k) {
+      // Where the place of the farther body lay then, as the nearer one saw it.
+      const Vector3 then = back(near[k], times(far[k], foreign));
+      moved.push_back(angle_between(then, own));
+      apart.push_back(-moved.back() * dot(normalised(tangent(then, own)), across));
+    }
+    const double most = *std::max_element(apart.begin(), apart.end());
+    return most >= kAcross * *std::max_element(moved.begin(), moved.end()) ? apart : moved;
+  }
+
+  std::vector<double> time_myr_;
+  std::vector<std::vector<Matrix3>> frames_;  // of each plate at each of the times
+};
+
+/// New floor where no plate is: each place hears of the nearest sample of the two nearest plates;
+/// the ridge runs half way between them.
+void SphereTectonics::fill_gaps(SphereCrust& now, std::vector<std::int16_t>& owner,
+                                std::span<const std::int16_t> body) {
+  const FibonacciSphere& samples = mesh_->samples();
+  const SphereSettings& s = settings_;
+  const std::int32_t n = mesh_->size();
+  struct Sides {
+    std::array<std::int32_t, 2> source{-1, -1};
+    std::array<float, 2> chord2{9.0F, 9.0F};
+  };
+  std::vector<std::int32_t> number(n, -1), gaps, queue, next;
+  for (std::int32_t i = 0; i < n; ++i) {
+    if (owner[i] >= 0) continue;
+    number[i] = static_cast<std::int32_t>(gaps.size());
+    gaps.push_back(i);
+  }
+  std::vector<Sides> sides(gaps.size());
+  /// True when the place did not know of a source as near of that plate.
+  const auto offer = [&](std::int32_t i, std::int32_t source) {
+    Sides& at = sides[number[i]];
+    const Vector3 way = add(samples.position(i), samples.position(source), -1.0);
+    const auto chord2 = static_cast<float>(dot(way, way));
+    int slot = -1;
+    for (int k = 0; k < 2; ++k) {
+      if (at.source[k] >= 0 && owner[at.source[k]] == owner[source]) slot = k;
+    }
+    if (slot < 0) slot = at.source[0] < 0 ? 0 : 1;
+    if (chord2 >= at.chord2[slot]) return false;
+    at.source[slot] = source;
+    at.chord2[slot] = chord2;
+    if (at.source[1] >= 0 && at.chord2[1] < at.chord2[0]) {
+      std::swap(at.source[0], at.source[1]);
+      std::swap(at.chord2[0], at.chord2[1]);
+    }
+    return true;
+  };
+  for (const std::int32_t i : gaps) {
+    bool reached = false;
+    for (const std::int32_t j : mesh_->neighbours(i)) {
+      if (owner[j] >= 0) reached = offer(i, j) || reached;
+    }
+    if (reached) queue.push_back(i);
+  }
+  while (!queue.empty()) {
+    next.clear();
+    for (const std::int32_t i : queue) {
+      for (const std::int32_t j : mesh_->neighbours(i)) {
+        if (owner[j] >= 0) continue;
+        bool reached = false;
+        for (const std::int32_t source : sides[number[i]].source) {
+          if (source >= 0) reached = offer(j, source) || reached;
+        }
+        if (reached) next.push_back(j);
+      }
+    }
+    queue.swap(next);
+  }
+  const GapHistory history(state_);
+  const auto gap_count = static_cast<std::int32_t>(gaps.size());
+  std::vector<std::int16_t> nearest_plate(gaps.size());
+#pragma omp parallel for schedule(static)
+  for (std::int32_t k = 0; k < gap_count; ++k) {
+    const std::int32_t i = gaps[k];
+    const auto [first, second] = sides[k].source;
+    const double near_km = distance_km(i, first);
+    const double far_km = second >= 0 ? distance_km(i, second) : near_km;
+    const double ridge_km = 0.5 * (far_km - near_km);
+    const double share = ridge_share(ridge_km, near_km);
+    const double mean_km =
+        1e-3 *
+        (now.elevation_m[first] * far_km +
+         (second >= 0 ? now.elevation_m[second] : now.elevation_m[first]) * near_km) /
+        std::max(1e-9, near_km + far_km);
+    const double profile_km = ridge_profile_km(ridge_km, s.ridge_falloff * s.radius_km, s.law);
+    nearest_plate[k] = owner[first];
+    const double age_myr =
+        second >= 0 ? history.age_myr(samples.position(i),
+                                      add(samples.position(second), samples.position(first), -1.0),
+                                      body[first], body[second], share)
+                    : 0.0;
+    now.age_myr[i] = static_cast<float>(age_myr);
+    now.elevation_m[i] = static_cast<float>(
+        s.floor_by_age ? -ocean_depth_m(age_myr) : 1e3 * new_floor_km(share, mean_km, profile_km));
+    now.thickness_m[i] = static_cast<float>(1e3 * s.oceanic_km);
+    if (second < 0) continue;
+    const Vector3& p = samples.position(i);
+    const Vector3 from_ridge = add(samples.position(first), samples.position(second), -1.0);
+    const Vector3 ridge = normalised(cross(from_ridge, p));
+    for (int c = 0; c < 3; ++c) now.ridge[i][c] = static_cast<float>(ridge[c]);
+  }
+  std::vector<std::int32_t> nearest(gaps.size());
+  for (std::int32_t k = 0; k < gap_count; ++k) nearest[k] = sides[k].source[0];
+  stretch_margins(gaps, nearest, now, owner);
+  for (std::int32_t k = 0; k < gap_count; ++k) owner[gaps[k]] = nearest_plate[k];
+}
+
+}  // namespace geo

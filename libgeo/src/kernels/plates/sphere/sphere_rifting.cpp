@@ -1,0 +1,251 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "geo/core/random.hpp"
+#include "geo/kernels/plates/great_circle_line.hpp"
+#include "geo/kernels/plates/sphere/sphere_tectonics.hpp"
+
+namespace geo {
+
+int SphereTectonics::largest_plate() const {
+  int largest = 0;
+  for (int p = 1; p < partition_.plates(); ++p) {
+    if (state_.plates[p].carrier >= 0) continue;
+    if (partition_.cap(p).samples > partition_.cap(largest).samples) largest = p;
+  }
+  return largest;
+}
+
+void SphereTectonics::rift_by_chance() {
+  const RandomStream random(seed_, "plates.rifts");
+  const auto step = static_cast<std::uint64_t>(state_.steps) << 10U;
+  const auto plates = static_cast<int>(state_.plates.size());
+  const int largest = settings_.rift_largest ? largest_plate() : -1;
+  for (int p = 0; p < plates; ++p) {
+    if (!state_.plates[p].alive || state_.plates[p].carrier >= 0) continue;
+    if (settings_.rift_largest && p != largest) continue;
+    const auto& cap = partition_.cap(p);
+    const double ratio = sample_km2() * cap.samples / settings_.mean_area_km2;
+    if (ratio < settings_.rift_smallest) continue;
+    // Continents break more easily than the floor of oceans.
+    const double weight =
+        settings_.rift_largest ? 1.0 : 0.2 + 0.8 * cap.continental / std::max(1, cap.samples);
+    const std::uint64_t index = step + static_cast<std::uint64_t>(p);
+    const double chance =
+        rift_probability(settings_.rift_per_myr * settings_.law.step_myr, weight, ratio);
+    if (random.uniform(index) >= chance) continue;
+    const double draw = random.uniform(index, 1);
+    const int fragments = settings_.rift_largest || draw < 0.6 ? 2 : draw < 0.9 ? 3 : 4;
+    // Places drawn on the sphere until enough lie on the plate.
+    std::vector<Vector3> places;
+    for (std::uint64_t k = 0; k < 4000 && std::ssize(places) < fragments; ++k) {
+      const Vector3 at = random.direction((index << 12U) + k);
+      if (state_.crust.plate[mesh_->samples().nearest(back(frame_[p], at))] == p) {
+        places.push_back(at);
+      }
+    }
+    if (std::ssize(places) < 2) continue;
+    rift(p, places, settings_.rift_speed_mm_yr * random.uniform(index, 2, 0.6, 1.4));
+  }
+}
+
+void SphereTectonics::rift(int plate, std::span<const Vector3> places, double speed_mm_yr) {
+  const FibonacciSphere& samples = mesh_->samples();
+  const auto& of = state_.crust.plate;
+  std::vector<Vector3> local;
+  for (const Vector3& place : places) local.push_back(back(frame_[plate], place));
+  const double most = 2.2 * settings_.rift_warp_km / settings_.radius_km;
+  constexpr double kWavelength_km = 1500.0;
+  std::vector<std::int8_t> fragment(of.size(), -1);
+#pragma omp parallel for schedule(static)
+  for (std::int32_t i = 0; i < mesh_->size(); ++i) {
+    if (of[i] != plate) continue;
+    Vector3 at = samples.position(i);
+    const Vector3 straight = at;
+    for (int c = 0; c < 3; ++c) {
+      const Vector3 shifted{straight[0] + 3.1 * c, straight[1] - 1.7 * c, straight[2] + 0.9 * c};
+      at[c] += most * warp_.fbm(shifted, settings_.radius_km / kWavelength_km, 5);
+    }
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < local.size(); ++k) {
+      const double far = length(add(at, local[k], -1.0));
+      if (far < least) {
+        least = far;
+        fragment[i] = static_cast<std::int8_t>(k);
+      }
+    }
+  }
+  Vector3 middle{};
+  for (const Vector3& place : places) middle = add(middle, place);
+  const auto away = across_fractures(plate, fragment, static_cast<int>(places.size()), middle);
+  if (part(plate, fragment, away, speed_mm_yr, SphereEvent::Kind::rift)) ++budget_.rifts;
+}
+
+void SphereTectonics::rift_along(int plate, const GreatCircleLine& line, int fragments,
+                                 double speed_mm_yr) {
+  const std::int32_t n = mesh_->size();
+  std::vector<std::int8_t> fragment(n, -1);
+#pragma omp parallel for schedule(static)
+  for (std::int32_t i = 0; i < n; ++i) {
+    if (state_.crust.plate[i] != plate) continue;
+    const Vector3 at = times(frame_[plate], mesh_->samples().position(i));
+    const bool is_left = line.is_left(at), is_cut = line.is_beyond_middle(at);
+    fragment[i] = is_left ? (is_cut && fragments > 3 ? 3 : 0) : (is_cut && fragments > 2 ? 2 : 1);
+  }
+  const auto away = across_fractures(plate, fragment, fragments, line.middle());
+  if (part(plate, fragment, away, speed_mm_yr, SphereEvent::Kind::rift)) ++budget_.rifts;
+}
+
+/// Axes about which fragments leave each other. A rotation w opens the area w . int r x n dl along
+/// a fracture, n the normal to the fragment's own side, and that integral is the chord between the
+/// ends of the fracture, whatever its bends: a fragment turns about the sum of the chords of its
+/// fractures, which opens most. Where they go against each other, on both sides of a strip, its
+/// axis is shorter than 1. A fracture that goes all round has no chord, and opens no more than it
+/// closes: it opens about its place that is nearest to `about`.
+std::vector<Vector3> SphereTectonics::across_fractures(int plate,
+                                                       std::span<const std::int8_t> fragment,
+                                                       int fragments, const Vector3& about) const {
+  const FibonacciSphere& samples = mesh_->samples();
+  struct Edge {
+    Vector3 at;
+    std::size_t pair;
+    Vector3 along;
+  };
+  std::vector<Edge> edges;
+  for (std::int32_t i = 0; i < mesh_->size(); ++i) {
+    if (fragment[i] < 0) continue;
+    const auto star = mesh_->neighbours(i);
+    for (std::size_t s = 0; s < star.size(); ++s) {
+      const int own = fragment[i], other = fragment[star[s]];
+      if (other < 0 || other == own) continue;
+      // Between the middles of the triangles right and left of the way to the neighbour.
+      const Vector3& left = samples.position(star[(s + 1) % star.size()]);
+      const Vector3& right = samples.position(star[(s + star.size() - 1) % star.size()]);
+      const Vector3 at = normalised(add(samples.position(i), samples.position(star[s])));
+      edges.push_back({at, static_cast<std::size_t>(own) * fragments + other,
+                       scaled(add(right, left, -1.0), 1.0 / 3.0)});
+    }
+  }
+  const Vector3 wanted = back(frame_[plate], about);
+  Vector3 middle{};
+  double most = -2.0;
+  std::vector<Vector3> chord(static_cast<std::size_t>(fragments) * fragments, Vector3{});
+  std::vector<Vector3> near(chord.size(), Vector3{});
+  std::vector<double> line(chord.size(), 0.0);
+  for (const Edge& edge : edges) {
+    chord[edge.pair] = add(chord[edge.pair], edge.along);
+    line[edge.pair] += length(edge.along);
+    if (dot(edge.at, wanted) <= most) continue;
+    most = dot(edge.at, wanted);
+    middle = edge.at;
+  }
+  for (const Edge& edge : edges) {
+    const double weight = std::max(0.0, dot(edge.at, middle));
+    near[edge.pair] = add(near[edge.pair], edge.along, weight);
+  }
+  constexpr double kAllRound = 0.1;  // chord over line
+  constexpr double kAgainst = 0.5;   // of their chords cancel before a fragment goes slower
+  std::vector<Vector3> axes;
+  for (int own = 0; own < fragments; ++own) {
+    Vector3 sum{};
+    double whole = 0.0;
+    for (int other = 0; other < fragments; ++other) {
+      const std::size_t pair = static_cast<std::size_t>(own) * fragments + other;
+      const Vector3& one = length(chord[pair]) < kAllRound * line[pair] ? near[pair] : chord[pair];
+      sum = add(sum, one);
+      whole += length(one);
+    }
+    const double size = std::max(length(sum), kAgainst * whole);
+    axes.push_back(size > 0.0 ? times(frame_[plate], scaled(sum, 1.0 / size)) : Vector3{});
+  }
+  return axes;
+}
+
+/// Of the fragments of a plate the one that is nearest to the middle of a body that it carries.
+std::size_t SphereTectonics::fragment_nearest(int body, int plate,
+                                              std::span<const std::int8_t> fragment) const {
+  const Vector3 middle = back(frame_[plate], times(frame_[body], partition_.cap(body).centre));
+  double most = -2.0;
+  std::size_t nearest = 0;
+  for (std::int32_t i = 0; i < mesh_->size(); ++i) {
+    if (fragment[i] < 0) continue;
+    const double near = dot(mesh_->samples().position(i), middle);
+    if (near <= most) continue;
+    most = near;
+    nearest = static_cast<std::size_t>(fragment[i]);
+  }
+  return nearest;
+}
+
+/// Fragments of a plate become plates, each turned about an axis on top of the old motion. The
+/// largest keeps the plate's number. One that has no samples comes to nothing. False when there are
+/// no two.
+bool SphereTectonics::part(int plate, std::span<const std::int8_t> fragment,
+                           std::span<const Vector3> away, double speed_mm_yr,
+                           SphereEvent::Kind kind) {
+  auto& of = state_.crust.plate;
+  const auto& cap = partition_.cap(plate);
+  const Vector3 centre = times(frame_[plate], cap.centre);
+  const double area_km2 = sample_km2() * cap.samples;
+  const SpherePlate whole = state_.plates[plate];
+  const Vector3 drift = scaled(whole.axis, whole.speed_rad_myr);
+  std::vector<std::int32_t> size(away.size(), 0);
+  for (const std::int8_t k : fragment) {
+    if (k >= 0) ++size[k];
+  }
+  if (std::count_if(size.begin(), size.end(), [](auto samples) { return samples > 0; }) < 2) {
+    return false;
+  }
+  // What the plate carries goes with the fragment that is nearest to it.
+  std::vector<std::pair<int, std::size_t>> carried;
+  for (int p = 0; p < partition_.plates(); ++p) {
+    if (!state_.plates[p].alive || state_.plates[p].carrier != plate) continue;
+    carried.emplace_back(p, fragment_nearest(p, plate, fragment));
+    size[carried.back().second] += partition_.cap(p).samples;
+  }
+  const auto largest = std::max_element(size.begin(), size.end()) - size.begin();
+  const auto origin =
+      kind == SphereEvent::Kind::rift ? PlateLife::Origin::rift : PlateLife::Origin::foundering;
+  std::vector<int> numbers;
+  for (std::size_t k = 0; k < away.size(); ++k) {
+    if (size[k] == 0) continue;
+    SpherePlate part = whole;
+    if (static_cast<std::ptrdiff_t>(k) != largest) {
+      part.id = state_.begin_life(origin, whole.id);
+      part.born_myr = state_.time_myr;
+    }
+    const Vector3 gained = scaled(away[k], speed_mm_yr / settings_.radius_km);
+    const Vector3 rotation = add(drift, gained);
+    part.speed_rad_myr =
+        std::min(length(rotation), settings_.law.speed_mm_yr / settings_.radius_km);
+    if (part.speed_rad_myr > 0.0) part.axis = normalised(rotation);
+    const bool is_gradual = kind == SphereEvent::Kind::rift && settings_.rift_onset_myr > 0.0;
+    if (is_gradual && !whole.is_held) {  // at first they move as the whole did
+      part.yielding = add(add(whole.yielding, drift), part.axis, -part.speed_rad_myr);
+    }
+    int number = plate;
+    if (numbers.empty()) {
+      state_.plates[plate] = part;
+    } else {
+      number = state_.add_plate(part);
+    }
+    for (std::int32_t i = 0; i < mesh_->size(); ++i) {
+      if (fragment[i] == static_cast<std::int8_t>(k)) of[i] = static_cast<std::int16_t>(number);
+    }
+    if (kind == SphereEvent::Kind::rift) {
+      for (const int other : numbers) {
+        state_.pair(number, other).parted_myr = static_cast<float>(state_.time_myr);
+      }
+    }
+    for (const auto& [body, nearest] : carried) {
+      if (nearest == k) state_.plates[body].carrier = static_cast<std::int16_t>(number);
+    }
+    numbers.push_back(number);
+  }
+  events_.push_back({kind, state_.time_myr, plate, -1, centre, area_km2});
+  repartition();
+  return true;
+}
+
+}  // namespace geo

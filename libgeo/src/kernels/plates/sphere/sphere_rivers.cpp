@@ -1,0 +1,162 @@
+#include <algorithm>
+#include <cmath>
+
+#include "geo/core/parallel_errors.hpp"
+#include "geo/kernels/plates/sphere/sphere_tectonics.hpp"
+#include "geo/kernels/water/surface_rivers.hpp"
+#include "sample_sums.hpp"
+
+namespace geo {
+namespace {
+
+/// A way from a sample across the edge of its plate.
+struct Crossing {
+  std::int32_t from, to;
+  float distance_m;
+
+  auto operator<=>(const Crossing&) const = default;
+};
+
+}  // namespace
+
+/// The surface as it lies after a step: samples that are not below another plate. Within a plate
+/// neighbours are those of the lattice; across its edge, what lies where the lattice would go on.
+class SphereTectonics::MovingSurface {
+ public:
+  explicit MovingSurface(const SphereTectonics& model) : m_(model), crust_(model.state_.crust) {
+    const std::int32_t n = m_.mesh_->size();
+    graph_.area_m2 = 1e6 * m_.sample_km2();
+    graph_.is_there.resize(n);
+    graph_.is_open.assign(n, 0);
+#pragma omp parallel for schedule(static)
+    for (std::int32_t i = 0; i < n; ++i) {
+      graph_.is_there[i] = crust_.plate[i] >= 0 && m_.hidden_[i] == 0 ? 1 : 0;
+    }
+    find_crossings();
+    connect();
+  }
+  [[nodiscard]] const SurfaceGraph& graph() const { return graph_; }
+
+ private:
+  [[nodiscard]] bool is_beside(std::int32_t i, std::int32_t j) const {
+    return graph_.is_there[j] != 0 && crust_.plate[j] == crust_.plate[i];
+  }
+  [[nodiscard]] float way_m(const Vector3& a, const Vector3& b) const {
+    return static_cast<float>(1e3 * m_.settings_.radius_km * angle_between(a, b));
+  }
+  /// The sample on top at a place of the planet that is of another plate, or -1.
+  [[nodiscard]] std::int32_t across(const Vector3& place, int own) const {
+    for (int q = 0; q < m_.partition_.plates(); ++q) {
+      if (q == own || !m_.state_.plates[q].alive) continue;
+      const Vector3 local = back(m_.frame_[q], place);
+      if (!m_.partition_.may_hold(q, local)) continue;
+      const std::int32_t j = m_.mesh_->samples().nearest(local);
+      if (crust_.plate[j] == q && graph_.is_there[j] != 0) return j;
+    }
+    return -1;
+  }
+  void find_crossings() {
+    const FibonacciSphere& samples = m_.mesh_->samples();
+    const std::int32_t n = m_.mesh_->size();
+    constexpr std::int32_t kChunk = 2048;
+    std::vector<std::vector<Crossing>> found((n + kChunk - 1) / kChunk);
+    const auto search = [&](std::size_t chunk) {
+      const auto from = static_cast<std::int32_t>(chunk) * kChunk;
+      for (std::int32_t i = from; i < std::min(n, from + kChunk); ++i) {
+        if (graph_.is_there[i] == 0) continue;
+        const int own = crust_.plate[i];
+        for (const std::int32_t j : m_.mesh_->neighbours(i)) {
+          if (is_beside(i, j)) continue;
+          const std::int32_t other = across(times(m_.frame_[own], samples.position(j)), own);
+          if (other < 0) {
+            graph_.is_open[i] = 1;
+            continue;
+          }
+          const float far_m = way_m(times(m_.frame_[own], samples.position(i)),
+                                    times(m_.frame_[crust_.plate[other]], samples.position(other)));
+          if (far_m <= 0.0F) continue;
+          found[chunk].push_back({i, other, far_m});
+          found[chunk].push_back({other, i, far_m});
+        }
+      }
+    };
+    ParallelErrors errors;
+#pragma omp parallel for schedule(dynamic)
+    for (std::size_t chunk = 0; chunk < found.size(); ++chunk) errors.guard([&] { search(chunk); });
+    errors.rethrow();
+    crossings_ = joined(found);
+    std::sort(crossings_.begin(), crossings_.end());
+    const auto same = [](const Crossing& a, const Crossing& b) {
+      return a.from == b.from && a.to == b.to;
+    };
+    crossings_.erase(std::unique(crossings_.begin(), crossings_.end(), same), crossings_.end());
+  }
+  void connect() {
+    const std::int32_t n = m_.mesh_->size();
+    graph_.first.assign(static_cast<std::size_t>(n) + 1, 0);
+#pragma omp parallel for schedule(static)
+    for (std::int32_t i = 0; i < n; ++i) {
+      if (graph_.is_there[i] == 0) continue;
+      for (const std::int32_t j : m_.mesh_->neighbours(i)) graph_.first[i + 1] += is_beside(i, j);
+    }
+    for (const Crossing& way : crossings_) ++graph_.first[way.from + 1];
+    for (std::int32_t i = 0; i < n; ++i) graph_.first[i + 1] += graph_.first[i];
+    graph_.neighbour.resize(graph_.first[n]);
+    graph_.distance_m.resize(graph_.first[n]);
+#pragma omp parallel for schedule(static)
+    for (std::int32_t i = 0; i < n; ++i) {
+      if (graph_.is_there[i] == 0) continue;
+      std::int32_t at = graph_.first[i];
+      const auto add_way = [&](std::int32_t to, float far_m) {
+        graph_.neighbour[at] = to;
+        graph_.distance_m[at++] = far_m;
+      };
+      const FibonacciSphere& samples = m_.mesh_->samples();
+      for (const std::int32_t j : m_.mesh_->neighbours(i)) {
+        if (is_beside(i, j)) add_way(j, way_m(samples.position(i), samples.position(j)));
+      }
+      auto way = std::lower_bound(crossings_.begin(), crossings_.end(), Crossing{i, -1, 0.0F});
+      for (; way != crossings_.end() && way->from == i; ++way) add_way(way->to, way->distance_m);
+    }
+  }
+
+  const SphereTectonics& m_;
+  const SphereCrust& crust_;
+  SurfaceGraph graph_;
+  std::vector<Crossing> crossings_;
+};
+
+/// Rivers carve what stands above the sea, plates and all as they lie, and lay down what they carry
+/// in lakes, on shelves and on the sea floor.
+void SphereTectonics::run_rivers() {
+  SphereCrust& crust = state_.crust;
+  const MovingSurface surface(*this);
+  RiverLaw law = settings_.rivers;
+  law.dt_yr = 1e6 * settings_.law.step_myr;
+  law.rebound = settings_.rebound;
+  std::vector<float> rock_m(crust.plate.size());
+  const std::vector<float> before_m = crust.elevation_m;
+  const SurfaceRivers rivers = route_rivers(surface.graph(), crust.elevation_m);
+  geo::run_rivers(surface.graph(), rivers, law, crust.continental, crust.elevation_m, rock_m);
+#pragma omp parallel for schedule(static)
+  for (std::int32_t i = 0; i < crust.size(); ++i) {
+    if (crust.continental[i] != 0) {
+      rock_m[i] = static_cast<float>(put(crust.thickness_m[i], rock_m[i]));
+    } else {
+      // Floor is as much thicker as it stands higher: the rest of what it bears has sunk into it.
+      crust.thickness_m[i] += crust.elevation_m[i] - before_m[i];
+    }
+  }
+  const auto volume_km3 = [&](auto&& counts) {
+    return 1e-3 * sample_km2() * sum_over(crust.size(), [&](std::int32_t i) {
+             return counts(i) ? static_cast<double>(rock_m[i]) : 0.0;
+           });
+  };
+  budget_.eroded_km3 -= volume_km3([&](std::int32_t i) { return rock_m[i] < 0.0F; });
+  budget_.deposited_km3 +=
+      volume_km3([&](std::int32_t i) { return rock_m[i] > 0.0F && crust.continental[i] != 0; });
+  budget_.sea_floor_km3 +=
+      volume_km3([&](std::int32_t i) { return rock_m[i] > 0.0F && crust.continental[i] == 0; });
+}
+
+}  // namespace geo

@@ -1,0 +1,173 @@
+#include "geo/kernels/water/inflow.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <vector>
+
+#include "planet_window.hpp"
+
+namespace geo {
+namespace {
+
+/// Lowest land cell of a stretch that no river has taken, kNoCell when there is none.
+Index lowest_land(const Stretch& stretch, std::span<const float> z,
+                  std::span<const std::uint8_t> taken) {
+  Index lowest = kNoCell;
+  for (int k = 0; k < stretch.count; ++k) {
+    const Index cell = stretch.first + k * stretch.step;
+    if (taken[cell] != 0) continue;
+    if (z[cell] >= 0.0F && (lowest == kNoCell || z[cell] < z[lowest])) lowest = cell;
+  }
+  return lowest;
+}
+
+/// Discharge out of planet cells, also on lakes.
+class Discharge {
+ public:
+  Discharge(const PlanetCells& cells, const PlanetWater& water) : water_(water) {
+    if (water.lake_id.empty()) return;
+    const auto first = static_cast<std::size_t>(cells.first_row()) * cells.planet().nx();
+    for (std::size_t c = first; c < first + cells.size(); ++c) {
+      if (water.lake_id[c] <= 0) continue;
+      double& most = largest_m2_[water.lake_id[c]];
+      most = std::max(most, water.drainage_area_m2[c]);
+    }
+  }
+  [[nodiscard]] double operator()(Index cell) const {
+    const double q = water_.discharge_m3_s[cell];
+    if (water_.lake_id.empty() || water_.lake_id[cell] <= 0) return q;
+    return q * water_.drainage_area_m2[cell] / largest_m2_.at(water_.lake_id[cell]);
+  }
+
+ private:
+  const PlanetWater& water_;
+  std::map<std::int32_t, double> largest_m2_;
+};
+
+/// How much of each covered cell of the planet lies within the plane.
+std::vector<double> areas_inside(const PlanetCells& cells) {
+  std::vector<double> area_m2(cells.size());
+  const Index first = cells.planet().cell(0, cells.first_row());
+  for (const Index cell : cells.cell_of()) area_m2[cell - first] += cells.fine().area_m2(0);
+  return area_m2;
+}
+
+/// Land on the edge of the plane in each covered cell of the planet.
+std::map<Index, std::vector<Index>> land_edges(const PlanetCells& cells, std::span<const float> z) {
+  const Grid& fine = cells.fine();
+  std::map<Index, std::vector<Index>> edge;
+  for (Index c = 0; c < fine.size(); ++c) {
+    if (z[c] >= 0.0F && fine.is_open_edge(fine.column(c), fine.row(c))) {
+      edge[cells.cell_of()[c]].push_back(c);
+    }
+  }
+  return edge;
+}
+
+bool falls_inward(const Grid& fine, Index edge_cell, std::span<const float> z) {
+  for (int k = 0; k < kDirections; ++k) {
+    const Index next = fine.neighbour(edge_cell, k);
+    if (next == kNoCell || fine.is_open_edge(fine.column(next), fine.row(next))) continue;
+    if (z[next] < z[edge_cell]) return true;
+  }
+  return false;
+}
+
+/// Lowest of some edge cells that falls inward and where nothing leaves; kNoCell if there is none.
+Index lowest_inward(const Grid& fine, std::span<const Index> edge, std::span<const float> z,
+                    std::span<const std::uint8_t> leaves) {
+  Index lowest = kNoCell;
+  for (const Index c : edge) {
+    if (leaves[c] != 0 || !falls_inward(fine, c, z)) continue;
+    if (lowest == kNoCell || z[c] < z[lowest]) lowest = c;
+  }
+  return lowest;
+}
+
+/// A step of the planet's water over the edge.
+struct Passage {
+  Index from, to;
+  bool outward;
+};
+
+/// All of them, the largest first.
+std::vector<Passage> find_passages(const PlanetCells& cells, const PlanetWater& water,
+                                   const PlanetWindow& window) {
+  const Grid& planet = cells.planet();
+  std::vector<Passage> passages;
+  const Index begin = planet.cell(0, cells.first_row());
+  for (Index from = begin; from < begin + static_cast<Index>(cells.size()); ++from) {
+    const Index to = water.receiver[from];
+    const bool outward = window.inside(from);
+    if (outward == window.inside(to)) continue;
+    passages.push_back({from, to, outward});
+  }
+  std::stable_sort(passages.begin(), passages.end(), [&](const Passage& a, const Passage& b) {
+    return water.drainage_area_m2[a.from] > water.drainage_area_m2[b.from];
+  });
+  return passages;
+}
+
+}  // namespace
+
+std::vector<RiverCrossing> find_inflow(const PlanetCells& cells, const PlanetWater& water,
+                                       std::span<float> elevation_m,
+                                       std::span<double> inflow_area_m2,
+                                       std::span<float> inflow_m3_s) {
+  const Grid& planet = cells.planet();
+  const PlanetWindow window(cells, water.receiver);
+  const Discharge discharge(cells, water);
+  std::fill(inflow_area_m2.begin(), inflow_area_m2.end(), 0.0);
+  std::fill(inflow_m3_s.begin(), inflow_m3_s.end(), 0.0F);
+  const auto enter = [&](Index edge_cell, Index planet_cell, double area_m2) {
+    inflow_area_m2[edge_cell] += area_m2;
+    inflow_m3_s[edge_cell] +=
+        static_cast<float>(area_m2 / water.drainage_area_m2[planet_cell] * discharge(planet_cell));
+  };
+  const std::vector<double> inside_m2 = areas_inside(cells);
+  const auto outside_m2 = [&](Index cell) {
+    const double inside = inside_m2[cells.at(planet.column(cell), planet.row(cell))];
+    return std::max(0.0, planet.area_m2(planet.row(cell)) - inside);
+  };
+
+  std::vector<RiverCrossing> crossings;
+  std::map<Index, Index> entry_of;
+  std::vector<std::uint8_t> taken(elevation_m.size()), leaves(elevation_m.size());
+  for (const auto& [from, to, outward] : find_passages(cells, water, window)) {
+    const int row = planet.row(from);
+    const double reach_m = 0.5 * std::min(planet.spacing_east_m(row), planet.face_east_m(row));
+    const auto start = window.place(from), end = window.place(to);
+    const Stretch stretch = outward ? window.frame().crossing(end, start, reach_m)
+                                    : window.frame().crossing(start, end, reach_m);
+    const Index lowest = lowest_land(stretch, elevation_m, taken);
+    if (lowest == kNoCell) {  // straight into the sea, or out of it
+      if (outward) crossings.push_back({from, stretch.middle()});
+      continue;
+    }
+    const double way = outward ? 1.0 - stretch.share : stretch.share;
+    const double level_m = std::lerp(std::max(water.elevation_m[from], 0.0F),
+                                     std::max(water.elevation_m[to], 0.0F), way);
+    elevation_m[lowest] = std::min(elevation_m[lowest], static_cast<float>(level_m));
+    crossings.push_back({from, lowest});
+    taken[lowest] = 1;
+    if (outward) {
+      leaves[lowest] = 1;
+      continue;
+    }
+    const double own_inside = planet.area_m2(row) - outside_m2(from);
+    entry_of.try_emplace(to, lowest);
+    enter(lowest, from, water.drainage_area_m2[from] - own_inside);
+  }
+  for (const auto& [cell, edge] : land_edges(cells, elevation_m)) {
+    if (!window.inside(cell) || water.elevation_m[cell] < 0.0F) continue;
+    const auto river = entry_of.find(cell);
+    const Index entry = river != entry_of.end()
+                            ? river->second
+                            : lowest_inward(cells.fine(), edge, elevation_m, leaves);
+    if (entry != kNoCell) enter(entry, cell, outside_m2(cell));
+  }
+  return crossings;
+}
+
+}  // namespace geo

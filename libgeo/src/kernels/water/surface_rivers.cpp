@@ -1,0 +1,287 @@
+#include "geo/kernels/water/surface_rivers.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <queue>
+#include <utility>
+
+namespace geo {
+namespace {
+
+constexpr float kFar = std::numeric_limits<float>::infinity();
+using Step = std::pair<float, std::int32_t>;  // a key and a place: ties go by the place
+using LowestFirst = std::priority_queue<Step, std::vector<Step>, std::greater<>>;
+
+/// Floods land from the coast inland.
+class Flood {
+ public:
+  Flood(const SurfaceGraph& graph, std::span<const float> z)
+      : graph_(graph), z_(z), level_(z.size(), kFar), from_(z.size(), SurfaceRivers::kSink) {
+    out_.receiver.assign(z.size(), SurfaceRivers::kSink);
+    out_.distance_m.assign(z.size(), 0.0F);
+  }
+
+  SurfaceRivers run() {
+    for (std::int32_t i = 0; i < graph_.size(); ++i) {
+      if (graph_.is_there[i] == 0) continue;
+      if (z_[i] < 0.0F) {
+        level_[i] = 0.0F;
+      } else if (graph_.is_open[i] != 0) {
+        reach(i, 0.0F, SurfaceRivers::kOpen);
+      }
+    }
+    for (std::int32_t i = 0; i < graph_.size(); ++i) {
+      if (graph_.is_there[i] != 0 && z_[i] < 0.0F) spread_from(i);
+    }
+    rise();
+    seed_enclosed();
+    return std::move(out_);
+  }
+
+ private:
+  void reach(std::int32_t i, float level, std::int32_t from) {
+    level_[i] = std::max(z_[i], level);
+    from_[i] = from;
+    queue_.emplace(level_[i], i);
+  }
+  void spread_from(std::int32_t i) {
+    for (std::int32_t k = graph_.first[i]; k < graph_.first[i + 1]; ++k) {
+      const std::int32_t j = graph_.neighbour[k];
+      if (level_[j] == kFar) reach(j, level_[i], i);
+    }
+  }
+  void rise() {
+    while (!queue_.empty()) {
+      const std::int32_t i = queue_.top().second;
+      queue_.pop();
+      settle(i);
+      spread_from(i);
+    }
+  }
+  [[nodiscard]] bool is_settled(std::int32_t i) const {
+    return z_[i] < 0.0F || out_.distance_m[i] > 0.0F;
+  }
+  void settle(std::int32_t i) {
+    out_.order.push_back(i);
+    // An outlet of its own: half a place's width from the water.
+    const auto half_m = static_cast<float>(0.5 * std::sqrt(graph_.area_m2));
+    std::int32_t to = from_[i];
+    float steepest = from_[i] == SurfaceRivers::kOpen ? level_[i] / half_m : 0.0F;
+    float way_m = half_m;
+    for (std::int32_t k = graph_.first[i]; k < graph_.first[i + 1]; ++k) {
+      const std::int32_t j = graph_.neighbour[k];
+      if (j == from_[i]) way_m = graph_.distance_m[k];
+      if (!is_settled(j)) continue;
+      const float slope = (level_[i] - level_[j]) / graph_.distance_m[k];
+      if (slope <= steepest) continue;
+      steepest = slope;
+      to = j;
+    }
+    for (std::int32_t k = graph_.first[i]; k < graph_.first[i + 1]; ++k) {
+      if (graph_.neighbour[k] == to) way_m = graph_.distance_m[k];
+    }
+    out_.receiver[i] = to;
+    out_.distance_m[i] = way_m;
+  }
+  /// Land that no sea borders drains to its lowest place.
+  void seed_enclosed() {
+    std::vector<Step> dry;
+    for (std::int32_t i = 0; i < graph_.size(); ++i) {
+      if (graph_.is_there[i] != 0 && level_[i] == kFar) dry.emplace_back(z_[i], i);
+    }
+    std::sort(dry.begin(), dry.end());
+    for (const auto& [level, i] : dry) {
+      if (level_[i] != kFar) continue;
+      reach(i, level, SurfaceRivers::kSink);
+      rise();
+    }
+  }
+
+  const SurfaceGraph& graph_;
+  std::span<const float> z_;
+  std::vector<float> level_;
+  std::vector<std::int32_t> from_;
+  LowestFirst queue_;
+  SurfaceRivers out_;
+};
+
+float lowest_neighbour_m(const SurfaceGraph& graph, std::span<const float> z, std::int32_t i) {
+  float lowest = kFar;
+  for (std::int32_t k = graph.first[i]; k < graph.first[i + 1]; ++k) {
+    lowest = std::min(lowest, z[graph.neighbour[k]]);
+  }
+  return lowest == kFar ? z[i] : lowest;
+}
+
+/// Lays what rivers bring to the sea.
+class Sea {
+ public:
+  Sea(const SurfaceGraph& graph, const RiverLaw& law, std::span<float> z, std::span<float> rock_m)
+      : graph_(graph), law_(law), z_(z), rock_m_(rock_m), load_m3_(z.size(), 0.0) {}
+
+  void take(std::int32_t place, double m3) {
+    if (place < 0) {
+      rest_m3_ += m3;
+    } else {
+      load_m3_[place] += m3;
+    }
+  }
+  /// Volume laid.
+  double settle() {
+    order_by_way_from_coast();
+    const double share = -std::expm1(-std::sqrt(graph_.area_m2) / (1e3 * law_.settling_km));
+    for (const std::int32_t i : order_) {
+      if (load_m3_[i] > 0.0) pass_on(i, lay(i, share * load_m3_[i]));
+    }
+    settle_evenly();
+    return laid_m3_;
+  }
+
+ private:
+  static constexpr float kLengths = 6.0F;  // farther off, what is left is everywhere
+
+  void order_by_way_from_coast() {
+    const float farthest = kLengths * static_cast<float>(1e3 * law_.settling_km);
+    way_m_.assign(z_.size(), kFar);
+    LowestFirst queue;
+    for (std::int32_t i = 0; i < graph_.size(); ++i) {
+      if (load_m3_[i] <= 0.0) continue;
+      way_m_[i] = 0.0F;
+      queue.emplace(0.0F, i);
+    }
+    while (!queue.empty()) {
+      const auto [way, i] = queue.top();
+      queue.pop();
+      if (way > way_m_[i]) continue;
+      order_.push_back(i);
+      for (std::int32_t k = graph_.first[i]; k < graph_.first[i + 1]; ++k) {
+        const std::int32_t j = graph_.neighbour[k];
+        const float next = way + graph_.distance_m[k];
+        if (z_[j] >= 0.0F || next >= way_m_[j] || next > farthest) continue;
+        way_m_[j] = next;
+        queue.emplace(next, j);
+      }
+    }
+  }
+  /// Up to a volume on a place, as far as there is room; the rest of its load.
+  double lay(std::int32_t i, double m3) {
+    const double room_m3 = std::max(0.0, -law_.shelf_m - z_[i]) / law_.load * graph_.area_m2;
+    const double laid_m3 = std::min(m3, room_m3);
+    add(i, laid_m3);
+    return load_m3_[i] - laid_m3;
+  }
+  void add(std::int32_t i, double m3) {
+    const double thick_m = m3 / graph_.area_m2;
+    z_[i] += static_cast<float>(law_.load * thick_m);
+    rock_m_[i] += static_cast<float>(thick_m);
+    laid_m3_ += m3;
+  }
+  /// To all neighbours that lie farther from the coast, by how much farther.
+  void pass_on(std::int32_t i, double m3) {
+    double sum = 0.0;
+    for (const int pass : {0, 1}) {
+      for (std::int32_t k = graph_.first[i]; k < graph_.first[i + 1]; ++k) {
+        const std::int32_t j = graph_.neighbour[k];
+        if (!(way_m_[j] > way_m_[i]) || way_m_[j] == kFar) continue;
+        const double weight = (way_m_[j] - way_m_[i]) / graph_.distance_m[k];
+        if (pass == 0) {
+          sum += weight;
+        } else {
+          load_m3_[j] += m3 * weight / sum;
+        }
+      }
+      if (sum == 0.0) {
+        rest_m3_ += m3;
+        return;
+      }
+    }
+  }
+  void settle_evenly() {
+    if (rest_m3_ <= 0.0) return;
+    const auto is_deep = [&](std::int32_t i) {
+      return graph_.is_there[i] != 0 && z_[i] < -law_.shelf_m;
+    };
+    double places = 0.0;
+    for (std::int32_t i = 0; i < graph_.size(); ++i) places += is_deep(i) ? 1.0 : 0.0;
+    const double each_m3 = rest_m3_ / std::max(1.0, places);
+    for (std::int32_t i = 0; i < graph_.size(); ++i) {
+      if (is_deep(i)) add(i, each_m3);
+    }
+  }
+
+  const SurfaceGraph& graph_;
+  const RiverLaw& law_;
+  std::span<float> z_, rock_m_;
+  std::vector<double> load_m3_;
+  std::vector<float> way_m_;
+  std::vector<std::int32_t> order_;
+  double rest_m3_ = 0.0, laid_m3_ = 0.0;
+};
+
+}  // namespace
+
+SurfaceRivers route_rivers(const SurfaceGraph& graph, std::span<const float> elevation_m) {
+  SurfaceRivers rivers = Flood(graph, elevation_m).run();
+  rivers.area_m2.assign(elevation_m.size(), graph.area_m2);
+  for (auto at = rivers.order.rbegin(); at != rivers.order.rend(); ++at) {
+    const std::int32_t to = rivers.receiver[*at];
+    if (to >= 0) rivers.area_m2[to] += rivers.area_m2[*at];
+  }
+  return rivers;
+}
+
+RiverWork run_rivers(const SurfaceGraph& graph, const SurfaceRivers& rivers, const RiverLaw& law,
+                     std::span<const std::int8_t> is_rock, std::span<float> elevation_m,
+                     std::span<float> rock_m) {
+  RiverWork work;
+  std::fill(rock_m.begin(), rock_m.end(), 0.0F);
+  // Level of the water at each place; that of the sea is 0.
+  std::vector<float> level(elevation_m.size(), 0.0F);
+  std::vector<double> load_m3(elevation_m.size(), 0.0);
+  const double per_step = law.erodibility_yr / law.rebound * law.dt_yr;
+  for (const std::int32_t i : rivers.order) {
+    const std::int32_t to = rivers.receiver[i];
+    const double base_m = to >= 0 ? level[to] : to == SurfaceRivers::kOpen ? 0.0 : elevation_m[i];
+    const double drop_m = elevation_m[i] - base_m;
+    if (drop_m > 0.0 && is_rock[i] != 0) {
+      const double factor =
+          per_step * std::pow(rivers.area_m2[i], law.area_exponent) / rivers.distance_m[i];
+      const auto lower_m = static_cast<float>(base_m + drop_m / (1.0 + factor));
+      const double gone_m = law.rebound * (static_cast<double>(elevation_m[i]) - lower_m);
+      elevation_m[i] = lower_m;
+      rock_m[i] = static_cast<float>(-gone_m);
+      load_m3[i] = gone_m * graph.area_m2;
+      work.eroded_m3 += load_m3[i];
+    }
+    level[i] = std::max(elevation_m[i], static_cast<float>(base_m));
+  }
+  Sea sea(graph, law, elevation_m, rock_m);
+  for (auto at = rivers.order.rbegin(); at != rivers.order.rend(); ++at) {
+    const std::int32_t i = *at, to = rivers.receiver[i];
+    if (load_m3[i] <= 0.0) continue;
+    const float full_m =
+        to == SurfaceRivers::kSink ? lowest_neighbour_m(graph, elevation_m, i) : level[i];
+    const double deep_m = std::max(0.0, static_cast<double>(full_m) - elevation_m[i]);
+    const double room_m3 = law.rebound * deep_m * graph.area_m2;
+    const double kept_m3 = std::min(load_m3[i], room_m3);
+    if (kept_m3 > 0.0) {
+      const double thick_m = kept_m3 / graph.area_m2;
+      elevation_m[i] += static_cast<float>(thick_m / law.rebound);
+      rock_m[i] += static_cast<float>(thick_m);
+      work.in_lakes_m3 += kept_m3;
+    }
+    const double on_m3 = load_m3[i] - kept_m3;
+    if (on_m3 <= 0.0) continue;
+    if (to >= 0 && rivers.distance_m[to] > 0.0F) {
+      load_m3[to] += on_m3;
+    } else {
+      sea.take(to, on_m3);
+    }
+  }
+  work.in_sea_m3 = sea.settle();
+  return work;
+}
+
+}  // namespace geo

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "geo/core/grid.hpp"
+#include "geo/kernels/remapping/overlay.hpp"
+#include "geo/stages/climate/climate.hpp"
+
+namespace geo {
+
+/// The two coarser grids that the climate is worked out on: the planet (about 2 degrees) for
+/// everything that air mixes, the relief (about 20 km) for single ranges; and where the stage's
+/// own cells lie on them.
+class ClimateFrame {
+ public:
+  ClimateFrame(const Grid& grid, const ClimateParameters& parameters, const Planet& planet);
+
+  [[nodiscard]] const Grid& planet() const { return *planet_; }
+  [[nodiscard]] const Grid& relief() const { return *relief_; }
+  [[nodiscard]] const Overlay& on_planet() const { return *on_planet_; }
+  [[nodiscard]] const Overlay& on_relief() const { return *on_relief_; }
+  /// From the relief grid to the planet.
+  [[nodiscard]] const Overlay& relief_on_planet() const { return *relief_on_planet_; }
+  [[nodiscard]] std::span<const double> latitudes_deg() const { return latitude_deg_; }
+  [[nodiscard]] std::span<const double> planet_latitudes_deg() const {
+    return planet_latitude_deg_;
+  }
+  [[nodiscard]] std::span<const double> relief_latitudes_deg() const {
+    return relief_latitude_deg_;
+  }
+
+  /// Land fraction and mean height on the planet grid. Where the stage's grid is a part of the
+  /// planet, its edge continues for about 1000 km (`surroundings` "edge") before the sea begins.
+  void planet_relief(std::span<const float> elevation, std::span<float> land_fraction,
+                     std::span<float> height_m) const;
+
+ private:
+  void continue_edge(std::span<float> coverage, std::span<float> land_fraction,
+                     std::span<float> height_m) const;
+
+  bool edge_continues_;
+  std::unique_ptr<Grid> planet_, relief_;
+  std::unique_ptr<Overlay> on_planet_, on_relief_, relief_on_planet_;
+  std::vector<double> latitude_deg_, planet_latitude_deg_, relief_latitude_deg_;
+};
+
+}  // namespace geo

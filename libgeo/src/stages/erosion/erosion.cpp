@@ -1,0 +1,230 @@
+#include "geo/stages/erosion/erosion.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "geo/kernels/water/flow_graph.hpp"
+#include "geo/stages/erosion/finishing.hpp"
+#include "geo/stages/erosion/ground.hpp"
+#include "geo/stages/erosion/landscape.hpp"
+#include "stages/relief/finish_relief.hpp"
+#include "stages/relief/relief_events.hpp"
+
+namespace geo {
+
+std::vector<Parameter> ErosionParameters::declarations() {
+  return {
+      integer("erosion.steps", steps, "1", 0, 1'000'000,
+              "number of steps; 0 leaves the relief as it is and reports the present incision",
+              "design"),
+      real("erosion.time_step_yr", time_step_yr, "yr", 1.0, 1e9, "length of a step", "braun2013"),
+      integer("erosion.route_every", route_every, "1", 1, 1000,
+              "steps between two routings of the water", "salles2023"),
+      real("erosion.area_exponent", area_exponent, "1", 0.0, 3.0,
+           "exponent m of drainage area in the stream-power law", "whipple1999"),
+      real("erosion.slope_exponent", slope_exponent, "1", 0.1, 10.0,
+           "exponent n of slope in the stream-power law", "whipple1999"),
+      real("erosion.erodibility_yr", erodibility_yr, "yr-1", 0.0, 1.0,
+           "erodibility K where no field gives it; in m^(1-2m) yr-1 for another m than 0.5",
+           "harel2016"),
+      real("erosion.diffusivity_m2_yr", diffusivity_m2_yr, "m2 yr-1", 0.0, 1e6,
+           "hillslope diffusivity kappa", "salles2023"),
+      choice("erosion.flow_routing", flow_routing, {"d8", "mfd"},
+             "whether drainage area follows the steepest descent or spreads over all lower "
+             "neighbours; the implicit solve takes the steepest one in both",
+             "freeman1991"),
+      real("erosion.flow_exponent", flow_exponent, "1", 0.0, 20.0,
+           "exponent p of slope by which multiple flow is shared", "freeman1991"),
+      choice("erosion.depressions", depressions, {"fill", "breach"},
+             "whether water crosses depressions at their spill level or cuts their sills at once",
+             "cordonnier2019"),
+      real("erosion.uplift_mm_yr", uplift_mm_yr, "mm yr-1", -100.0, 100.0,
+           "rock uplift of all land, on top of a field of uplift", "design"),
+      choice("erosion.uplift_from", uplift_from, {"deformation", "boundaries", "none"},
+             "where plates raise the ground: over the belts of deformation, on the cells of their "
+             "boundaries, or nowhere",
+             "tectonica2026"),
+      real("erosion.convergent_uplift_mm_yr", convergent_uplift_mm_yr, "mm yr-1", -100.0, 100.0,
+           "rock uplift where plates converge, at full strength", "tectonica2026"),
+      real("erosion.divergent_uplift_mm_yr", divergent_uplift_mm_yr, "mm yr-1", -100.0, 100.0,
+           "rock uplift where plates part", "tectonica2026"),
+      real("erosion.transform_uplift_mm_yr", transform_uplift_mm_yr, "mm yr-1", -100.0, 100.0,
+           "rock uplift where plates shear", "tectonica2026"),
+      real("erosion.uplift_speed_cm_yr", uplift_speed_cm_yr, "cm yr-1", 0.0, 50.0,
+           "speed of plates (plates.speed_cm_yr) at which these rates hold, in proportion to which "
+           "they grow; 0: the same at any speed",
+           "tectonica2026"),
+      real("erosion.erodibility_factor", erodibility_factor, "1", 0.0, 1000.0,
+           "factor of the erodibilities that a field gives", "harel2016"),
+      real("erosion.reference_cell_km", reference_cell_km, "km", 0.01, 1000.0,
+           "cell size at which the erodibilities hold", "design"),
+      real("erosion.subgrid_exponent", subgrid_exponent, "1", 0.0, 2.0,
+           "erodibility falls with the cell size to this power, for the relief that larger cells "
+           "do not resolve",
+           "hack1957"),
+      real("erosion.rebound_fraction", rebound_fraction, "1", 0.0, 1.0,
+           "share of the eroded thickness that the crust rises again, density of crust over mantle",
+           "turcotte2002"),
+      real("erosion.rebound_length_km", rebound_length_km, "km", 0.0, 2000.0,
+           "length over which the plate's stiffness spreads the rebound", "watts2001"),
+      real("erosion.rebound_time_yr", rebound_time_yr, "yr", 1.0, 1e9,
+           "relaxation time of the mantle", "turcotte2002"),
+      real("erosion.warping_m", warping_m, "m", 0.0, 5000.0,
+           "standard deviation of the latest warping of the land, which rivers have not yet cut "
+           "through",
+           "turcotte2002"),
+      real("erosion.warping_km", warping_km, "km", 1.0, 20000.0,
+           "longest wavelength of the warping", "turcotte2002"),
+      real("erosion.noise_injection_m", noise_injection_m, "m", 0.0, 1000.0,
+           "noise added to the land after erosion", "tectonica2026"),
+      real("erosion.relaxation_fraction", relaxation_fraction, "1", 0.0, 1.0,
+           "share by which the land returns to its initial, isostatic elevation at the end",
+           "tectonica2026"),
+      real("erosion.land_smoothing_km", land_smoothing_km, "km", 0.0, 1000.0,
+           "length over which the land is smoothed after that", "tectonica2026"),
+      choice("erosion.hypsometry", hypsometry, {"none", "power-law", "blueprint", "rank"},
+             "whether the relief keeps its own hypsometric curve, has its land bent until it has a "
+             "median height, is bent once by the blueprint's 4.7 to 4.9, or takes over a given "
+             "curve by rank",
+             "tectonica2026"),
+      real("erosion.hypsometry_median_m", hypsometry_median_m, "m", 1.0, 20000.0,
+           "median height of land, with power-law and blueprint", "cogley1984"),
+      real("erosion.hypsometry_smoothing_km", hypsometry_smoothing_km, "km", 0.0, 1000.0,
+           "length over which the bending is smoothed", "tectonica2026"),
+      real("erosion.detail_noise", detail_noise, "1", 0.0, 100.0,
+           "factor of the blueprint's terrain noise", "tectonica2026"),
+  };
+}
+
+namespace {
+
+void report(const ErosionParameters& p, const Landscape<float>& landscape, Budget& budget) {
+  const RockVolumes<double>& rock = landscape.rock();
+  const double stored = landscape.stored_m3();
+  const double scale =
+      std::max({std::abs(rock.uplifted), std::abs(rock.eroded), std::abs(rock.reshaped), 1.0});
+  budget["rock_uplifted_m3"] = rock.uplifted;
+  budget["rock_rebound_m3"] = rock.rebound;
+  budget["rock_eroded_m3"] = rock.eroded;
+  budget["rock_reshaped_m3"] = rock.reshaped;
+  budget["rock_stored_m3"] = stored;
+  budget["rock_exported_m3"] = rock.eroded;
+  budget["rock_closing_error"] =
+      (rock.uplifted + rock.rebound + rock.reshaped - rock.eroded - stored) / scale;
+  budget["time_yr"] = p.steps * p.time_step_yr;
+}
+
+class ErosionStage final : public Stage {
+ public:
+  [[nodiscard]] const StageInfo& info() const override {
+    static const StageInfo kInfo{"erosion",
+                                 "rivers and hillslopes wear the land down",
+                                 {&field::elevation},
+                                 {&field::erodibility, &field::uplift_rate, &field::boundary_type,
+                                  &field::boundary_strength, &field::convergent_deformation,
+                                  &field::divergent_deformation, &field::transform_deformation},
+                                 {&field::elevation, &field::uplift_rate, &field::erosion_rate,
+                                  &field::drainage_area, &field::flow_receiver},
+                                 /*own_grid=*/false,
+                                 /*feels_events=*/true};
+    return kInfo;
+  }
+  [[nodiscard]] std::vector<Parameter> parameters() override { return parameters_.declarations(); }
+
+  void run(StageIo& io, Context& context) const override {
+    const Grid& grid = io.grid();
+    const std::span<float> elevation = io.write(field::elevation);
+    const std::span<float> uplift = io.write(field::uplift_rate);
+    add_tectonic_uplift(io, speed_factor(parameters_, context.configuration), uplift);
+    const std::vector<float> erodibility =
+        resolved_erodibility<float>(parameters_, {}, grid, io.read_optional(field::erodibility));
+
+    Landscape<float> landscape(parameters_, {}, grid, elevation, uplift, erodibility,
+                               find_outlets(grid, elevation));
+    Drainage drainage;
+    const auto route = [&] {
+      drain(parameters_, grid, elevation, landscape.outlets(), drainage);
+      landscape.breach(drainage);
+    };
+    const auto reshape = [&](auto&& change) {
+      const bool did = landscape.book_reshaping(change);
+      if (did) landscape.set_outlets(find_outlets(grid, elevation));
+      return did;
+    };
+    const std::int64_t steps = parameters_.steps;
+    ReliefEvents events(grid, context, steps, parameters_.time_step_yr);
+    const auto strike = [&](std::int64_t step) {
+      if (context.events.empty()) return false;
+      return reshape([&] { return events.strike(step, elevation); });
+    };
+    for (std::int64_t step = 0; step < steps; ++step) {
+      const bool struck = strike(step);
+      if (struck || step % parameters_.route_every == 0) route();
+      landscape.step(drainage);
+      context.advance(static_cast<double>(step + 1) / static_cast<double>(steps + 1));
+    }
+    reshape([&] { return inject_noise<float>(parameters_, {}, grid, context.seed, elevation); });
+    reshape([&] { return warp<float>(parameters_, {}, grid, context.seed, elevation); });
+    landscape.relax();
+    reshape([&] { return ReliefFinish(parameters_, grid, context).reshape(elevation); });
+    strike(steps);
+    route();
+    write_rates(io, landscape, drainage, erodibility);
+    report(parameters_, landscape, context.budget);
+    add_uniform_uplift(elevation, uplift);
+  }
+
+ private:
+  void write_rates(StageIo& io, const Landscape<float>& landscape, const Drainage& drainage,
+                   std::span<const float> erodibility) const {
+    const Grid& grid = io.grid();
+    std::copy(drainage.area_m2.begin(), drainage.area_m2.end(),
+              io.write(field::drainage_area).begin());
+    std::copy(drainage.graph.receiver.begin(), drainage.graph.receiver.end(),
+              io.write(field::flow_receiver).begin());
+    const std::span<float> rate_m_yr = io.write(field::erosion_rate);
+    if (parameters_.steps == 0) {
+      return incision_rate(grid, drainage.graph, drainage.area_m2, erodibility, landscape.law(),
+                           io.read(field::elevation), rate_m_yr);
+    }
+    const double time_yr = parameters_.steps * parameters_.time_step_yr;
+    const std::span<const float> lowered_m = landscape.lowered_m();
+#pragma omp parallel for schedule(static)
+    for (Index cell = 0; cell < grid.size(); ++cell) {
+      rate_m_yr[cell] = static_cast<float>(lowered_m[cell] / time_yr);
+    }
+  }
+  /// Rock uplift by plates (Tectonica blueprint 4.5).
+  void add_tectonic_uplift(StageIo& io, double faster, std::span<float> uplift_m_yr) const {
+    if (parameters_.uplift_from == "deformation") {
+      const auto closing = io.read_optional(field::convergent_deformation);
+      const auto opening = io.read_optional(field::divergent_deformation);
+      const auto shear = io.read_optional(field::transform_deformation);
+      if (closing.empty() || opening.empty() || shear.empty()) return;
+      add_belt_uplift<float>(parameters_, {}, closing, opening, shear, faster, uplift_m_yr);
+    } else if (parameters_.uplift_from == "boundaries") {
+      const auto type = io.read_optional(field::boundary_type);
+      const auto strength = io.read_optional(field::boundary_strength);
+      if (type.empty() || strength.empty()) return;
+      add_boundary_uplift<float>(parameters_, {}, type, strength, faster, uplift_m_yr);
+    }
+  }
+  /// What the file reports is the whole uplift of the land.
+  void add_uniform_uplift(std::span<const float> elevation, std::span<float> uplift) const {
+    const auto everywhere = static_cast<float>(1e-3 * parameters_.uplift_mm_yr);
+    if (everywhere == 0.0F) return;
+#pragma omp parallel for schedule(static)
+    for (std::size_t cell = 0; cell < uplift.size(); ++cell) {
+      if (elevation[cell] >= 0.0F) uplift[cell] += everywhere;
+    }
+  }
+  ErosionParameters parameters_;
+};
+
+}  // namespace
+
+std::unique_ptr<Stage> make_erosion_stage() { return std::make_unique<ErosionStage>(); }
+
+}  // namespace geo

@@ -1,0 +1,357 @@
+#include "island_relief.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "geo/kernels/exemplars/exemplar_detail.hpp"
+#include "geo/kernels/landscape/stream_power.hpp"
+#include "geo/kernels/noise/noise.hpp"
+#include "geo/kernels/numerics/diffusion.hpp"
+#include "geo/kernels/numerics/shapes.hpp"
+#include "geo/kernels/remapping/catmull_rom.hpp"
+#include "geo/kernels/water/depressions.hpp"
+#include "geo/stages/erosion/ground.hpp"
+
+namespace geo {
+namespace {
+
+template <class Change>
+void on_cells(const Grid& grid, Change&& change) {
+#pragma omp parallel for schedule(static)
+  for (int j = 0; j < grid.ny(); ++j) {
+    for (int i = 0; i < grid.nx(); ++i) change(i, j, grid.cell(i, j));
+  }
+}
+
+/// Width over which detail and corrections fade in from the edge, where heights are the planet's: a
+/// quarter of a planet cell, as long as that is little of the island.
+double seam_m(const PlanetCells& cells) {
+  const Grid& fine = cells.fine();
+  const double extent_m =
+      std::min(fine.nx() * fine.spacing_east_m(0), fine.ny() * fine.step_north_m());
+  return std::min(0.25 * cells.planet().face_east_m(cells.first_row()), 0.05 * extent_m);
+}
+
+/// 1 in the planet's cells with nothing but land, or nothing but sea, in and around them; one value
+/// per covered cell.
+std::vector<float> all_round(const PlanetCells& cells, std::span<const float> planet_elevation_m,
+                             bool land) {
+  const Grid& planet = cells.planet();
+  const auto fits = [&](Index c) { return (planet_elevation_m[c] >= 0.0F) == land; };
+  std::vector<float> share(cells.size());
+  for (int j = cells.first_row(); j < cells.first_row() + cells.rows(); ++j) {
+    for (int i = 0; i < planet.nx(); ++i) {
+      bool all = fits(planet.cell(i, j));
+      for (int k = 0; k < kDirections; ++k) {
+        const Index next = planet.neighbour(planet.cell(i, j), k);
+        all = all && (next == kNoCell || fits(next));
+      }
+      share[cells.at(i, j)] = all ? 1.0F : 0.0F;
+    }
+  }
+  return share;
+}
+
+int octaves_down_to(double cell_m, double wavelength_m) {
+  return std::clamp(static_cast<int>(std::lround(std::log2(wavelength_m / (2.0 * cell_m)))) + 1, 1,
+                    16);
+}
+
+/// The planet's relief from Catmull-Rom. Next to a shore, which would follow the sides of the
+/// planet's cells, it is read from a place nearby: bays and headlands shorter than two cells,
+/// with as much land in each.
+void read_planet(const PlanetCells& cells, std::span<const float> planet_elevation_m,
+                 const IslandParameters& p, std::uint64_t seed, std::span<const float> planet_m,
+                 std::span<float> z) {
+  const Grid& fine = cells.fine();
+  std::copy(planet_m.begin(), planet_m.end(), z.begin());
+  if (p.coast_fray <= 0.0) return;
+  const double spacing_m = cells.planet().face_east_m(cells.first_row());
+  DetailLaw law;
+  law.wavelength_m = 2.0 * spacing_m;
+  law.octaves = octaves_down_to(p.cell_m, law.wavelength_m);
+  std::vector<float> east(fine.size()), north(fine.size());
+  unit_detail(fine, law, seed, "island.coast_east", east);
+  unit_detail(fine, law, seed, "island.coast_north", north);
+  const std::vector<float> dry = all_round(cells, planet_elevation_m, /*land=*/true);
+  const std::vector<float> wet = all_round(cells, planet_elevation_m, /*land=*/false);
+  const std::vector<float> mean_east = cells.means(east, {}, 0.0F);
+  const std::vector<float> mean_north = cells.means(north, {}, 0.0F);
+  const double degrees_per_m = 180.0 / (std::numbers::pi * fine.figure().radius_m);
+  on_cells(fine, [&](int i, int j, Index c) {
+    const double far = cells.interpolate(dry, i, j) + cells.interpolate(wet, i, j);
+    const double near = std::clamp(1.0 - far, 0.0, 1.0);
+    if (near <= 0.0) return;
+    const double reach = p.coast_fray * spacing_m * degrees_per_m * near *
+                         edge_ramp(fine, i, j, p.coast_fray * spacing_m);
+    const Centre here = fine.position(i, j);
+    const double across = std::cos(here.latitude_deg * std::numbers::pi / 180.0);
+    const double up = reach * (north[c] - cells.interpolate(mean_north, i, j));
+    const double right = reach * (east[c] - cells.interpolate(mean_east, i, j));
+    const Centre there{std::clamp(here.latitude_deg + up, -90.0, 90.0),
+                       here.longitude_deg + right / std::max(across, 1e-3)};
+    z[c] = static_cast<float>(CatmullRom(cells.planet(), there).of(planet_elevation_m));
+  });
+}
+
+/// Unit detail of exemplars. Waves that they do not hold, too long for a piece of them or too short
+/// for their cells, are noise of the same law.
+std::vector<float> exemplary_detail(const PlanetCells& cells, const PlanetRelief& planet,
+                                    const IslandParameters& p, const DetailLaw& law,
+                                    const ExemplarLibrary& library, std::uint64_t seed) {
+  const Grid& fine = cells.fine();
+  const ExemplarBand band =
+      exemplar_band(library, 0.5 * law.wavelength_m, p.cell_m, p.detail_hurst);
+  const auto octave_of = [&](double wavelength_m) {
+    const double octave = std::log2(law.wavelength_m / wavelength_m);
+    return std::clamp(static_cast<int>(std::lround(octave)), 0, law.octaves);
+  };
+  const int first = octave_of(band.longest_m);
+  const int last = std::max(first, octave_of(0.5 * band.shortest_m));
+  const auto deviation = [&](int begin, int end) {
+    const auto variance = [&](int from, int to) {
+      double sum = 0.0;
+      for (int k = from; k < to; ++k) sum += std::exp2(-2.0 * p.detail_hurst * k);
+      return sum;
+    };
+    return static_cast<float>(std::sqrt(variance(begin, end) / variance(0, law.octaves)));
+  };
+  std::vector<float> detail(fine.size()), part(fine.size());
+  exemplar_detail(cells.planet(),
+                  {planet.elevation_m, planet.orogeny_type, planet.orogeny_age_myr,
+                   planet.fold_east, planet.fold_north, p.old_orogeny_myr, p.plain_slope},
+                  fine, library, band, seed, detail);
+  for (float& value : detail) value *= deviation(first, last);
+  const auto add_octaves = [&](int begin, int end) {
+    if (begin >= end) return;
+    unit_detail(fine, {law.wavelength_m * std::exp2(-begin), end - begin, law.gain}, seed,
+                "island.detail", part);
+    const float factor = deviation(begin, end);
+    for (std::size_t c = 0; c < detail.size(); ++c) detail[c] += factor * part[c];
+  };
+  add_octaves(0, first);
+  add_octaves(last, law.octaves);
+  return detail;
+}
+
+/// Makes unit detail on land that of exemplars.
+void take_exemplars(const PlanetCells& cells, const PlanetRelief& planet, const IslandParameters& p,
+                    const DetailLaw& law, const ExemplarLibrary& library, std::uint64_t seed,
+                    std::span<const float> planet_m, std::span<float> detail) {
+  constexpr double kShallow_m = -200.0;
+  const std::vector<float> exemplary = exemplary_detail(cells, planet, p, law, library, seed);
+  on_cells(cells.fine(), [&](int, int, Index c) {
+    const double land = smooth_step(kShallow_m, 0.0, static_cast<double>(planet_m[c]));
+    detail[c] =
+        static_cast<float>(std::sqrt(land) * exemplary[c] + std::sqrt(1.0 - land) * detail[c]);
+  });
+}
+
+/// Detail that continues the planet's roughness, its mean over each planet cell taken out.
+void add_rough_detail(const PlanetCells& cells, const PlanetRelief& planet,
+                      const IslandParameters& p, const ExemplarLibrary* exemplars,
+                      std::uint64_t seed, std::span<const float> planet_m, std::span<float> z) {
+  const Grid& fine = cells.fine();
+  const double spacing_m = cells.planet().face_east_m(cells.first_row());
+  DetailLaw law;
+  law.wavelength_m = 2.0 * spacing_m;
+  law.octaves = octaves_down_to(p.cell_m, law.wavelength_m);
+  law.gain = std::exp2(-p.detail_hurst);
+  std::vector<float> detail(fine.size()), roughness(cells.size());
+  unit_detail(fine, law, seed, "island.detail", detail);
+  if (exemplars != nullptr) {
+    take_exemplars(cells, planet, p, law, *exemplars, seed, planet_m, detail);
+  }
+  local_roughness(cells, planet.elevation_m, roughness);
+  for (float& rough_m : roughness) {
+    rough_m = std::max(rough_m, static_cast<float>(p.least_roughness_m));
+  }
+  on_cells(fine, [&](int i, int j, Index c) {
+    const double rough_m = std::max(0.0, cells.interpolate(roughness, i, j));
+    detail[c] *= static_cast<float>(p.detail_amplitude * rough_m);
+  });
+  const std::vector<float> mean = cells.means(detail, {}, 0.0F);
+  const std::vector<float> dry = all_round(cells, planet.elevation_m, /*land=*/true);
+  on_cells(fine, [&](int i, int j, Index c) {
+    const double centred_m = detail[c] - cells.interpolate(mean, i, j);
+    z[c] = static_cast<float>(with_detail(z[c], edge_ramp(fine, i, j, seam_m(cells)) * centred_m,
+                                          std::clamp(cells.interpolate(dry, i, j), 0.0, 1.0)));
+  });
+}
+
+/// Blueprint 9.3: amplitude in proportion to height.
+void add_height_detail(const PlanetCells& cells, const IslandParameters& p, std::uint64_t seed,
+                       std::span<float> z) {
+  const Grid& fine = cells.fine();
+  const Noise noise(seed, "island.detail");
+  const double width_m = fine.nx() * fine.spacing_east_m(0);
+  const double frequency = p.height_frequency * fine.figure().radius_m / width_m;
+  on_cells(fine, [&](int i, int j, Index c) {
+    const double wave =
+        noise.fbm(fine.unit_vector(i, j), frequency, static_cast<int>(p.height_octaves));
+    const double ramp = p.edge_fade ? 1.0 : edge_ramp(fine, i, j, seam_m(cells));
+    z[c] += static_cast<float>(ramp * wave * p.height_amplitude * std::abs(z[c]));
+  });
+}
+
+/// Blueprint 9.4: the edges sink below the sea, over a margin that noise frays.
+void sink_edges(const Grid& fine, const IslandParameters& p, std::uint64_t seed,
+                std::span<float> z) {
+  constexpr double kSunk_m = -500.0, kFray = 0.5;
+  const Noise noise(seed, "island.edge");
+  const double width_m = fine.nx() * fine.spacing_east_m(0);
+  const double height_m = fine.ny() * fine.step_north_m();
+  const double frequency = fine.figure().radius_m / (0.1 * width_m);
+  on_cells(fine, [&](int i, int j, Index c) {
+    const double shore = noise.fbm(fine.unit_vector(i, j), frequency, 4);
+    const double margin_m = std::min(width_m, height_m) * p.edge_margin * (1.0 + kFray * shore);
+    const double fade = edge_ramp(fine, i, j, margin_m);
+    z[c] = static_cast<float>(z[c] * fade + kSunk_m * (1.0 - fade));
+  });
+}
+
+/// Land that detail or the interpolation dipped below the sea level stays land unless the sea, as
+/// the planet has it, reaches it.
+void dry_inland_dips(const PlanetCells& cells, std::span<const float> planet_elevation_m,
+                     std::span<float> z) {
+  const Grid& fine = cells.fine();
+  std::vector<std::uint8_t> wet(fine.size());
+  std::vector<Index> front;
+  for (Index c = 0; c < fine.size(); ++c) {
+    if (z[c] >= 0.0F || planet_elevation_m[cells.cell_of()[c]] >= 0.0F) continue;
+    wet[c] = 1;
+    front.push_back(c);
+  }
+  while (!front.empty()) {
+    const Index c = front.back();
+    front.pop_back();
+    for (int k = 0; k < kDirections; ++k) {
+      const Index next = fine.neighbour(c, k);
+      if (next == kNoCell || wet[next] != 0 || z[next] >= 0.0F) continue;
+      wet[next] = 1;
+      front.push_back(next);
+    }
+  }
+  for (Index c = 0; c < fine.size(); ++c) {
+    if (z[c] < 0.0F && wet[c] == 0) z[c] = 0.0F;
+  }
+}
+
+/// Raises land so that its mean over each planet cell is `target` again.
+void restore_means(const PlanetCells& cells, std::span<const float> target,
+                   std::span<const std::uint8_t> land, std::span<const std::uint8_t> held,
+                   std::span<float> z, std::span<float> raised_m) {
+  constexpr float kLow_m = 1.0F, kMost = 1.1F;
+  std::vector<float> factor = cells.means(z, land, 0.0F);
+  for (std::size_t k = 0; k < factor.size(); ++k) {
+    factor[k] = factor[k] > kLow_m ? std::clamp(target[k] / factor[k], 1.0F, kMost) : 1.0F;
+  }
+  on_cells(cells.fine(), [&](int i, int j, Index c) {
+    if (land[c] == 0 || held[c] != 0) return;
+    const double ramp = edge_ramp(cells.fine(), i, j, seam_m(cells));
+    const double rise = std::max(0.0, cells.interpolate(factor, i, j) - 1.0);
+    const auto higher = static_cast<float>(z[c] * ramp * rise);
+    z[c] += higher;
+    raised_m[c] += higher;
+  });
+}
+
+}  // namespace
+
+void raise_island(const PlanetCells& cells, const PlanetRelief& planet, const IslandParameters& p,
+                  const ExemplarLibrary* exemplars, std::uint64_t seed, std::span<float> planet_m,
+                  std::span<float> elevation_m) {
+  on_cells(cells.fine(), [&](int i, int j, Index c) {
+    const CatmullRom stencil(cells.planet(), cells.fine().position(i, j));
+    planet_m[c] = static_cast<float>(stencil.of(planet.elevation_m));
+  });
+  if (p.detail == "height") {
+    std::copy(planet_m.begin(), planet_m.end(), elevation_m.begin());
+    add_height_detail(cells, p, seed, elevation_m);
+  } else {
+    read_planet(cells, planet.elevation_m, p, seed, planet_m, elevation_m);
+    add_rough_detail(cells, planet, p, exemplars, seed, planet_m, elevation_m);
+  }
+  dry_inland_dips(cells, planet.elevation_m, elevation_m);
+  if (p.edge_fade) sink_edges(cells.fine(), p, seed, elevation_m);
+}
+
+std::vector<float> island_erodibility(const PlanetCells& cells, const PlanetRelief& planet,
+                                      const IslandParameters& p, const ErosionParameters& law) {
+  const bool by_boundary = p.erodibility == "boundary";
+  if (by_boundary && planet.boundary_type.empty()) {
+    return {static_cast<float>(p.interior_erodibility_yr)};
+  }
+  if (!by_boundary && planet.erodibility.empty()) {
+    return resolved_erodibility<float>(law, {}, cells.fine(), {});
+  }
+  const auto of_type = [&](std::int8_t type) {
+    switch (static_cast<BoundaryType>(type)) {
+      case BoundaryType::interior:
+        return p.interior_erodibility_yr;
+      case BoundaryType::divergent:
+        return p.divergent_erodibility_yr;
+      default:
+        return p.convergent_erodibility_yr;
+    }
+  };
+  // Cubics swing beyond what they pass through; nothing is weaker or stronger than the table has
+  // it.
+  const auto [least, most] = std::minmax(
+      {p.convergent_erodibility_yr, p.divergent_erodibility_yr, p.interior_erodibility_yr});
+  std::vector<float> erodibility(cells.fine().size());
+  on_cells(cells.fine(), [&](int i, int j, Index c) {
+    const CatmullRom stencil(cells.planet(), cells.fine().position(i, j));
+    const auto at = [&](int column, int row) {
+      const Index cell = cells.planet().cell(column, row);
+      return by_boundary ? of_type(planet.boundary_type[cell])
+                         : static_cast<double>(planet.erodibility[cell]);
+    };
+    const double worn = std::max(0.0, stencil.of(at));
+    erodibility[c] = static_cast<float>(by_boundary ? std::clamp(worn, least, most) : worn);
+  });
+  if (by_boundary) return erodibility;
+  return resolved_erodibility<float>(law, {}, cells.fine(), erodibility);
+}
+
+IslandErosion wear_island(const PlanetCells& cells, const IslandParameters& p,
+                          const ErosionParameters& law, const IslandGround& ground,
+                          const std::function<void(double)>& advance,
+                          std::span<float> elevation_m) {
+  const Grid& fine = cells.fine();
+  const auto size = static_cast<std::size_t>(fine.size());
+  IslandErosion done{std::vector<float>(size), std::vector<float>(size)};
+  std::vector<std::uint8_t> land(size);
+  std::transform(elevation_m.begin(), elevation_m.end(), land.begin(),
+                 [](float z) { return static_cast<std::uint8_t>(z >= 0.0F); });
+  const std::vector<float> target = cells.means(elevation_m, land, 0.0F);
+  const StreamPower power{law.area_exponent, law.slope_exponent, p.time_step_yr};
+
+  std::vector<double> area(size);
+  std::vector<float> before(size), surface(size);
+  for (std::int64_t step = 0; step < p.erosion_steps; ++step) {
+    before.assign(elevation_m.begin(), elevation_m.end());
+    const FlowGraph graph = route_water(fine, elevation_m, ground.outlets).graph;
+    std::fill(area.begin(), area.end(), fine.area_m2(0));
+    for (std::size_t c = 0; c < size; ++c) area[c] += ground.inflow_area_m2[c];
+    graph.accumulate(area);
+    incise<float, float>(fine, graph, area, ground.erodibility, power, elevation_m);
+    // Hillslopes end at the shore, whatever the depth beyond.
+    std::transform(elevation_m.begin(), elevation_m.end(), surface.begin(),
+                   [](float z) { return std::max(z, 0.0F); });
+    diffuse(fine, surface, law.diffusivity_m2_yr, p.time_step_yr,
+            {.fixed = ground.held, .scheme = DiffusionScheme::positive});
+    on_cells(fine, [&](int, int, Index c) {
+      // Land stays land: a river ends at the sea's level.
+      const float worn = std::max(0.0F, surface[c]);
+      elevation_m[c] = land[c] == 0 || ground.held[c] != 0 ? before[c] : worn;
+      done.lowered_m[c] += before[c] - elevation_m[c];
+    });
+    if (p.keep_means) restore_means(cells, target, land, ground.held, elevation_m, done.raised_m);
+    advance(static_cast<double>(step + 1) / static_cast<double>(p.erosion_steps));
+  }
+  return done;
+}
+
+}  // namespace geo

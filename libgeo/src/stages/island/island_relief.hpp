@@ -1,0 +1,55 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "geo/kernels/exemplars/exemplar.hpp"
+#include "geo/kernels/landscape/fine_relief.hpp"
+#include "geo/stages/erosion/erosion.hpp"
+#include "geo/stages/island/island.hpp"
+
+namespace geo {
+
+/// The planet's fields that an island's relief is made from.
+struct PlanetRelief {
+  std::span<const float> elevation_m;
+  std::span<const std::int8_t> boundary_type;  ///< may be empty
+  std::span<const float> erodibility;          ///< may be empty
+  std::span<const std::int8_t> orogeny_type;   ///< may be empty, as all below
+  std::span<const float> orogeny_age_myr, fold_east, fold_north;
+};
+
+/// Interpolated relief with detail, before any erosion.
+/// @param exemplars what detail is made like; null unless `p.detail` asks for it
+/// @param planet_m  out: the interpolated relief alone
+void raise_island(const PlanetCells& cells, const PlanetRelief& planet, const IslandParameters& p,
+                  const ExemplarLibrary* exemplars, std::uint64_t seed, std::span<float> planet_m,
+                  std::span<float> elevation_m);
+
+/// Erodibility of each fine cell, or one for all: by boundary as given, else the planet's resolved
+/// for the fine cells by the law of its own erosion.
+std::vector<float> island_erodibility(const PlanetCells& cells, const PlanetRelief& planet,
+                                      const IslandParameters& p, const ErosionParameters& law);
+
+/// What the fine steps start from and what holds them.
+struct IslandGround {
+  std::span<const std::uint8_t> outlets;  ///< sea, open edges, bottoms of endorheic basins
+  std::span<const std::uint8_t> held;     ///< cells that keep their height: outlets and inflow
+  std::span<const double> inflow_area_m2;
+  std::span<const float> erodibility;
+};
+
+/// What the fine steps did, m over their whole time.
+struct IslandErosion {
+  std::vector<float> lowered_m, raised_m;
+};
+
+/// Some steps of stream power, each with a routing of its own: D8 receivers, drainage area with
+/// what enters at the edge, implicit incision and creep; then, with `keep_means`, land is raised in
+/// proportion to its height so that its mean over every planet cell stays what it was.
+IslandErosion wear_island(const PlanetCells& cells, const IslandParameters& p,
+                          const ErosionParameters& law, const IslandGround& ground,
+                          const std::function<void(double)>& advance, std::span<float> elevation_m);
+
+}  // namespace geo

@@ -1,0 +1,135 @@
+// Margins, spherical harmonics and hypsometric curves, against exact values.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "geo/core/field.hpp"
+#include "geo/core/vector3.hpp"
+#include "geo/kernels/landscape/hypsometric_curve.hpp"
+#include "geo/kernels/noise/noise.hpp"
+#include "geo/kernels/numerics/quantiles.hpp"
+#include "geo/kernels/numerics/spherical_filter.hpp"
+#include "geo/kernels/plates/growth/convergent_margins.hpp"
+
+namespace geo {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+TEST(SphericalFilter, ScalesEachHarmonicByItsGain) {
+  const Grid grid = Grid::sphere(128, 64);
+  std::vector<float> field(grid.size()), expected(grid.size());
+  for (int j = 0; j < grid.ny(); ++j) {
+    const double s = std::sin(grid.latitude_deg(j) * kPi / 180.0), c = std::sqrt(1.0 - s * s);
+    for (int i = 0; i < grid.nx(); ++i) {
+      const double lon = grid.longitude_deg(i) * kPi / 180.0;
+      const double y32 = c * c * s * std::cos(2.0 * lon);              // degree 3
+      const double y10 = s, y77 = std::pow(c, 7) * std::sin(7 * lon);  // degrees 1 and 7
+      field[grid.cell(i, j)] = static_cast<float>(2.0 + y10 + 5.0 * y32 + 3.0 * y77);
+      expected[grid.cell(i, j)] = static_cast<float>(1.0 + 0.5 * y10 + 10.0 * y32);
+    }
+  }
+  filter_degrees(grid, field, std::vector<double>{0.5, 0.5, 9.0, 2.0, 1.0, 1.0, 1.0, 0.0});
+  for (Index cell = 0; cell < grid.size(); ++cell) ASSERT_NEAR(field[cell], expected[cell], 2e-5);
+}
+
+/// A convergent boundary along the equator between an old ocean in the south and a continent.
+struct EquatorialTrench {
+  Grid grid = Grid::sphere(512, 256);
+  std::vector<std::int16_t> plate;
+  std::vector<std::int8_t> type;
+  std::vector<float> strength, fraction, age, speed;
+  EquatorialTrench() {
+    for (Index cell = 0; cell < grid.size(); ++cell) {
+      const bool north = grid.row(cell) >= 128;
+      const bool near = grid.row(cell) == 127 || grid.row(cell) == 128;
+      plate.push_back(north ? 1 : 0);
+      type.push_back(near ? 1 : 0);
+      strength.push_back(near ? 0.8F : 0.0F);
+      fraction.push_back(north ? 1.0F : 0.0F);
+      age.push_back(80.0F);
+      speed.push_back(30.0F);
+    }
+  }
+};
+
+TEST(ConvergentMargins, TheOceanGoesDownAndDistancesAreTrueOnes) {
+  const EquatorialTrench t;
+  const auto margins =
+      convergent_margins(t.grid, t.plate, t.type, t.strength, t.fraction, t.age, t.speed);
+  for (Index cell = 0; cell < t.grid.size(); ++cell) {
+    const double latitude_deg = t.grid.latitude_deg(t.grid.row(cell));
+    ASSERT_EQ(margins.kind[cell], Convergence::ocean_continent);
+    ASSERT_FLOAT_EQ(margins.strength[cell], 0.8F);
+    const double expected_km = 6371.0 * kPi / 180.0 * latitude_deg;
+    const double half_cell_km = 0.51e-3 * t.grid.spacing_north_m(128);
+    ASSERT_NEAR(margins.across_km[cell], expected_km, half_cell_km) << latitude_deg;
+  }
+}
+
+TEST(ConvergentMargins, OfTwoOceansTheOlderGoesDown) {
+  EquatorialTrench t;
+  for (Index cell = 0; cell < t.grid.size(); ++cell) {
+    t.fraction[cell] = 0.0F;
+    t.age[cell] = t.plate[cell] == 1 ? 120.0F : 30.0F;
+  }
+  const auto margins =
+      convergent_margins(t.grid, t.plate, t.type, t.strength, t.fraction, t.age, t.speed);
+  EXPECT_EQ(margins.kind[0], Convergence::oceans);
+  EXPECT_LT(margins.across_km[t.grid.cell(7, 200)], 0.0F);
+  EXPECT_GT(margins.across_km[t.grid.cell(7, 60)], 0.0F);
+}
+
+TEST(ConvergentMargins, ContinentsInAnOceanDoNotMakeItsFloorOlder) {
+  EquatorialTrench t;
+  for (Index cell = 0; cell < t.grid.size(); ++cell) {
+    // A third of the younger plate is an old continent.
+    const bool continent = t.plate[cell] == 0 && t.grid.column(cell) % 3 == 0;
+    t.fraction[cell] = continent ? 1.0F : 0.0F;
+    t.age[cell] = continent ? 2000.0F : t.plate[cell] == 1 ? 120.0F : 30.0F;
+  }
+  const auto margins =
+      convergent_margins(t.grid, t.plate, t.type, t.strength, t.fraction, t.age, t.speed);
+  for (Index cell = 0; cell < t.grid.size(); ++cell) {
+    ASSERT_EQ(margins.kind[cell], Convergence::oceans);
+    if (t.type[cell] != 0) continue;  // on the boundary itself
+    ASSERT_EQ(margins.across_km[cell] < 0.0F, t.plate[cell] == 1);
+  }
+}
+
+TEST(Hypsometry, PowerLawBringsTheMedianOfLandToItsAim) {
+  const Grid grid = Grid::sphere(256, 128);
+  const Noise noise(5, "heights");
+  std::vector<float> height(grid.size());
+  std::vector<std::uint8_t> land(grid.size());
+  for (Index cell = 0; cell < grid.size(); ++cell) {
+    const auto p = grid.unit_vector(grid.column(cell), grid.row(cell));
+    height[cell] = 9000.0F * noise.fbm(p, 2.0, 6) - 200.0F;
+    land[cell] = height[cell] > 0.0F;
+  }
+  const auto before = height;
+  const double alpha = bend_hypsometry(grid, height, 400.0, 25e3);
+  EXPECT_GT(alpha, 1.0);
+  EXPECT_LE(alpha, 5.0);
+  EXPECT_NEAR(quantile(grid, height, 0.5, land), 400.0, 8.0);
+  for (Index cell = 0; cell < grid.size(); ++cell) {
+    if (land[cell] != 0) {
+      ASSERT_GT(height[cell], 0.0F);
+    } else {
+      ASSERT_EQ(height[cell], before[cell]);
+    }
+  }
+  // Without smoothing it is the formula itself.
+  height = before;
+  const double most = quantile(grid, before, 1.0, land), median = quantile(grid, before, 0.5, land);
+  const double exact = std::log(400.0 / most) / std::log(median / most);
+  EXPECT_NEAR(bend_hypsometry(grid, height, 400.0, 0.0), exact, 1e-3);
+  for (Index cell = 0; cell < grid.size(); ++cell) {
+    if (land[cell] == 0 || before[cell] < 50.0F) continue;
+    ASSERT_NEAR(height[cell], most * std::pow(before[cell] / most, exact), 0.2);
+  }
+}
+
+}  // namespace
+}  // namespace geo
