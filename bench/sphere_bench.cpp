@@ -66,7 +66,7 @@ void SphereStep(benchmark::State& state) {
   report(state);
 }
 
-/// Oceanic crust: all crust read anew, gaps filled.
+/// Oceanic crust: all crust resampled, gaps filled.
 void SphereResampling(benchmark::State& state) {
   const SphereTectonics& from = *planet(state.range(0)).model;
   for (auto _ : state) {

@@ -164,13 +164,13 @@ class Calibration {
     result_.held_out_grid = settings_.held_out_grid;
     result_.objective = settings_.objective;
     start_ = problem_.present();
-    result_.cost_before = 0.5 * objective.route(start_).squaredNorm();
+    result_.cost_before = 0.5 * objective.evaluate(start_).squaredNorm();
     before_ = objective.statistics();
     result_.before = mean_curve(objective.fine_bins());
     before_bins_ = objective.fine_bins();
     result_.target = shown_curve(problem_.target.fine_bin_m);
     Eigen::MatrixXd rates;
-    objective.follow(start_, &rates);
+    objective.linearise(start_, &rates);
     for (std::size_t i = 0; i < problem_.free.size(); ++i) {
       const FreeParameter& free = problem_.free[i];
       double most = 0.0;  // priors do not count: the planets must depend on it
@@ -286,9 +286,9 @@ class Calibration {
 
   void judge(Objective& objective, const Eigen::VectorXd& x) {
     say("uncertainty");
-    const Eigen::VectorXd residual = objective.route(x);
+    const Eigen::VectorXd residual = objective.evaluate(x);
     Eigen::MatrixXd rates;
-    objective.follow(x, &rates);
+    objective.linearise(x, &rates);
     result_.cost_after = 0.5 * residual.squaredNorm();
     result_.after = mean_curve(objective.fine_bins());
     for (std::size_t s = 0; s < seeds_.size(); ++s) {
@@ -373,12 +373,12 @@ class Calibration {
     const Target target = size.nx == size_.nx && size.ny == size_.ny ? problem_.target : aims(size);
     Objective judge(problem_, request_.configuration, seeds, size.nx, size.ny, watch_.stop);
     for (const std::int64_t seed : seeds) all.push_back({seed, 0.0, 0.0});
-    judge.route(start_);
+    judge.evaluate(start_);
     for (std::size_t s = 0; s < seeds.size(); ++s) {
       all[s].before_m = wasserstein_m(judge.fine_bins()[s], target);
     }
     spread.before_m = spread_m(judge.fine_bins(), target);
-    judge.route(x);
+    judge.evaluate(x);
     spread.after_m = spread_m(judge.fine_bins(), target);
     for (std::size_t s = 0; s < seeds.size(); ++s) {
       all[s].after_m = wasserstein_m(judge.fine_bins()[s], target);

@@ -8,13 +8,13 @@
 #include <chrono>
 #include <cmath>
 
-#include "calibration/held_fast.hpp"
+#include "calibration/frozen_drainage.hpp"
 #include "geo/core/error.hpp"
 
 namespace geo::calibration {
 namespace {
 
-constexpr int kStepsHeldFast = 2;  // of Ceres between two routings
+constexpr int kStepsFrozen = 2;  // of Ceres between two routings
 /// Cost below which the target is met: whatever is left, chi squared = 0.1 at most, can move no
 /// parameter by more than a third of the standard error that the deviations stand for.
 constexpr double kMetCost = 0.05;
@@ -25,21 +25,21 @@ double cost_of(const Eigen::VectorXd& residual) {
   return std::isfinite(cost) ? cost : std::numeric_limits<double>::infinity();
 }
 
-/// One Gauss-Newton step with derivatives by differences of planets routed anew, over a step wide
+/// One Gauss-Newton step with derivatives by differences of planets rerouted, over a step wide
 /// enough to average over the jumps of rivers. Returns whether it found a better place.
 bool polish(Objective& objective, const Problem& problem, FitState& state) {
   constexpr std::array kSteps{0.02, 0.005, 0.05};
   const double width = kSteps[state.polishes % kSteps.size()];
   constexpr double kFarthest = 0.2;
   const Eigen::Index count = state.x.size();
-  const Eigen::VectorXd here = objective.route(state.x);
+  const Eigen::VectorXd here = objective.evaluate(state.x);
   Eigen::MatrixXd rates(here.size(), count);
   for (Eigen::Index i = 0; i < count; ++i) {
     const FreeParameter& free = problem.free[i];
     Eigen::VectorXd x = state.x;
     const double step = x[i] + width > free.to_x(free.high) ? -width : width;
     x[i] += step;
-    rates.col(i) = (objective.route(x) - here) / step;
+    rates.col(i) = (objective.evaluate(x) - here) / step;
   }
   Eigen::VectorXd step = -rates.completeOrthogonalDecomposition().solve(here);
   step *= std::min(1.0, kFarthest / std::max(step.cwiseAbs().maxCoeff(), 1e-300));
@@ -49,7 +49,7 @@ bool polish(Objective& objective, const Problem& problem, FitState& state) {
       x[i] = std::clamp(x[i], problem.free[i].to_x(problem.free[i].low),
                         problem.free[i].to_x(problem.free[i].high));
     }
-    const double cost = cost_of(objective.route(x));
+    const double cost = cost_of(objective.evaluate(x));
     if (!(cost < state.cost)) continue;
     state.x = state.probed = x;
     state.cost = cost;
@@ -67,11 +67,11 @@ void fit(Objective& objective, Problem& problem, const FitOptions& options, FitS
   if (!state.begun) {
     state.radius = kFirstRadius;
     state.begun = true;
-    state.cost = cost_of(objective.route(state.x));
+    state.cost = cost_of(objective.evaluate(state.x));
     state.distance_m = objective.distance_m();
     state.probed = state.x;
   } else {
-    objective.route(state.probed);
+    objective.evaluate(state.probed);
   }
   if (!std::isfinite(state.cost)) {
     throw InputError("calibration: the start gives a relief that is not finite");
@@ -80,14 +80,14 @@ void fit(Objective& objective, Problem& problem, const FitOptions& options, FitS
     const auto begin = Clock::now();
     const Eigen::VectorXd from = state.probed, best = state.x;
     const double before = state.cost;
-    const Eigen::VectorXd to = solve_held_fast(objective, problem, state.probed,
-                                               {.steps = kStepsHeldFast, .radius = state.radius});
+    const Eigen::VectorXd to = solve_with_frozen_drainage(
+        objective, problem, state.probed, {.steps = kStepsFrozen, .radius = state.radius});
     double part = 1.0, full_cost = 0.0;
     bool accepted = false;
     constexpr double kLeastPart = 0.2;
     while (!accepted && part > kLeastPart && (to - from).cwiseAbs().maxCoeff() > 0.0) {
       const Eigen::VectorXd x = from + part * (to - from);
-      const double cost = cost_of(objective.route(x));
+      const double cost = cost_of(objective.evaluate(x));
       if (part == 1.0) full_cost = cost;
       accepted = cost < before;
       if (accepted) {
@@ -106,7 +106,7 @@ void fit(Objective& objective, Problem& problem, const FitOptions& options, FitS
           state.probes < kProbes && full_cost > 0.0 && full_cost < kNotMuchWorse * before;
       state.probes = goes_on ? state.probes + 1 : 0;
       state.probed = goes_on ? to : best;
-      objective.route(state.probed);
+      objective.evaluate(state.probed);
       if (!goes_on) state.radius = std::max(0.03 * state.radius, kLeastRadius);
     } else {
       state.radius =
@@ -129,7 +129,7 @@ void fit(Objective& objective, Problem& problem, const FitOptions& options, FitS
       state.stalls = gained || state.polishes < attempts ? kPatience - 1 : kPatience;
       state.probes = 0;
       state.probed = state.x;
-      objective.route(state.x);
+      objective.evaluate(state.x);
     }
     const double step = (state.x - best).cwiseAbs().maxCoeff();
     // A cost of nothing is as far as a fit can go.

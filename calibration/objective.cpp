@@ -229,13 +229,13 @@ Eigen::VectorXd Objective::residuals_of(const std::vector<std::vector<double>>& 
   return residual;
 }
 
-Eigen::VectorXd Objective::route(const Eigen::VectorXd& x) {
+Eigen::VectorXd Objective::evaluate(const Eigen::VectorXd& x) {
   const Stopwatch watch;
   problem_.set(x);
   statistics_.assign(planets_.size(), {});
   fine_bins_.assign(planets_.size(), {});
   for_seeds([&](std::size_t s) {
-    const Relief<double> relief = planets_[s]->route(problem_.model);
+    const Relief<double> relief = planets_[s]->reroute(problem_.model);
     hold(s, relief);
     statistics_[s] = statistics_of(s, relief);
     fine_bins_[s] = held_[s].elevation->bin_means(kFineBins);
@@ -251,31 +251,32 @@ double Objective::distance_m() const {
   return sum / static_cast<double>(fine_bins_.size());
 }
 
-Eigen::VectorXd Objective::follow(const Eigen::VectorXd& x, Eigen::MatrixXd* jacobian) {
+Eigen::VectorXd Objective::linearise(const Eigen::VectorXd& x, Eigen::MatrixXd* jacobian) {
   const Stopwatch watch;
   problem_.set(x);
   const std::size_t count = problem_.free.size(), seeds = planets_.size();
   std::vector<std::vector<double>> statistics(seeds);
   if (jacobian == nullptr) {
     for_seeds([&](std::size_t s) {
-      statistics[s] = statistics_of(s, planets_[s]->follow<double>(problem_.model, {}));
+      statistics[s] =
+          statistics_of(s, planets_[s]->with_frozen_drainage<double>(problem_.model, {}));
     });
     return residuals_of(statistics, x);
   }
   rates_.assign(seeds,
                 Eigen::MatrixXd::Zero(Eigen::Index(problem_.statistics()), Eigen::Index(count)));
   for (std::size_t first = 0; first < count; first += kTogether) {
-    std::vector<Lift<Jet>::Variable> variables;
+    std::vector<ActiveVariables<Jet>::Variable> variables;
     for (std::size_t i = first; i < std::min(count, first + kTogether); ++i) {
       const auto member = std::get<double*>(problem_.free[i].declaration.storage);
       Jet number(*member, static_cast<int>(i - first));
       number.v *= problem_.free[i].rate(x[Eigen::Index(i)]);
       variables.push_back({member, number});
     }
-    const Lift<Jet> lift(variables);
+    const ActiveVariables<Jet> active(variables);
     for_seeds([&](std::size_t s) {
       const std::vector<Jet> jets =
-          statistics_of(s, planets_[s]->follow<Jet>(problem_.model, lift));
+          statistics_of(s, planets_[s]->with_frozen_drainage<Jet>(problem_.model, active));
       statistics[s].resize(jets.size());
       for (std::size_t k = 0; k < jets.size(); ++k) {
         statistics[s][k] = jets[k].a;

@@ -78,17 +78,18 @@ class Objective {
   [[nodiscard]] Eigen::VectorXd known_variance() const;
   /// Root mean square misfit of the quantiles, m, of residuals.
   [[nodiscard]] double misfit_m(const Eigen::VectorXd& residual) const;
-  /// Residuals with everything routed anew, which is then held fast.
-  Eigen::VectorXd route(const Eigen::VectorXd& x);
-  /// Residuals with all held fast as the last `route` left it, and their derivatives if asked for.
-  Eigen::VectorXd follow(const Eigen::VectorXd& x, Eigen::MatrixXd* jacobian = nullptr);
+  /// Residuals with everything rerouted, which is then frozen.
+  Eigen::VectorXd evaluate(const Eigen::VectorXd& x);
+  /// Residuals with all held fast as the last `evaluate` left it, and their derivatives if asked
+  /// for.
+  Eigen::VectorXd linearise(const Eigen::VectorXd& x, Eigen::MatrixXd* jacobian = nullptr);
 
-  /// Of the last `route`, for each seed: statistics, and means of kFineBins bins.
+  /// Of the last `evaluate`, for each seed: statistics, and means of kFineBins bins.
   [[nodiscard]] const std::vector<std::vector<double>>& statistics() const { return statistics_; }
   [[nodiscard]] const std::vector<std::vector<double>>& fine_bins() const { return fine_bins_; }
-  /// Mean Wasserstein-1 distance from the target of the last `route`, m.
+  /// Mean Wasserstein-1 distance from the target of the last `evaluate`, m.
   [[nodiscard]] double distance_m() const;
-  /// Derivatives of each seed's statistics by x, of the last `follow` with a Jacobian.
+  /// Derivatives of each seed's statistics by x, of the last `linearise` with a Jacobian.
   [[nodiscard]] const std::vector<Eigen::MatrixXd>& seed_jacobians() const { return rates_; }
   [[nodiscard]] const std::vector<std::unique_ptr<SeedPlanet>>& planets() const { return planets_; }
 

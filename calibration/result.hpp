@@ -48,7 +48,7 @@ struct SeedMisfit {
   double before_m = 0.0, after_m = 0.0;  ///< Wasserstein-1 distance of the elevations
 };
 
-/// One outer step: drainage routed anew, a few steps with it held fast, judged routed again.
+/// One outer step: drainage rerouted, a few steps with it frozen, judged rerouted.
 struct Iteration {
   int start = 0;  ///< which starting point
   int number = 0;

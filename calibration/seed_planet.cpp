@@ -46,7 +46,7 @@ void SeedPlanet::hold_frame(const IsostasyParameters& p, const CrustInputs& in) 
 }
 
 void SeedPlanet::find_sea(const Model& model, std::span<const double> elevation_m,
-                          HeldFast::Sea& sea) const {
+                          FrozenDrainage::Sea& sea) const {
   constexpr double kHalfWidth = 0.0025;  // share of the area on either side of the shore
   const Grid& grid = this->grid();
   sea = {.at_shore = sea.at_shore};

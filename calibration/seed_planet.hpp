@@ -32,7 +32,7 @@ struct Relief {
 };
 
 /// What is held fast between two routings: where sections, rocks, sea and rivers lie.
-struct HeldFast {
+struct FrozenDrainage {
   std::optional<TectonicFrame> frame;
   double divergent_length_km = 0.0, transform_length_km = 0.0;  ///< that the frame was made with
   std::vector<float> erodibility;
@@ -67,39 +67,41 @@ class SeedPlanet {
   [[nodiscard]] std::span<const float> continental_fraction() const {
     return state_.read(field::continental_fraction);
   }
-  [[nodiscard]] const HeldFast& held() const { return held_; }
+  [[nodiscard]] const FrozenDrainage& held() const { return held_; }
 
-  /// The relief with everything routed anew, which is then held fast.
-  [[nodiscard]] Relief<double> route(const Model& model) {
+  /// The relief with everything rerouted, which is then frozen.
+  [[nodiscard]] Relief<double> reroute(const Model& model) {
     return evaluate<double>(model, {}, /*routes=*/true);
   }
-  /// The relief with all held fast as `route` left it: a smooth function of the parameters. V is
+  /// The relief with all frozen as `reroute` left it: a smooth function of the parameters. V is
   /// double, a dual number, or std::complex<double>.
   template <class V>
-  [[nodiscard]] Relief<V> follow(const Model& model, const Lift<V>& lift) {
-    return evaluate<V>(model, lift, /*routes=*/false);
+  [[nodiscard]] Relief<V> with_frozen_drainage(const Model& model,
+                                               const ActiveVariables<V>& active) {
+    return evaluate<V>(model, active, /*routes=*/false);
   }
 
  private:
   template <class V>
-  Relief<V> evaluate(const Model& model, const Lift<V>& lift, bool routes);
+  Relief<V> evaluate(const Model& model, const ActiveVariables<V>& active, bool routes);
   template <class V>
-  V sea_level(const Model& model, const Lift<V>& lift, std::span<const V> elevation_m,
-              HeldFast::Sea& sea, bool finds);
+  V sea_level(const Model& model, const ActiveVariables<V>& active, std::span<const V> elevation_m,
+              FrozenDrainage::Sea& sea, bool finds);
   /// Boundaries and distances from them: costly, and other only when a length of deformation is.
   void hold_frame(const IsostasyParameters& parameters, const CrustInputs& in);
-  void find_sea(const Model& model, std::span<const double> elevation_m, HeldFast::Sea& sea) const;
+  void find_sea(const Model& model, std::span<const double> elevation_m,
+                FrozenDrainage::Sea& sea) const;
 
   std::uint64_t seed_;
   State state_;
   CoarseGrid coarse_;
   NoiseStore noise_;
-  HeldFast held_;
+  FrozenDrainage held_;
 };
 
 template <class V>
-V SeedPlanet::sea_level(const Model& model, const Lift<V>& lift, std::span<const V> elevation_m,
-                        HeldFast::Sea& sea, bool finds) {
+V SeedPlanet::sea_level(const Model& model, const ActiveVariables<V>& active,
+                        std::span<const V> elevation_m, FrozenDrainage::Sea& sea, bool finds) {
   if (finds) {
     std::vector<double> values(elevation_m.size());
     for (std::size_t c = 0; c < values.size(); ++c) values[c] = value_of(elevation_m[c]);
@@ -108,20 +110,20 @@ V SeedPlanet::sea_level(const Model& model, const Lift<V>& lift, std::span<const
   V mean(0.0), asked(0.0);
   if (sea.ranking) {
     mean = sea.ranking->mean(sea.window, elevation_m);
-    asked = lift(model.planet.ocean_fraction);
+    asked = active(model.planet.ocean_fraction);
   } else {
     double area = 0.0;
     const Grid& grid = this->grid();
     mean = area_sum<V>(grid, [&](Index c) { return sea.wet[c] != 0 ? elevation_m[c] : V(0.0); });
     area = area_sum<double>(grid, [&](Index c) { return static_cast<double>(sea.wet[c]); });
     mean /= area;
-    asked = lift(model.planet.water_volume_km3);
+    asked = active(model.planet.water_volume_km3);
   }
   return sea.level_m + (mean - sea.mean_m) + sea.rate * (asked - sea.asked);
 }
 
 template <class V>
-Relief<V> SeedPlanet::evaluate(const Model& model, const Lift<V>& lift, bool routes) {
+Relief<V> SeedPlanet::evaluate(const Model& model, const ActiveVariables<V>& active, bool routes) {
   const Grid& grid = this->grid();
   const auto cells = static_cast<std::size_t>(grid.size());
   const ErosionParameters& p = model.erosion;
@@ -153,15 +155,15 @@ Relief<V> SeedPlanet::evaluate(const Model& model, const Lift<V>& lift, bool rou
                        .rock = {},
                        .erodibility = {},
                        .elevation_m = relief.elevation_m,
-                       .lift = lift,
+                       .active = active,
                        .noise = &noise_};
   if (routes) hold_frame(model.isostasy, in);
   float_margins_crust(crust, coarse_, *held_.frame);
   const std::span<V> z(relief.elevation_m);
   if (routes) held_.settles = settles_continents(model.isostasy, model.planet);
   if (held_.settles) {
-    for (HeldFast::Settling& at : held_.settlings) {
-      const V level_m = sea_level<V>(model, lift, z, at.sea, routes);
+    for (FrozenDrainage::Settling& at : held_.settlings) {
+      const V level_m = sea_level<V>(model, active, z, at.sea, routes);
       if (routes) {
         at.wet.resize(cells);
         for (std::size_t c = 0; c < cells; ++c) at.wet[c] = value_of(z[c]) < value_of(level_m);
@@ -169,7 +171,7 @@ Relief<V> SeedPlanet::evaluate(const Model& model, const Lift<V>& lift, bool rou
       settle_continents(crust, level_m, at.wet);
     }
   }
-  fill_sea(crust, sea_level<V>(model, lift, z, held_.sea, routes));
+  fill_sea(crust, sea_level<V>(model, active, z, held_.sea, routes));
 
   const auto as_floats = [&](std::span<const V> field) {
     std::vector<float> values(cells);
@@ -201,13 +203,13 @@ Relief<V> SeedPlanet::evaluate(const Model& model, const Lift<V>& lift, bool rou
   }
   std::vector<V> uplift(cells, V(0.0));
   if (p.uplift_from == "deformation") {
-    add_belt_uplift<V>(p, lift, convergent, divergent, transform, model.uplift_factor, uplift);
+    add_belt_uplift<V>(p, active, convergent, divergent, transform, model.uplift_factor, uplift);
   } else if (p.uplift_from == "boundaries") {
-    add_boundary_uplift<V>(p, lift, in.boundary_type, in.boundary_strength, model.uplift_factor,
+    add_boundary_uplift<V>(p, active, in.boundary_type, in.boundary_strength, model.uplift_factor,
                            uplift);
   }
-  const std::vector<V> erodibility = resolved_erodibility<V>(p, lift, grid, held_.erodibility);
-  Landscape<V> landscape(p, lift, grid, z, uplift, erodibility, held_.outlets);
+  const std::vector<V> erodibility = resolved_erodibility<V>(p, active, grid, held_.erodibility);
+  Landscape<V> landscape(p, active, grid, z, uplift, erodibility, held_.outlets);
   for (std::int64_t step = 0; step < p.steps; ++step) {
     Drainage& drainage = held_.drainage[step / p.route_every];
     if (step % p.route_every == 0) {
@@ -216,14 +218,14 @@ Relief<V> SeedPlanet::evaluate(const Model& model, const Lift<V>& lift, bool rou
     }
     landscape.step(drainage);
   }
-  inject_noise(p, lift, grid, seed_, z);
-  warp(p, lift, grid, seed_, z);
+  inject_noise(p, active, grid, seed_, z);
+  warp(p, active, grid, seed_, z);
   landscape.relax();
 
   const auto is_land = [&](Index c) { return held_.outlets[c] == 0; };
   const double land_m2 = area_sum<double>(grid, [&](Index c) { return is_land(c) ? 1.0 : 0.0; });
   if (p.steps > 0 && land_m2 > 0.0) {
-    const V time_yr = static_cast<double>(p.steps) * lift(p.time_step_yr);
+    const V time_yr = static_cast<double>(p.steps) * active(p.time_step_yr);
     relief.erosion_rate_m_yr = landscape.rock().eroded / (land_m2 * time_yr);
   }
   relief.water_m3 = area_sum<V>(grid, [&](Index c) { return is_land(c) ? V(0.0) : V(-z[c]); });

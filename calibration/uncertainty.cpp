@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "calibration/held_fast.hpp"
+#include "calibration/frozen_drainage.hpp"
 
 namespace geo::calibration {
 namespace {
@@ -131,12 +131,12 @@ Eigen::VectorXd refit_others(Objective& objective, const Problem& problem, Eigen
                              Eigen::VectorXd guess, double& cost) {
   constexpr int kRounds = 4, kSteps = 3;
   constexpr double kWorthwhile = 1e-3;
-  cost = 0.5 * objective.follow(guess).squaredNorm();
+  cost = 0.5 * objective.linearise(guess).squaredNorm();
   for (int round = 0; round < kRounds; ++round) {
-    const Eigen::VectorXd to =
-        solve_held_fast(objective, problem, guess,
-                        {.steps = kSteps, .radius = 1e4, .tolerance = kWorthwhile, .fixed = i});
-    const double there = 0.5 * objective.follow(to).squaredNorm();
+    const Eigen::VectorXd to = solve_with_frozen_drainage(
+        objective, problem, guess,
+        {.steps = kSteps, .radius = 1e4, .tolerance = kWorthwhile, .fixed = i});
+    const double there = 0.5 * objective.linearise(to).squaredNorm();
     if (!(there < cost)) break;
     const bool settled = cost - there < kWorthwhile * cost;
     guess = to;

@@ -13,11 +13,11 @@ namespace geo::calibration {
 /// same for targets of every kind. Seeds by the influence of each on the minimum,
 /// (J^T J)^-1 J_s^T r_s (a delete-one jackknife, Wu 1986). Directions are the right singular
 /// vectors of J. What is not determined gives warnings in words.
-/// `objective` must have been routed and followed with a Jacobian at `x`.
+/// `objective` must have been evaluated and linearised with a Jacobian at `x`.
 void assess(const Objective& objective, const Problem& problem, const Eigen::VectorXd& x,
             const Eigen::VectorXd& residual, const Eigen::MatrixXd& jacobian, Result& result);
 
-/// Profile likelihood of parameter `i` about `x`, with all held fast as the last `route` left it:
+/// Profile likelihood of parameter `i` about `x`, with all frozen as the last `evaluate` left it:
 /// it is moved in three steps of a third of `reach` to either side, as far as its bounds allow, and
 /// at each place all others are fitted again from the last one on. At most four Jacobians and 17
 /// evaluations a place, most often two and seven.

@@ -3,7 +3,7 @@
 
 #include "blueprint.hpp"
 #include "geo/kernels/climate/blueprint_climate.hpp"
-#include "geo/kernels/remapping/overlay.hpp"
+#include "geo/kernels/remapping/conservative_remapping.hpp"
 
 namespace geo {
 namespace {
@@ -72,7 +72,7 @@ std::vector<double> rain_by_its_equation(double pressure_bar, double aerosol) {
   }
   blueprint_relief_precipitation(grid, {}, latitude, land, height, relief);
   // It comes to the grid by splines, whatever the grid of the trace.
-  const Overlay overlay(grid, grid);
+  const ConservativeRemapping overlay(grid, grid);
   const Interpolator smooth(overlay, std::vector<float>(relief));
   std::vector<float> scratch(smooth.scratch_size());
   for (int j = 0; j < grid.ny(); ++j) {

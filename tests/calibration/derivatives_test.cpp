@@ -58,7 +58,7 @@ struct Planet1 {
       // Hillslopes enough to be seen on cells of 400 km.
       : run("erosion.diffusivity_m2_yr=500", assignment, more),
         planet(run.parameters, 1, 2 * rows, rows) {
-    (void)planet.route(model);
+    (void)planet.reroute(model);
   }
   double* member(const std::string& name) const {
     return std::get<double*>(model.find(name).storage);
@@ -66,7 +66,7 @@ struct Planet1 {
   template <class V>
   Relief<V> follow(const std::string& name, const V& unit) {
     double* const at = member(name);
-    return planet.follow<V>(model, Lift<V>({{at, V(*at) + unit}}));
+    return planet.with_frozen_drainage<V>(model, ActiveVariables<V>({{at, V(*at) + unit}}));
   }
 
   SmallRun run;
@@ -99,9 +99,9 @@ std::vector<double> rate_by_difference(Planet1& p, const std::string& name, doub
   double* const at = p.member(name);
   const double value = *at, step = relative * std::max(std::abs(value), 1e-3);
   *at = value + step;
-  const auto above = p.planet.follow<double>(p.model, {}).elevation_m;
+  const auto above = p.planet.with_frozen_drainage<double>(p.model, {}).elevation_m;
   *at = value - step;
-  const auto below = p.planet.follow<double>(p.model, {}).elevation_m;
+  const auto below = p.planet.with_frozen_drainage<double>(p.model, {}).elevation_m;
   *at = value;
   std::vector<double> rate;
   for (std::size_t c = 0; c < above.size(); ++c) rate.push_back((above[c] - below[c]) / (2 * step));
@@ -137,7 +137,7 @@ TEST(Derivatives, FollowContinentsThatSettle) {
   }
 }
 
-TEST(Derivatives, AgreeWithCentralDifferencesOfTheHeldFastModel) {
+TEST(Derivatives, AgreeWithCentralDifferencesOfTheFrozenModel) {
   Planet1 p;
   for (const auto* names : {&kExact, &kDifferenced}) {
     for (const std::string& name : *names) {
@@ -197,7 +197,8 @@ std::vector<std::vector<double>> extrapolated_rate(Planet1& p, const std::string
   const double value = *at, step = relative * std::max(std::abs(value), 1e-3);
   const auto figures_at = [&](double moved) {
     *at = moved;
-    auto figures = figures_of(p.planet.follow<double>(p.model, {}), [](double x) { return x; });
+    auto figures =
+        figures_of(p.planet.with_frozen_drainage<double>(p.model, {}), [](double x) { return x; });
     *at = value;
     return figures;
   };
@@ -282,16 +283,16 @@ TEST(Derivatives, OfTermsAndQuantilesAreThoseOfDifferences) {
   Problem problem(run.parameters, run.settings, run.earth());
   Objective objective(problem, run.parameters, std::vector<std::int64_t>{1, 2}, 96, 48);
   const Eigen::VectorXd x = problem.present();
-  objective.route(x);
+  objective.evaluate(x);
   Eigen::MatrixXd rates;
-  objective.follow(x, &rates);
+  objective.linearise(x, &rates);
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     constexpr double kStep = 1e-6;
     Eigen::VectorXd above = x, below = x;
     above[i] += kStep;
     below[i] -= kStep;
     const Eigen::VectorXd difference =
-        (objective.follow(above) - objective.follow(below)) / (2.0 * kStep);
+        (objective.linearise(above) - objective.linearise(below)) / (2.0 * kStep);
     for (Eigen::Index r = 0; r < rates.rows(); ++r) {
       // A bend in one of the cells of a quantile is a small part of it.
       EXPECT_NEAR(rates(r, i), difference[r], 0.02 * std::abs(difference[r]) + 1e-4)
@@ -302,16 +303,16 @@ TEST(Derivatives, OfTermsAndQuantilesAreThoseOfDifferences) {
   }
 }
 
-TEST(Derivatives, HeldFastModelIsTheRoutedOneWhereItWasRouted) {
+TEST(Derivatives, FrozenModelIsTheRoutedOneWhereItWasRouted) {
   Planet1 p;
-  const auto routed = p.planet.route(p.model).elevation_m;
-  const auto held = p.planet.follow<double>(p.model, {}).elevation_m;
+  const auto routed = p.planet.reroute(p.model).elevation_m;
+  const auto held = p.planet.with_frozen_drainage<double>(p.model, {}).elevation_m;
   EXPECT_EQ(routed, held);
 }
 
 TEST(Derivatives, ValuesAreThoseOfARun) {
   Planet1 p;
-  const auto relief = p.planet.route(p.model);
+  const auto relief = p.planet.reroute(p.model);
   State state(std::make_shared<const Grid>(p.run.grid()));
   Context context;
   context.planet = p.run.planet;
@@ -344,17 +345,17 @@ TEST(Derivatives, QuantilesFollowTheMeanOfTheCellsThere) {
   constexpr int kParts = 50;
   Planet1 p(96);
   const Grid& grid = p.planet.grid();
-  const Ranking ranking(grid, p.planet.follow<double>(p.model, {}).elevation_m);
+  const Ranking ranking(grid, p.planet.with_frozen_drainage<double>(p.model, {}).elevation_m);
   for (const std::string name :
        {"isostasy.lithosphere", "isostasy.collision_km", "isostasy.swell_m"}) {
     double* const at = p.member(name);
     const double value = *at, step = 0.005 * value;
     *at = value + step;
-    const auto above =
-        Ranking(grid, p.planet.follow<double>(p.model, {}).elevation_m).bin_means(kParts);
+    const auto above = Ranking(grid, p.planet.with_frozen_drainage<double>(p.model, {}).elevation_m)
+                           .bin_means(kParts);
     *at = value - step;
-    const auto below =
-        Ranking(grid, p.planet.follow<double>(p.model, {}).elevation_m).bin_means(kParts);
+    const auto below = Ranking(grid, p.planet.with_frozen_drainage<double>(p.model, {}).elevation_m)
+                           .bin_means(kParts);
     *at = value;
     const auto jets = p.follow<Jet>(name, Jet(0.0, 0));
     double error = 0.0, size = 0.0;

@@ -59,9 +59,9 @@ class Twin {
       answer.result.parameters.push_back(parameter);
     }
     if (assesses) {
-      const auto residual = objective.route(answer.state.x);
+      const auto residual = objective.evaluate(answer.state.x);
       Eigen::MatrixXd rates;
-      objective.follow(answer.state.x, &rates);
+      objective.linearise(answer.state.x, &rates);
       assess(objective, problem, answer.state.x, residual, rates, answer.result);
     }
     return answer;
@@ -135,7 +135,7 @@ TEST(Fit, RecordsTheDistanceOfTheBestPlaceNotOfTheLastTried) {
   int rejected = 0;
   fit(objective, problem, {12, 1e-4}, state, [&](const FitState& now, const Iteration& record) {
     rejected += record.accepted ? 0 : 1;
-    const double cost = 0.5 * judge.route(now.x).squaredNorm();
+    const double cost = 0.5 * judge.evaluate(now.x).squaredNorm();
     EXPECT_EQ(record.cost, cost) << "iteration " << record.number;
     EXPECT_EQ(record.wasserstein_m, judge.distance_m()) << "iteration " << record.number;
   });
@@ -202,9 +202,9 @@ class Uncertainty : public testing::Test {
     Objective objective(problem, run_.parameters, seeds_, 2 * kRows, kRows);
     // A little beside the minimum, so that something is left over.
     const Eigen::VectorXd x = problem.present().array() + 0.02;
-    const auto residual = objective.route(x);
+    const auto residual = objective.evaluate(x);
     Eigen::MatrixXd rates;
-    objective.follow(x, &rates);
+    objective.linearise(x, &rates);
     Result result;
     result.parameters.resize(problem.free.size());
     assess(objective, problem, x, residual, rates, result);
@@ -252,11 +252,11 @@ TEST(Profile, OthersAreFittedAgainAtEveryPoint) {
   Problem problem(run.parameters, run.settings, own_target(run, seeds, 32));
   Objective objective(problem, run.parameters, seeds, 64, 32);
   const Eigen::VectorXd x = problem.present();
-  objective.route(x);
+  objective.evaluate(x);
   Eigen::MatrixXd rates;
-  objective.follow(x, &rates);
+  objective.linearise(x, &rates);
   const auto cost_at = [&](const Eigen::VectorXd& at) {
-    return 0.5 * objective.follow(at).squaredNorm();
+    return 0.5 * objective.linearise(at).squaredNorm();
   };
   constexpr double kReach = 0.3;
   const Profile profile = profile_of(objective, problem, x, rates, 1, kReach);
@@ -293,9 +293,9 @@ TEST(Profile, EndsAtTheBounds) {
   Problem problem(run.parameters, run.settings, own_target(run, seeds, 32));
   Objective objective(problem, run.parameters, seeds, 64, 32);
   const Eigen::VectorXd x = problem.present();
-  objective.route(x);
+  objective.evaluate(x);
   Eigen::MatrixXd rates;
-  objective.follow(x, &rates);
+  objective.linearise(x, &rates);
   const Profile profile = profile_of(objective, problem, x, rates, 1, 0.3);
   ASSERT_EQ(profile.value.size(), 4U);
   EXPECT_NEAR(profile.value.front(), 0.45, 1e-9);
@@ -326,9 +326,9 @@ TEST(Fit, WarnsInWordsOfWhatTheTargetDoesNotTell) {
   Problem problem(run.parameters, run.settings, run.earth());
   Objective objective(problem, run.parameters, std::vector<std::int64_t>{1}, 96, 48);
   const Eigen::VectorXd x = problem.present();
-  const auto residual = objective.route(x);
+  const auto residual = objective.evaluate(x);
   Eigen::MatrixXd rates;
-  objective.follow(x, &rates);
+  objective.linearise(x, &rates);
   Result result;
   result.parameters.resize(3);
   assess(objective, problem, x, residual, rates, result);

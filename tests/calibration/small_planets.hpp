@@ -47,7 +47,7 @@ inline Target own_target(const SmallRun& run, const std::vector<std::int64_t>& s
   target.fine_bin_m.assign(kFineBins, 0.0);
   Problem problem(run.parameters, run.settings, target);
   Objective objective(problem, run.parameters, seeds, 2 * rows, rows);
-  objective.route(problem.present());
+  objective.evaluate(problem.present());
   for (std::size_t s = 0; s < seeds.size(); ++s) {
     for (std::size_t k = 0; k < target.share.size(); ++k) {
       target.elevation_m[k] += objective.statistics()[s][k] / double(seeds.size());

@@ -552,10 +552,10 @@ const BadInput kPlates[] = {
      }},
     {"FirstReliefWithARelief",
      kConfiguration,
-     {"fields.first_relief = x.nc: is for stage plates", "must be empty"},
+     {"fields.initial_elevation = x.nc: is for stage plates", "must be empty"},
      [](const fs::path& folder) {
        return quick_run(folder / "relief.nc", folder / "out",
-                        {"--set", "fields.first_relief=x.nc"});
+                        {"--set", "fields.initial_elevation=x.nc"});
      }},
     {"OthersBehindAStageThatStays",
      kConfiguration,
@@ -592,16 +592,16 @@ const BadInput kPlates[] = {
      drift_of(two_plates(R"("Code": "AF")", "[[0, 0], [9e5, 0], [9e5, 9], [0, 0]]"))},
     {"NoFirstRelief",
      kConfiguration,
-     {"plates.first_relief = given", "fields.first_relief"},
-     drift_of("", {"--set", "fields.plates=earth", "--set", "plates.first_relief=given"})},
+     {"plates.initial_elevation = given", "fields.initial_elevation"},
+     drift_of("", {"--set", "fields.plates=earth", "--set", "plates.initial_elevation=given"})},
     {"FirstReliefOfAPart",
      kInput,
-     {"fields.first_relief", "must cover the whole planet"},
+     {"fields.initial_elevation", "must cover the whole planet"},
      [](const fs::path& folder) {
        ReliefFile{.north_deg = 60.0}.write(folder / "part.nc");
        return drift_of(
-           "", {"--set", "fields.plates=earth", "--set", "plates.first_relief=given", "--set",
-                "fields.first_relief=" + (folder / "part.nc").string()})(folder);
+           "", {"--set", "fields.plates=earth", "--set", "plates.initial_elevation=given", "--set",
+                "fields.initial_elevation=" + (folder / "part.nc").string()})(folder);
      }},
 };
 

@@ -271,11 +271,11 @@ TEST(GivenPlates, BeginWithARealReliefAsItIs) {
   PlatesParameters p = quick();
   p.samples = 40000;
   p.time_myr = 0.0;
-  p.first_relief = "given";
+  p.initial_elevation = "given";
   p.oldest_floor_myr = 180.0;
   p.cratons.share = 0.0655;  // within 30 degrees of the middle, less the rim
   Context context;
-  context.first_relief = std::make_shared<const GivenRelief>(made_relief());
+  context.initial_elevation = std::make_shared<const GivenRelief>(made_relief());
   const State& state = begun(p, context).state;
   const Grid& grid = state.grid();
   const auto z = state.read(field::crust_elevation);
@@ -309,7 +309,7 @@ TEST(GivenPlates, BeginWithARealReliefAsItIs) {
 TEST(GivenPlates, BelieveAnAgeGridWhereItHasOne) {
   PlatesParameters p = quick();
   p.time_myr = 0.0;
-  p.first_relief = "given";
+  p.initial_elevation = "given";
   p.cratons.share = 0.0655;
   Context context;
   GivenRelief given = made_relief();
@@ -317,7 +317,7 @@ TEST(GivenPlates, BelieveAnAgeGridWhereItHasOne) {
   for (Index c = 0; c < given.grid.size(); ++c) {
     if (given.grid.longitude_deg(given.grid.column(c)) > 60.0) given.age_myr[c] = 33.0F;
   }
-  context.first_relief = std::make_shared<const GivenRelief>(std::move(given));
+  context.initial_elevation = std::make_shared<const GivenRelief>(std::move(given));
   const State& state = begun(p, context).state;
   const auto age = state.read(field::crust_age);
   const Grid& grid = state.grid();
@@ -327,7 +327,7 @@ TEST(GivenPlates, BelieveAnAgeGridWhereItHasOne) {
 
 TEST(GivenPlates, AskForTheReliefThatTheyAreToBeginWith) {
   PlatesParameters p = quick();
-  p.first_relief = "given";
+  p.initial_elevation = "given";
   EXPECT_THROW((void)begun(p, {}), InputError);
 }
 

@@ -180,7 +180,7 @@ TEST(Hypsography, RefusesARankingWithoutOrder) {
 TEST(Hypsography, IsWhatDriftingPlatesStartFrom) {
   PlatesParameters parameters;
   parameters.model = "sphere";
-  parameters.first_relief = "hypsography";
+  parameters.initial_elevation = "hypsography";
   parameters.growth.count = 12;
   parameters.samples = 6000;
   parameters.ocean_floor = "age";

@@ -10,7 +10,7 @@
 #include "geo/kernels/climate/moisture.hpp"
 #include "geo/kernels/climate/orography.hpp"
 #include "geo/kernels/climate/thermodynamics.hpp"
-#include "geo/kernels/remapping/overlay.hpp"
+#include "geo/kernels/remapping/conservative_remapping.hpp"
 
 namespace geo {
 namespace {
@@ -212,9 +212,9 @@ TEST(UpwindLift, WindwardRisesLeeSinks) {
   EXPECT_LT(lift[grid.cell(25, 10)], -400.0F) << "the other way round in the opposite wind";
 }
 
-TEST(Overlay, AveragesKeepTheLand) {
+TEST(ConservativeRemapping, AveragesKeepTheLand) {
   const Grid fine = Grid::sphere(100, 50), coarse = Grid::sphere(36, 18);
-  const Overlay overlay(fine, coarse);
+  const ConservativeRemapping overlay(fine, coarse);
   std::vector<float> h(static_cast<std::size_t>(fine.size()));
   for (Index c = 0; c < fine.size(); ++c) h[c] = (c * 7919) % 13 < 5 ? 100.0F : -100.0F;
   const auto size = static_cast<std::size_t>(coarse.size());
@@ -226,9 +226,9 @@ TEST(Overlay, AveragesKeepTheLand) {
   }
 }
 
-TEST(Overlay, SplineKeepsConstantsAndRangesAndCrossesPoles) {
+TEST(ConservativeRemapping, SplineKeepsConstantsAndRangesAndCrossesPoles) {
   const Grid fine = Grid::sphere(200, 100), coarse = Grid::sphere(36, 18);
-  const Overlay overlay(fine, coarse);
+  const ConservativeRemapping overlay(fine, coarse);
   std::vector<float> values(static_cast<std::size_t>(coarse.size()), 3.0F);
   std::vector<float> row(200), scratch(200);
   Interpolator(overlay, values).row(99, row, scratch);

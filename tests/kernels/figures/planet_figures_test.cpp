@@ -288,7 +288,7 @@ TEST(DrainageFigures, LongestWayAndBasinsAreThoseOfAStraightRiver) {
     area[c] = 2e6 * (column + 1);
   }
   const DrainedPlanet drainage{z, receiver, area};
-  const auto length = longest_upstream_m(grid, drainage);
+  const auto length = flow_length_m(grid, drainage);
   EXPECT_FLOAT_EQ(length[grid.cell(10, 0)], 10000.0F);
   EXPECT_FLOAT_EQ(length[grid.cell(4, 2)], 4000.0F);
   const auto basins = measure_basins(grid, drainage, basin);
@@ -301,7 +301,7 @@ TEST(DrainageFigures, LongestWayAndBasinsAreThoseOfAStraightRiver) {
   EXPECT_NEAR(basin_means(grid, z, basin, rate)[1], 5.0, 1e-9);
   EXPECT_NEAR(basin_means(grid, z, basin, rate)[4], 9.0, 1e-9);
   receiver[0] = 30;
-  EXPECT_THROW(longest_upstream_m(grid, drainage), Bug);
+  EXPECT_THROW(flow_length_m(grid, drainage), Bug);
 }
 
 TEST(DrainageFigures, HackOfRiversOfOneWidthIsOneAndOfSimilarBasinsAHalf) {

@@ -23,7 +23,7 @@ RasterSettings small(int columns = 96, int rows = 80) {
   return settings;
 }
 
-/// Sums of all crust against the books, relative.
+/// Sums of all crust against the budget, relative.
 double closing_error(const RasterTectonics& model) {
   const RasterBudget& b = model.budget();
   return (model.mass() - b.start - b.created + b.subducted - b.melted) / model.mass();
@@ -259,13 +259,13 @@ TEST(RasterPlates, AMergerHandsItsMomentumOn) {
     RasterTectonics model(settings, seed);
     for (bool goes_on = true; goes_on;) {
       const std::vector<RasterPlate> before = model.plates();
-      const RasterBudget books = model.budget();
+      const RasterBudget before = model.budget();
       goes_on = model.advance();
       const auto& plates = model.plates();
-      const int mergers = model.budget().mergers - books.mergers;
-      const double moved = model.budget().merged - books.merged;
+      const int mergers = model.budget().mergers - before.mergers;
+      const double moved = model.budget().merged - before.merged;
       // New floor, on any plate, comes after a merger.
-      const double floor = model.budget().created - books.created;
+      const double floor = model.budget().created - before.created;
       for (std::size_t p = 0; p < plates.size(); ++p) {
         const double east = plates[p].east - before[p].east,
                      north = plates[p].north - before[p].north;

@@ -151,10 +151,10 @@ TEST(RasterSphere, OfFlatFloorAsMuchClosesAsOpens) {
   settings.melting_ratio = 0.0;
   World world(settings, 2);
   for (int k = 0; k < 40; ++k) world.model.advance();
-  const RasterBudget& books = world.model.budget();
-  EXPECT_GT(books.created, 0.1 * books.start);
+  const RasterBudget& budget = world.model.budget();
+  EXPECT_GT(budget.created, 0.1 * budget.start);
   // What lies doubly where plates overlap is about a row of cells along the trenches.
-  EXPECT_NEAR(books.created, books.subducted, 0.1 * books.start);
+  EXPECT_NEAR(budget.created, budget.subducted, 0.1 * budget.start);
 }
 
 TEST(RasterSphere, HasTheSameStartOnAFinerLattice) {

@@ -22,7 +22,7 @@ using test::SampledSphere;
 SphereSettings settings_of(std::int64_t steps_between) {
   SphereSettings settings;
   settings.rift_per_myr = 0.0;
-  settings.founder_per_myr = 0.0;
+  settings.initiation_per_myr = 0.0;
   settings.slab_pull = 0.0;
   settings.no_net_rotation = false;
   settings.margin_km = 0.0;
@@ -74,7 +74,7 @@ TEST(SphereFloorAge, NoFloorIsOlderThanTheRiftThatMadeIt) {
   int seen = 0;
   for (int k = 0; k < 60; ++k) {
     model.advance();
-    // As a frame would show it, 17 steps before it is read anew, and after that.
+    // As a frame would show it, 17 steps before it is resampled, and after that.
     SphereTectonics shown = model;
     shown.finish();
     ASSERT_LE(oldest_floor_myr(shown), model.state().time_myr - rifted_myr + 1e-4);

@@ -92,11 +92,11 @@ class NeckedContinent : public BrokenContinent {
 };
 
 /// Moving the lattice costs little beside what has flown into the margins.
-void expect_same_volume(const SphereBudget& books, double before_km3) {
-  EXPECT_GT(books.stretched_km2, 2.0 * 0.8 * 250.0 * 40.0 * kKmPerDegree);
-  const double margins_km3 = 8.0 * books.stretched_km2;
-  EXPECT_LT(std::abs(books.continental_km3 - before_km3), 0.05 * margins_km3);
-  EXPECT_DOUBLE_EQ(books.continental_km3 - before_km3, books.resampling_km3);
+void expect_same_volume(const SphereBudget& budget, double before_km3) {
+  EXPECT_GT(budget.stretched_km2, 2.0 * 0.8 * 250.0 * 40.0 * kKmPerDegree);
+  const double margins_km3 = 8.0 * budget.stretched_km2;
+  EXPECT_LT(std::abs(budget.continental_km3 - before_km3), 0.05 * margins_km3);
+  EXPECT_DOUBLE_EQ(budget.continental_km3 - before_km3, budget.resampling_km3);
 }
 
 TEST_F(BrokenContinent, KeepsItsVolume) { expect_same_volume(model_.budget(), volume_km3_); }

@@ -40,7 +40,7 @@ TEST(SpherePenetration, NoContinentsCollideSoonerThanTheyCanHaveMet) {
   const SampledSphere world(30000);
   SphereSettings settings;
   settings.rift_per_myr = 0.0;
-  settings.founder_per_myr = 0.0;
+  settings.initiation_per_myr = 0.0;
   settings.penetration_km = 500.0;
   settings.least_steps = settings.most_steps = 1000;
   constexpr double kSlack_km = 40.0;  // a quarter of the spacing, 140 km
@@ -79,7 +79,7 @@ SphereTectonics oblique(const SampledSphere& world, double pole_deg, double spee
                         std::int64_t steps_between = 1000) {
   SphereSettings settings;
   settings.rift_per_myr = 0.0;
-  settings.founder_per_myr = 0.0;
+  settings.initiation_per_myr = 0.0;
   settings.slab_pull = 0.0;
   settings.no_net_rotation = false;
   settings.least_steps = settings.most_steps = steps_between;

@@ -21,7 +21,7 @@ constexpr double kSpeed_mm_yr = 60.0;
 
 SphereSettings settings() {
   SphereSettings s;
-  s.rift_per_myr = s.founder_per_myr = s.slab_pull = 0.0;
+  s.rift_per_myr = s.initiation_per_myr = s.slab_pull = 0.0;
   s.no_net_rotation = false;
   s.floor_by_age = true;
   s.penetration_km = 5000.0;

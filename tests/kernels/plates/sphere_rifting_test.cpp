@@ -23,7 +23,7 @@ constexpr double kSpeed_mm_yr = 30.0;
 SphereSettings still() {
   SphereSettings settings;
   settings.rift_per_myr = 0.0;
-  settings.founder_per_myr = 0.0;
+  settings.initiation_per_myr = 0.0;
   settings.slab_pull = 0.0;
   settings.no_net_rotation = false;
   settings.rift_warp_km = 0.0;

@@ -24,7 +24,7 @@ class ThickRoot : public testing::Test {
  protected:
   static SphereSettings settings() {
     SphereSettings s;
-    s.rift_per_myr = s.founder_per_myr = s.slab_pull = 0.0;
+    s.rift_per_myr = s.initiation_per_myr = s.slab_pull = 0.0;
     s.law.erosion_mm_yr = 0.0;
     s.floor_by_age = true;
     return s;

@@ -13,8 +13,9 @@
 
 namespace geo {
 
-// What befalls a planet besides the slow work of its stages: tables [[event]] of a configuration,
-// each with its `kind`. Members are keys of the table; their declarations carry unit and range.
+// Discrete events on a planet, besides the slow work of its stages: tables [[event]] of a
+// configuration, each with its `kind`. Members are keys of the table; their declarations carry unit
+// and range.
 
 /// A meteorite or comet strikes: crater and ejecta, and dust that dims the sun.
 struct Impact {
@@ -108,7 +109,7 @@ struct PlumeChange {
   [[nodiscard]] std::vector<Parameter> declarations();
 };
 
-/// Whether an event befalls drifting plates, not the relief.
+/// Whether an event happens to drifting plates, not the relief.
 template <class What>
 inline constexpr bool kIsOfPlates =
     std::is_same_v<What, PlateMotion> || std::is_same_v<What, PlateRift> ||

@@ -92,15 +92,15 @@ template <class V>
 /// A parameter of the model as the number to compute with: the member itself, or, where it is one
 /// of those that derivatives are wanted for, with its unit derivative. Told apart by address.
 template <class V>
-class Lift {
+class ActiveVariables {
  public:
   using Number = Arithmetic<V>;
   struct Variable {
     const double* member;
     Number number;
   };
-  Lift() = default;
-  explicit Lift(std::vector<Variable> variables) : variables_(std::move(variables)) {}
+  ActiveVariables() = default;
+  explicit ActiveVariables(std::vector<Variable> variables) : variables_(std::move(variables)) {}
 
   [[nodiscard]] Number operator()(const double& member) const {
     for (const Variable& variable : variables_) {

@@ -10,10 +10,10 @@
 #include <string_view>
 #include <vector>
 
-#include "geo/core/beginning.hpp"
 #include "geo/core/checkpoint.hpp"
 #include "geo/core/event.hpp"
 #include "geo/core/field.hpp"
+#include "geo/core/initial_conditions.hpp"
 #include "geo/core/parameter.hpp"
 #include "geo/core/planet.hpp"
 #include "geo/core/state.hpp"
@@ -67,11 +67,11 @@ struct Context {
   Hypsography hypsography;
   /// The first plates and the first relief of a history; empty unless given.
   std::vector<PlateOutline> plates;
-  std::shared_ptr<const GivenRelief> first_relief;
+  std::shared_ptr<const GivenRelief> initial_elevation;
   /// What an island's terrain is made like, and a planet's, where exemplars are asked for; empty:
   /// stages grow their own.
   std::shared_ptr<const ExemplarLibrary> exemplars, planet_exemplars;
-  /// What befalls the planet; empty unless asked for.
+  /// Discrete events; empty unless asked for.
   std::vector<Event> events;
   /// Called with the fraction of the stage that is done; may be empty.
   std::function<void(double fraction)> on_progress;

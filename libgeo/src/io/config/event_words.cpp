@@ -60,10 +60,11 @@ std::string words_of(const EventRecord& event) {
   if (has(event, "time_myr")) {
     const char* what = event.kind == PlateMotion::kKind        ? "A plate takes a new course"
                        : event.kind == "continental-collision" ? "Continents collide"
-                       : event.kind == "subduction-initiation" ? "Old floor founders at a margin"
-                       : event.kind == CrustChange::kKind      ? "Crust changes its type"
-                       : event.kind == PlumeChange::kKind      ? "A plume begins or ends"
-                                                               : "A plate breaks";
+                       : event.kind == "subduction-initiation"
+                           ? "Subduction begins at an old margin"
+                       : event.kind == CrustChange::kKind ? "Crust changes its type"
+                       : event.kind == PlumeChange::kKind ? "A plume begins or ends"
+                                                          : "A plate breaks";
     return fmt::format("{}{} after {:.4g} million years, at {} {}.", what, name,
                        get(event, "time_myr"), degrees(get(event, "latitude_deg"), 'N', 'S'),
                        degrees(get(event, "longitude_deg"), 'E', 'W'));

@@ -66,11 +66,12 @@ std::vector<Parameter> RunSettings::parameters() {
            "plates from which drift begins: earth, or a GeoJSON file of polygons with their Euler "
            "poles; empty draws plates.count of them",
            "bird2003"),
-      text("fields.first_relief", first_relief,
-           "FILE[:VARIABLE] of a planet's relief from which drift begins where plates.first_relief "
+      text("fields.initial_elevation", initial_elevation,
+           "FILE[:VARIABLE] of a planet's relief from which drift begins where "
+           "plates.initial_elevation "
            "is given",
            "cortial2019"),
-      text("fields.first_age", first_age,
+      text("fields.initial_age", initial_age,
            "FILE[:VARIABLE] of the age of its sea floor, Myr, missing on land; empty tells it by "
            "depth",
            "muller2008"),

@@ -22,7 +22,7 @@ struct RiverNetwork {
   float least_flow = 0.0F, most_flow = 0.0F;
 };
 
-/// Land where no month thaws, as far as a state knows: what falls there leaves as ice.
+/// Land where frozen all year, as far as a state knows: what falls there leaves as ice.
 class FrozenGround {
  public:
   explicit FrozenGround(const State& state);

@@ -215,7 +215,7 @@ void draw_river_map(const Scene& scene, MapCanvas& canvas) {
   draw_rivers(canvas, rivers, kRiver);
   canvas.frame();
   std::vector<std::pair<Rgb, std::string>> areas{{kLake, "lakes"}};
-  if (shows_ice(base, ice)) areas.emplace_back(kIce, "no month thaws");
+  if (shows_ice(base, ice)) areas.emplace_back(kIce, "frozen all year");
   canvas.line_legend(kRiver, river_key(rivers, scene.state), areas);
 }
 

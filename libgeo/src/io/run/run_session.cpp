@@ -219,7 +219,7 @@ void RunSession::compute(const RunEvents& events) {
   context.seed = static_cast<std::uint64_t>(settings_.seed);
   context.hypsography = hypsography();
   context.plates = plates_;
-  context.first_relief = first_relief_;
+  context.initial_elevation = initial_elevation_;
   find_exemplars();
   for (const std::string& warning : warnings_) tell(events.warning, warning);
   context.exemplars = exemplars_;

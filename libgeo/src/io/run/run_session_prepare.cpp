@@ -73,8 +73,8 @@ std::vector<std::string> given_fields_of(Stage& stage) {
     keys.insert(keys.end(), {"fields.hypsography", "fields.hypsography_ocean"});
   }
   if (info.name == "plates") {
-    keys.insert(keys.end(),
-                {"fields.plates", "fields.first_relief", "fields.first_age", "fields.start_frame"});
+    keys.insert(keys.end(), {"fields.plates", "fields.initial_elevation", "fields.initial_age",
+                             "fields.start_frame"});
   }
   if (has_choice(stage, fmt::format("{}.detail", info.name), "exemplars")) {
     keys.emplace_back("fields.exemplars");
@@ -201,7 +201,7 @@ void RunSession::prepare() {
   leave_out_island();
   check_events(settings_.events, grid(), planet_);
   read_given_fields();
-  read_beginning();
+  read_initial_conditions();
   read_given_exemplars();
   if (!settings_.start_frame.empty()) (void)read_checkpoint(settings_.start_frame);
   (void)hypsography();  // refuses a bad one before anything is computed
@@ -509,11 +509,11 @@ void RunSession::read_given_fields() {
 }
 
 /// A run that leaves the first stage out has no use for what it begins with.
-void RunSession::refuse_beginning() const {
+void RunSession::refuse_initial_conditions() const {
   const std::pair<std::string_view, const std::string*> given[] = {
       {"fields.plates", &settings_.plates},
-      {"fields.first_relief", &settings_.first_relief},
-      {"fields.first_age", &settings_.first_age},
+      {"fields.initial_elevation", &settings_.initial_elevation},
+      {"fields.initial_age", &settings_.initial_age},
       {"fields.start_frame", &settings_.start_frame}};
   for (const auto& [key, value] : given) {
     if (value->empty()) continue;
@@ -526,32 +526,34 @@ void RunSession::refuse_beginning() const {
 
 /// The first plates and the first relief, as far as the first stage is still to come. Cells of the
 /// relief are of one size whatever the grid of the run, so that the same planet comes of it.
-void RunSession::read_beginning() {
-  if (begin_ != 0) refuse_beginning();
+void RunSession::read_initial_conditions() {
+  if (begin_ != 0) refuse_initial_conditions();
   if (first_ != 0) return;
   if (!settings_.plates.empty()) plates_ = read_plate_outlines(settings_.plates);
-  if (settings_.first_relief.empty()) {
+  if (settings_.initial_elevation.empty()) {
     for (const Parameter& row : pipeline_.stages().front()->parameters()) {
-      if (row.name != "plates.first_relief" || row.value() != ParameterValue(std::string("given")))
+      if (row.name != "plates.initial_elevation" ||
+          row.value() != ParameterValue(std::string("given")))
         continue;
       throw ConfigurationError(
-          "plates.first_relief = given needs fields.first_relief, a NetCDF file of a planet's "
+          "plates.initial_elevation = given needs fields.initial_elevation, a NetCDF file of a "
+          "planet's "
           "relief");
     }
     return;
   }
   constexpr GridSize kCells{2160, 1080};
   GivenRelief given{Grid::sphere(kCells.nx, kCells.ny, planet_.figure()), {}, {}};
-  const Relief relief = read_relief(settings_.first_relief, planet_);
-  check_whole_planet(relief, "fields.first_relief");
+  const Relief relief = read_relief(settings_.initial_elevation, planet_);
+  check_whole_planet(relief, "fields.initial_elevation");
   check_heights(relief);
   given.elevation_m = resample(relief, given.grid);
-  if (!settings_.first_age.empty()) {
-    const Relief age = read_field_with_gaps(settings_.first_age, field::crust_age, planet_);
-    check_whole_planet(age, "fields.first_age");
+  if (!settings_.initial_age.empty()) {
+    const Relief age = read_field_with_gaps(settings_.initial_age, field::crust_age, planet_);
+    check_whole_planet(age, "fields.initial_age");
     given.age_myr = resample(age, given.grid);
   }
-  first_relief_ = std::make_shared<const GivenRelief>(std::move(given));
+  initial_elevation_ = std::make_shared<const GivenRelief>(std::move(given));
 }
 
 /// Refuses bad ones before anything is computed; those that terrane grows can wait.

@@ -47,7 +47,7 @@ bool is_mouth(const DrainedPlanet& drainage, Index c) {
 
 }  // namespace
 
-std::vector<float> longest_upstream_m(const Grid& grid, const DrainedPlanet& drainage) {
+std::vector<float> flow_length_m(const Grid& grid, const DrainedPlanet& drainage) {
   check_shapes(grid, drainage);
   std::vector<float> length(grid.size(), 0.0F);
   for (const Index c : downstream_order(drainage.receiver)) {
@@ -59,7 +59,7 @@ std::vector<float> longest_upstream_m(const Grid& grid, const DrainedPlanet& dra
 }
 
 double hack_exponent(const Grid& grid, const DrainedPlanet& drainage, double least_area_m2) {
-  const auto length = longest_upstream_m(grid, drainage);
+  const auto length = flow_length_m(grid, drainage);
   std::vector<double> log_area, log_length;
   for (Index c = 0; c < grid.size(); ++c) {
     if (!(drainage.area_m2[c] >= least_area_m2) || !is_mouth(drainage, c)) continue;

@@ -7,7 +7,7 @@
 #include "geo/core/error.hpp"
 #include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/numerics/diffusion.hpp"
-#include "geo/kernels/remapping/overlay.hpp"
+#include "geo/kernels/remapping/conservative_remapping.hpp"
 
 namespace geo {
 namespace {
@@ -45,7 +45,7 @@ void smooth_broadly(const Grid& grid, std::span<float> field, double length_m) {
     return smooth(grid, field, length_m);
   }
   const Grid coarse = coarser_grid(grid, spacing_m);
-  const Overlay overlay(grid, coarse);
+  const ConservativeRemapping overlay(grid, coarse);
   std::vector<float> mean(coarse.size());
   overlay.average(field, mean);
   // A box of one cell, and a spline of four.

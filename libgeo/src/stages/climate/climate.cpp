@@ -16,7 +16,7 @@
 #include "geo/kernels/climate/orography.hpp"
 #include "geo/kernels/noise/noise.hpp"
 #include "geo/kernels/numerics/area_sum.hpp"
-#include "geo/kernels/remapping/overlay.hpp"
+#include "geo/kernels/remapping/conservative_remapping.hpp"
 #include "geo/kernels/water/water_balance.hpp"
 
 namespace geo {
@@ -139,7 +139,7 @@ void close_rain(const Grid& grid, double precipitation_m3_s, std::span<float> ra
 /// Interpolated fields of the coarse planet along one row of the stage's grid.
 class PlanetRows {
  public:
-  PlanetRows(const Overlay& overlay, const SeasonalFields& fields)
+  PlanetRows(const ConservativeRemapping& overlay, const SeasonalFields& fields)
       : temperature(overlay, fields.temperature_c),
         harmonic_cos(overlay, fields.harmonic_cos_k),
         harmonic_sin(overlay, fields.harmonic_sin_k),
@@ -197,7 +197,7 @@ float clearness(float humidity) {
   return (0.25F + 0.5F * sunshine) / 0.5F;
 }
 
-/// Potential evaporation of Oudin et al. (2005) over the year along one row.
+/// Potential evapotranspiration of Oudin et al. (2005) over the year along one row.
 void add_up_evaporation(double latitude_deg, const SeasonalClimate& model,
                         std::span<const float> temperature, std::span<const float> cosine,
                         std::span<const float> sine, std::span<const float> humidity,

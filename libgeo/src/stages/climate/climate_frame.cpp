@@ -62,7 +62,7 @@ ClimateFrame::ClimateFrame(const Grid& grid, const ClimateParameters& parameters
   relief_ = std::make_unique<Grid>(coarser_grid(
       grid, grid.topology() == Topology::sphere ? relief_m : std::min(relief_m, extent_m / 64.0)));
   planet_latitude_deg_ = row_latitudes(*planet_, parameters.latitude_deg, radius_m);
-  on_relief_ = std::make_unique<Overlay>(grid, *relief_);
+  on_relief_ = std::make_unique<ConservativeRemapping>(grid, *relief_);
   if (grid.topology() == Topology::plane) {
     // The relief grid spans the same rows: its latitudes lie evenly between theirs.
     const auto edges = edges_between(latitude_deg_);
@@ -78,12 +78,13 @@ ClimateFrame::ClimateFrame(const Grid& grid, const ClimateParameters& parameters
     for (int i = 1; i <= relief_->nx(); ++i) {
       relief_columns.push_back(longitudes.front() + i * step_east);
     }
-    on_planet_ = std::make_unique<Overlay>(grid, *planet_, edges, longitudes);
-    relief_on_planet_ = std::make_unique<Overlay>(*relief_, *planet_, relief_rows, relief_columns);
+    on_planet_ = std::make_unique<ConservativeRemapping>(grid, *planet_, edges, longitudes);
+    relief_on_planet_ =
+        std::make_unique<ConservativeRemapping>(*relief_, *planet_, relief_rows, relief_columns);
   } else {
     relief_latitude_deg_ = row_latitudes(*relief_, parameters.latitude_deg, radius_m);
-    on_planet_ = std::make_unique<Overlay>(grid, *planet_);
-    relief_on_planet_ = std::make_unique<Overlay>(*relief_, *planet_);
+    on_planet_ = std::make_unique<ConservativeRemapping>(grid, *planet_);
+    relief_on_planet_ = std::make_unique<ConservativeRemapping>(*relief_, *planet_);
   }
 }
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "geo/core/grid.hpp"
-#include "geo/kernels/remapping/overlay.hpp"
+#include "geo/kernels/remapping/conservative_remapping.hpp"
 #include "geo/stages/climate/climate.hpp"
 
 namespace geo {
@@ -20,10 +20,10 @@ class ClimateFrame {
 
   [[nodiscard]] const Grid& planet() const { return *planet_; }
   [[nodiscard]] const Grid& relief() const { return *relief_; }
-  [[nodiscard]] const Overlay& on_planet() const { return *on_planet_; }
-  [[nodiscard]] const Overlay& on_relief() const { return *on_relief_; }
+  [[nodiscard]] const ConservativeRemapping& on_planet() const { return *on_planet_; }
+  [[nodiscard]] const ConservativeRemapping& on_relief() const { return *on_relief_; }
   /// From the relief grid to the planet.
-  [[nodiscard]] const Overlay& relief_on_planet() const { return *relief_on_planet_; }
+  [[nodiscard]] const ConservativeRemapping& relief_on_planet() const { return *relief_on_planet_; }
   [[nodiscard]] std::span<const double> latitudes_deg() const { return latitude_deg_; }
   [[nodiscard]] std::span<const double> planet_latitudes_deg() const {
     return planet_latitude_deg_;
@@ -43,7 +43,7 @@ class ClimateFrame {
 
   bool edge_continues_;
   std::unique_ptr<Grid> planet_, relief_;
-  std::unique_ptr<Overlay> on_planet_, on_relief_, relief_on_planet_;
+  std::unique_ptr<ConservativeRemapping> on_planet_, on_relief_, relief_on_planet_;
   std::vector<double> latitude_deg_, planet_latitude_deg_, relief_latitude_deg_;
 };
 

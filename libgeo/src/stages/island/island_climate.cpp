@@ -11,14 +11,14 @@
 #include "geo/kernels/climate/orography.hpp"
 #include "geo/kernels/numerics/smoothing.hpp"
 #include "geo/kernels/remapping/catmull_rom.hpp"
-#include "geo/kernels/remapping/overlay.hpp"
+#include "geo/kernels/remapping/conservative_remapping.hpp"
 
 namespace geo {
 namespace {
 
 constexpr double kRadians = std::numbers::pi / 180.0;
 
-/// Sum over the year of the warmth that potential evaporation grows with, T + 5 degC where
+/// Sum over the year of the warmth that potential evapotranspiration grows with, T + 5 degC where
 /// positive, for a harmonic year.
 double evaporating_warmth(double mean_c, double range_k) {
   constexpr int kSteps = 12;
@@ -64,7 +64,7 @@ Grid air_grid(const Grid& fine, double spacing_m) {
 }
 
 /// How much higher the fine relief lifts the air than the interpolated one, m, on the air grid.
-std::vector<float> extra_lift(const Grid& fine, const Overlay& overlay,
+std::vector<float> extra_lift(const Grid& fine, const ConservativeRemapping& overlay,
                               const IslandHeights& heights, std::span<const float> wind_east,
                               std::span<const float> wind_north, double reach_m) {
   const Grid& air = overlay.coarse();
@@ -245,7 +245,7 @@ void island_climate(const PlanetCells& cells, const ClimateParameters& climate,
 
   const double reach_m = 1000.0 * p.lift_reach_km;
   const Grid air = air_grid(fine, std::max(0.2 * reach_m, p.cell_m));
-  const Overlay overlay(fine, air);
+  const ConservativeRemapping overlay(fine, air);
   const auto lift = extra_lift(fine, overlay, heights, to.wind_east, to.wind_north, reach_m);
   const Interpolator lift_of(overlay, lift);
   ParallelErrors errors;

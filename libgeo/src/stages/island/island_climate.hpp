@@ -38,8 +38,8 @@ struct IslandAir {
 /// fine relief less that of the interpolated one (`upwind_lift`), so that both join at the edge.
 /// With the blueprint's climate, what wind and relief add (5.5-5.8) is interpolated, with 5.7 of
 /// the lift difference, and eq. 5.10 holds at the island's own heights and distances to the coast.
-/// Potential evaporation: interpolated, in proportion to what the formula of Oudin et al. (2005)
-/// makes of the change in temperature. Distance to the coast: on the fine grid as far as it
+/// Potential evapotranspiration: interpolated, in proportion to what the formula of Oudin et al.
+/// (2005) makes of the change in temperature. Distance to the coast: on the fine grid as far as it
 /// reaches, the planet's beyond. Seasons and winds: interpolated.
 void island_climate(const PlanetCells& cells, const ClimateParameters& climate,
                     const IslandAir& air, const IslandParameters& p, const IslandHeights& heights,

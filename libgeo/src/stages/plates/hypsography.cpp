@@ -11,8 +11,8 @@
 #include "geo/kernels/crust/ocean_depth.hpp"
 #include "geo/kernels/noise/great_circles.hpp"
 #include "geo/kernels/noise/noise_row.hpp"
+#include "geo/kernels/numerics/quantile_mapping.hpp"
 #include "geo/kernels/numerics/quantiles.hpp"
-#include "geo/kernels/numerics/rank_match.hpp"
 #include "geo/kernels/numerics/smoothing.hpp"
 
 namespace geo {
@@ -168,7 +168,7 @@ void match(const Grid& grid, const Hypsography& target, std::span<float> rank) {
   add(high, height_at(target, high));
   add(1.0 - kMore * last, target.elevation_m.back());
   add(1.0, target.elevation_m.back());
-  rank_match(grid, {fraction, value}, rank);
+  map_quantiles(grid, {fraction, value}, rank);
 }
 
 /// The field of the grid at a place, from the cell that holds it.
@@ -184,9 +184,9 @@ float seen_at(const Grid& grid, std::span<const float> values, const Vector3& pl
 
 std::vector<Parameter> hypsography_parameters(PlatesParameters& p) {
   return {
-      choice("plates.first_relief", p.first_relief, {"noise", "hypsography", "given"},
+      choice("plates.initial_elevation", p.initial_elevation, {"noise", "hypsography", "given"},
              "sphere: the first continents from noise, the first crust as the model hypsography "
-             "has it, or the relief of fields.first_relief",
+             "has it, or the relief of fields.initial_elevation",
              "davidson2013"),
       choice("plates.ranking", p.ranking.by, {"great-circles", "fbm"},
              "hypsography: the noise that orders places by height, unless fields.ranking does",

@@ -178,7 +178,8 @@ std::vector<Parameter> PlatesParameters::declarations() {
       real("plates.force_response_myr", sphere.force.response_myr, "Myr", 0.01, 1000.0,
            "sphere: time in which motion follows the forces", "design"),
       real("plates.penetration_km", sphere.penetration_km, "km", 0.0, 5000.0,
-           "sphere: how far continents go below each other before they collide", "cortial2019"),
+           "sphere: how far one continent is thrust below another before they collide",
+           "cortial2019"),
       real("plates.suture_drag", sphere.suture_drag, "1", 0.0, 1e6,
            "sphere: drag between continents of which one has gone below the other, over that of "
            "the mantle below a plate; 0: they do not slow each other",
@@ -263,14 +264,14 @@ std::vector<Parameter> PlatesParameters::declarations() {
            "sphere: time in which they come to it; 0: at once", "brune2016"),
       real("plates.rift_warp_km", sphere.rift_warp_km, "km", 0.0, 5000.0,
            "sphere: how far the borders of fragments are warped", "cortial2019"),
-      real("plates.foundering_myr", sphere.founder_per_myr, "Myr-1", 0.0, 1.0,
+      real("plates.subduction_initiation_myr", sphere.initiation_per_myr, "Myr-1", 0.0, 1.0,
            "sphere: rate at which each 1000 km of a passive margin with old floor become a "
            "subduction zone",
            "bradley2008"),
-      real("plates.foundering_age_myr", sphere.founder_age_myr, "Myr", 0.0, 5000.0,
+      real("plates.subduction_initiation_age_myr", sphere.initiation_age_myr, "Myr", 0.0, 5000.0,
            "sphere: age from which floor at a passive margin is so old", "bradley2008"),
-      real("plates.foundering_speed_mm_yr", sphere.founder_speed_mm_yr, "mm yr-1", 0.0, 1000.0,
-           "sphere: speed at which floor that founders begins to go below its continent",
+      real("plates.subduction_initiation_speed_mm_yr", sphere.initiation_speed_mm_yr, "mm yr-1",
+           0.0, 1000.0, "sphere: speed at which floor begins to subduct below its own continent",
            "stern2004"),
       real("plates.coast_warp_km", sphere.coast_warp_km, "km", 0.0, 2000.0,
            "sphere: how far the outline of crust that an event changes is warped, of a circle a "
@@ -303,15 +304,15 @@ class PlatesStage final : public Stage {
     if (parameters_.model == "growth") return kSeen;
     if (parameters_.model == "raster") return kRaster;
     if (parameters_.model == "hypsography") return kFollowing;
-    return parameters_.first_relief == "hypsography" ? kStarting : kDrifting;
+    return parameters_.initial_elevation == "hypsography" ? kStarting : kDrifting;
   }
   [[nodiscard]] std::vector<Parameter> parameters() override { return parameters_.declarations(); }
 
   void run(StageIo& io, Context& context) const override {
     if (parameters_.model == "sphere") return drift(parameters_, info(), io, context);
-    if (!context.plates.empty() || context.first_relief) {
+    if (!context.plates.empty() || context.initial_elevation) {
       context.warnings.push_back(
-          "fields.plates and fields.first_relief are for plates.model = sphere: not used");
+          "fields.plates and fields.initial_elevation are for plates.model = sphere: not used");
     }
     if (parameters_.model == "hypsography") return draw_hypsography(parameters_, io, context);
     if (parameters_.model == "raster") return collide_rasters(parameters_, io, context);

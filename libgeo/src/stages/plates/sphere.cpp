@@ -9,8 +9,8 @@
 
 #include "geo/core/error.hpp"
 #include "geo/kernels/plates/sphere/sphere_start.hpp"
-#include "sphere_beginning.hpp"
 #include "sphere_checkpoint.hpp"
+#include "sphere_initial_conditions.hpp"
 #include "sphere_on_grid.hpp"
 #include "sphere_timeline.hpp"
 
@@ -47,7 +47,7 @@ void name_plates(StepTable& steps) {
 }
 
 /// Sums over the whole drift.
-class Books {
+class MassBalance {
  public:
   void enter(const SphereBudget& step) {
     created_ += step.created_km2;
@@ -64,17 +64,35 @@ class Books {
     resampling_ += step.resampling_km3;
     collisions_ += step.collisions;
     rifts_ += step.rifts;
-    founderings_ += step.founderings;
+    subduction_initiations_ += step.subduction_initiations;
     if (first_km3_ < 0.0) first_km3_ = step.continental_km3 - change(step);
     last_ = step;
   }
   /// What a step is told by, before the areas of its plates.
   static std::vector<std::string> columns() {
-    return {"time_myr",      "plates",          "resampled",  "collisions",     "rifts",
-            "created_km2",   "consumed_km2",    "buried_km2", "emerged_km2",    "stretched_km2",
-            "accreted_km3",  "continental_km3", "raised_km3", "eroded_km3",     "emerged_km3",
-            "swallowed_km3", "changed_km3",     "lost_km3",   "resampling_km3", "deposited_km3",
-            "sea_floor_km3", "erupted_km3",     "founderings"};
+    return {"time_myr",
+            "plates",
+            "resampled",
+            "collisions",
+            "rifts",
+            "created_km2",
+            "consumed_km2",
+            "buried_km2",
+            "emerged_km2",
+            "stretched_km2",
+            "accreted_km3",
+            "continental_km3",
+            "raised_km3",
+            "eroded_km3",
+            "emerged_km3",
+            "swallowed_km3",
+            "changed_km3",
+            "lost_km3",
+            "resampling_km3",
+            "deposited_km3",
+            "sea_floor_km3",
+            "erupted_km3",
+            "subduction_initiations"};
   }
   static std::vector<double> row(const SphereTectonics& model) {
     const SphereBudget& b = model.budget();
@@ -100,7 +118,7 @@ class Books {
                             b.deposited_km3,
                             b.sea_floor_km3,
                             b.erupted_km3,
-                            static_cast<double>(b.founderings)};
+                            static_cast<double>(b.subduction_initiations)};
     // By the numbers of plates, which outlast the places where the model keeps them.
     const SphereState& state = model.state();
     const std::vector<double> area_km2 = model.plate_areas_km2();
@@ -120,7 +138,7 @@ class Books {
     budget["crust_emerged_km2"] = emerged_;
     budget["collisions"] = collisions_;
     budget["rifts"] = rifts_;
-    budget["founderings"] = founderings_;
+    budget["subduction_initiations"] = subduction_initiations_;
     budget["continental_start_km3"] = first_km3_;
     budget["continental_end_km3"] = last_.continental_km3;
     budget["continental_raised_km3"] = raised_;
@@ -147,7 +165,7 @@ class Books {
   double raised_ = 0.0, eroded_ = 0.0, emerged_km3_ = 0.0, changed_ = 0.0, lost_ = 0.0;
   double resampling_ = 0.0;
   double first_km3_ = -1.0;
-  int collisions_ = 0, rifts_ = 0, founderings_ = 0;
+  int collisions_ = 0, rifts_ = 0, subduction_initiations_ = 0;
   SphereBudget last_;
 };
 
@@ -182,7 +200,7 @@ std::string_view word_for(SphereEvent::Kind kind) {
       return "continental-collision";
     case SphereEvent::Kind::rift:
       return "plate-rifting";
-    case SphereEvent::Kind::foundering:
+    case SphereEvent::Kind::subduction_initiation:
       return "subduction-initiation";
   }
   return "";
@@ -212,8 +230,8 @@ std::string_view word_for(PlateLife::Origin origin) {
       return "first";
     case PlateLife::Origin::rift:
       return "rift";
-    case PlateLife::Origin::foundering:
-      return "foundering";
+    case PlateLife::Origin::subduction_initiation:
+      return "subduction-initiation";
     case PlateLife::Origin::piece:
       return "piece";
     case PlateLife::Origin::terrane:
@@ -280,8 +298,8 @@ void drift(const PlatesParameters& parameters, const StageInfo& info, StageIo& i
     if (settings.no_net_rotation) model.subtract_net_rotation();
     if (settings.hold_motions) model.hold_motions();
   }
-  Books books;
-  context.steps.columns = Books::columns();
+  MassBalance balance;
+  context.steps.columns = MassBalance::columns();
   const auto steps = std::lround(parameters.time_myr / settings.law.step_myr);
   const bool shows = context.on_frame && parameters.frames_myr > 0.0;
   // Frames that are due after so many steps: each multiple of the interval is shown by the step
@@ -297,19 +315,19 @@ void drift(const PlatesParameters& parameters, const StageInfo& info, StageIo& i
     model.begin_step();
     strike_plates(io.grid(), from_myr, from_myr + settings.law.step_myr, model, context);
     model.advance();
-    books.enter(model.budget());
-    context.steps.rows.push_back(Books::row(model));
+    balance.enter(model.budget());
+    context.steps.rows.push_back(MassBalance::row(model));
     if (shows && frames_due(k + 1) > frames_due(k)) {
       show(parameters, model, info, io.grid(), context);
     }
   }
   context.advance(0.9);
   finish_to_be_seen(model);
-  books.enter(model.budget());
+  balance.enter(model.budget());
   name_plates(context.steps);
   context.tables.push_back(lives_of(model.state()));
   warn_of_later_events(model.state().time_myr, context);
-  books.close(context.budget);
+  balance.close(context.budget);
   tell(model, io.grid(), context);
   SphereOnGrid(parameters, model, io, context).draw(io);
 }

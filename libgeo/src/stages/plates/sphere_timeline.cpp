@@ -9,7 +9,7 @@
 #include "geo/kernels/plates/great_circle_line.hpp"
 #include "geo/kernels/plates/plate_motion.hpp"
 #include "geo/kernels/plates/region_outline.hpp"
-#include "sphere_beginning.hpp"
+#include "sphere_initial_conditions.hpp"
 
 namespace geo {
 namespace {

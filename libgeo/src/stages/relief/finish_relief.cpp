@@ -8,7 +8,7 @@
 #include "geo/core/error.hpp"
 #include "geo/kernels/landscape/hypsometric_curve.hpp"
 #include "geo/kernels/noise/noise.hpp"
-#include "geo/kernels/numerics/rank_match.hpp"
+#include "geo/kernels/numerics/quantile_mapping.hpp"
 #include "geo/kernels/numerics/smoothing.hpp"
 #include "geo/stages/relief/sea_level.hpp"
 
@@ -53,7 +53,7 @@ bool ReliefFinish::reshape(std::span<float> elevation_m) const {
     if (target.fraction.empty()) {
       throw ConfigurationError("erosion.hypsometry = rank needs fields.hypsography");
     }
-    rank_match(grid_, {target.fraction, target.elevation_m}, elevation_m);
+    map_quantiles(grid_, {target.fraction, target.elevation_m}, elevation_m);
     // The curve's zero is the sea's, unless a volume of water fills what now are its basins.
     if (context_.planet.sea_level == "volume") settle_sea();
   }

@@ -33,10 +33,10 @@ struct RunSettings {
   std::string uplift_rate;  ///< FILE[:VARIABLE]
   std::string hypsography = "earth";
   std::string hypsography_ocean = "planet";
-  std::string ranking;       ///< FILE[:VARIABLE]
-  std::string plates;        ///< "earth" or a file
-  std::string first_relief;  ///< FILE[:VARIABLE]
-  std::string first_age;     ///< FILE[:VARIABLE]
+  std::string ranking;            ///< FILE[:VARIABLE]
+  std::string plates;             ///< "earth" or a file
+  std::string initial_elevation;  ///< FILE[:VARIABLE]
+  std::string initial_age;        ///< FILE[:VARIABLE]
   std::string start_frame;
   std::string exemplars;  ///< folder
 

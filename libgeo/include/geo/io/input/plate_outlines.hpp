@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "geo/core/beginning.hpp"
+#include "geo/core/initial_conditions.hpp"
 
 namespace geo::io {
 

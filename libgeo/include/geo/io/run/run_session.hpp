@@ -90,10 +90,10 @@ class RunSession {
   void begin_with_bare_planet();
   void read_initial_relief();
   void read_given_fields();
-  void read_beginning();
+  void read_initial_conditions();
   void read_given_exemplars();
   void find_exemplars();
-  void refuse_beginning() const;
+  void refuse_initial_conditions() const;
   [[nodiscard]] Hypsography hypsography() const;
   [[nodiscard]] bool follows_hypsography() const;
   [[nodiscard]] Planet planet_with_sea() const;
@@ -132,7 +132,7 @@ class RunSession {
   std::optional<State> state_;
   FieldsAtHand at_hand_;
   std::vector<PlateOutline> plates_;
-  std::shared_ptr<const GivenRelief> first_relief_;
+  std::shared_ptr<const GivenRelief> initial_elevation_;
   std::shared_ptr<const ExemplarLibrary> exemplars_, planet_exemplars_;
   std::vector<std::string> warnings_;  ///< of what was given
 };

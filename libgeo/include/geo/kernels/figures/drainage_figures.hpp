@@ -17,7 +17,7 @@ struct DrainedPlanet {
 
 /// Length of the longest way of water to each cell from upstream, m: centre to centre along
 /// receivers. Sea cells end ways. Throws Bug on a cycle. Cost: linear.
-std::vector<float> longest_upstream_m(const Grid& grid, const DrainedPlanet& drainage);
+std::vector<float> flow_length_m(const Grid& grid, const DrainedPlanet& drainage);
 
 /// Exponent h of L ~ A^h (Hack 1957) over the basins that drain at least `least_area_m2`, each
 /// once, at its mouth (the last land cell), by least squares in logarithms. NaN when there are

@@ -28,7 +28,7 @@ struct RiverLaw {
   double load = 0.35;          ///< by which the sea floor rises for each metre laid on it
 };
 
-/// The ways of water on land. Sea is what lies below 0.
+/// Drainage on land. Sea is what lies below 0.
 struct SurfaceRivers {
   static constexpr std::int32_t kOpen = -1;  ///< water goes where no place stands for the sea
   static constexpr std::int32_t kSink = -2;  ///< the lowest place of land that no sea borders

@@ -9,8 +9,8 @@ namespace geo {
 
 inline constexpr double kSecondsPerYear = 365.25 * 86400.0;
 
-/// Evaporation from land, mm/yr, of a climate with precipitation P and potential evaporation PET:
-/// Budyko's share of P (see evaporation.hpp). Never above P or PET.
+/// Evaporation from land, mm/yr, of a climate with precipitation P and potential evapotranspiration
+/// PET: Budyko's share of P (see evaporation.hpp). Never above P or PET.
 double land_evaporation(double precipitation_mm_yr, double potential_mm_yr);
 
 /// Sums of a water balance over land, m3/s.

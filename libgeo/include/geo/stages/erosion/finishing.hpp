@@ -17,13 +17,13 @@ namespace geo {
 
 /// Noise that breaks the coherence of channels (blueprint 4.5a). Returns whether there was any.
 template <class V>
-bool inject_noise(const ErosionParameters& p, const Lift<V>& lift, const Grid& grid,
+bool inject_noise(const ErosionParameters& p, const ActiveVariables<V>& active, const Grid& grid,
                   std::uint64_t seed, std::span<V> elevation_m) {
   if (p.noise_injection_m <= 0.0) return false;
   constexpr double kFrequency = 48.0;
   constexpr float kLowest_m = 0.5F;
   const Noise noise(seed, "erosion.injected");
-  const V amplitude(lift(p.noise_injection_m));
+  const V amplitude(active(p.noise_injection_m));
 #pragma omp parallel for schedule(dynamic, 4)
   for (int j = 0; j < grid.ny(); ++j) {
     for (int i = 0; i < grid.nx(); ++i) {
@@ -44,8 +44,8 @@ bool inject_noise(const ErosionParameters& p, const Lift<V>& lift, const Grid& g
 /// extrapolated from two steps (Richardson's way) over which the finest waves hardly move: right to
 /// about 1e-4.
 template <class V>
-bool warp(const ErosionParameters& p, const Lift<V>& lift, const Grid& grid, std::uint64_t seed,
-          std::span<V> elevation_m) {
+bool warp(const ErosionParameters& p, const ActiveVariables<V>& active, const Grid& grid,
+          std::uint64_t seed, std::span<V> elevation_m) {
   using Number = Arithmetic<V>;
   if (p.warping_m <= 0.0 || p.steps == 0) return false;
   // Shores keep their place: the warping sets in with height.
@@ -53,9 +53,9 @@ bool warp(const ErosionParameters& p, const Lift<V>& lift, const Grid& grid, std
   constexpr float kFull_m = 150.0F;
   const Noise noise(seed, "erosion.warping");
   const double radius_km = 1e-3 * grid.figure().radius_m;
-  const Number wavelength_km = lift(p.warping_km);
+  const Number wavelength_km = active(p.warping_km);
   const bool wavelength_matters = carries_derivative(wavelength_km);
-  const V amplitude(lift(p.warping_m) / kDeviation);
+  const V amplitude(active(p.warping_m) / kDeviation);
   ParallelErrors errors;
 #pragma omp parallel
   {

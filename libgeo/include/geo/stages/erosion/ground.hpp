@@ -28,12 +28,12 @@ namespace geo {
 /// Rock uplift over the belts of deformation (Tectonica blueprint 4.5), m yr-1, added to a field.
 /// `faster`: speed_factor.
 template <class V>
-void add_belt_uplift(const ErosionParameters& p, const Lift<V>& lift, std::span<const V> convergent,
-                     std::span<const V> divergent, std::span<const V> transform, double faster,
-                     std::span<V> uplift_m_yr) {
-  const V closing(1e-3 * faster * lift(p.convergent_uplift_mm_yr));
-  const V opening(1e-3 * faster * lift(p.divergent_uplift_mm_yr));
-  const V shearing(1e-3 * faster * lift(p.transform_uplift_mm_yr));
+void add_belt_uplift(const ErosionParameters& p, const ActiveVariables<V>& active,
+                     std::span<const V> convergent, std::span<const V> divergent,
+                     std::span<const V> transform, double faster, std::span<V> uplift_m_yr) {
+  const V closing(1e-3 * faster * active(p.convergent_uplift_mm_yr));
+  const V opening(1e-3 * faster * active(p.divergent_uplift_mm_yr));
+  const V shearing(1e-3 * faster * active(p.transform_uplift_mm_yr));
 #pragma omp parallel for schedule(static)
   for (std::size_t cell = 0; cell < uplift_m_yr.size(); ++cell) {
     uplift_m_yr[cell] +=
@@ -44,12 +44,12 @@ void add_belt_uplift(const ErosionParameters& p, const Lift<V>& lift, std::span<
 /// Rock uplift on the cells of plate boundaries alone, m yr-1, added to a field. `faster`:
 /// speed_factor.
 template <class V>
-void add_boundary_uplift(const ErosionParameters& p, const Lift<V>& lift,
+void add_boundary_uplift(const ErosionParameters& p, const ActiveVariables<V>& active,
                          std::span<const std::int8_t> type, std::span<const float> strength,
                          double faster, std::span<V> uplift_m_yr) {
-  const std::array<V, 4> rate{V(0.0F), V(1e-3 * faster * lift(p.convergent_uplift_mm_yr)),
-                              V(1e-3 * faster * lift(p.divergent_uplift_mm_yr)),
-                              V(1e-3 * faster * lift(p.transform_uplift_mm_yr))};
+  const std::array<V, 4> rate{V(0.0F), V(1e-3 * faster * active(p.convergent_uplift_mm_yr)),
+                              V(1e-3 * faster * active(p.divergent_uplift_mm_yr)),
+                              V(1e-3 * faster * active(p.transform_uplift_mm_yr))};
 #pragma omp parallel for schedule(static)
   for (std::size_t cell = 0; cell < uplift_m_yr.size(); ++cell) {
     uplift_m_yr[cell] += rate[type[cell]] * V(strength[cell]);
@@ -61,16 +61,16 @@ void add_boundary_uplift(const ErosionParameters& p, const Lift<V>& lift,
 /// larger cells lacks it, so its rivers must be steeper by as much for the mean height of the land
 /// to be the same.
 template <class V>
-std::vector<V> resolved_erodibility(const ErosionParameters& p, const Lift<V>& lift,
+std::vector<V> resolved_erodibility(const ErosionParameters& p, const ActiveVariables<V>& active,
                                     const Grid& grid, std::span<const float> given) {
   using std::pow;
-  const V scale(lift(p.erodibility_factor)), everywhere(lift(p.erodibility_yr));
+  const V scale(active(p.erodibility_factor)), everywhere(active(p.erodibility_yr));
   std::vector<V> resolved(grid.size());
 #pragma omp parallel for schedule(static)
   for (int j = 0; j < grid.ny(); ++j) {
     const double cell_km = 1e-3 * valley_width_m(grid, j);
-    const V factor(pow(Arithmetic<V>(cell_km / lift(p.reference_cell_km)),
-                       Arithmetic<V>(-lift(p.subgrid_exponent))));
+    const V factor(pow(Arithmetic<V>(cell_km / active(p.reference_cell_km)),
+                       Arithmetic<V>(-active(p.subgrid_exponent))));
     for (Index cell = grid.cell(0, j); cell < grid.cell(0, j) + grid.nx(); ++cell) {
       resolved[cell] = factor * (given.empty() ? everywhere : V(scale * V(given[cell])));
     }

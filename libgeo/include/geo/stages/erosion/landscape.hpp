@@ -32,11 +32,11 @@ class Landscape {
   using Number = Arithmetic<V>;
 
   /// `outlets`: find_outlets of the relief. `erodibility`: resolved for this grid, one per cell.
-  Landscape(const ErosionParameters& parameters, const Lift<V>& lift, const Grid& grid,
+  Landscape(const ErosionParameters& parameters, const ActiveVariables<V>& active, const Grid& grid,
             std::span<V> elevation_m, std::span<const V> uplift_m_yr,
             std::span<const V> erodibility, std::vector<std::uint8_t> outlets)
       : p_(parameters),
-        lift_(lift),
+        lift_(active),
         grid_(grid),
         z_(elevation_m),
         uplift_m_yr_(uplift_m_yr),
@@ -162,7 +162,7 @@ class Landscape {
   }
 
   const ErosionParameters& p_;
-  Lift<V> lift_;
+  ActiveVariables<V> lift_;
   const Grid& grid_;
   std::span<V> z_;
   std::span<const V> uplift_m_yr_;

@@ -27,9 +27,9 @@ struct HydrologyParameters {
   [[nodiscard]] std::vector<Parameter> declarations();
 };
 
-/// Where the rain goes: runoff after Budyko (1974), routing over a relief freed of the false dams
-/// of its resolution, lakes and endorheic basins by the steady water balance, discharge,
-/// valleys carved by rivers (Leopold & Maddock 1953), basins and stream orders.
+/// Where the rain goes: runoff after Budyko (1974), routing over a DEM freed of spurious
+/// depressions of its resolution, lakes and endorheic basins by the steady water balance,
+/// discharge, valleys carved by rivers (Leopold & Maddock 1953), basins and stream orders.
 ///
 /// With `rivers = "area"` rivers show and carve by their drainage area, as in the Tectonica
 /// blueprint: by 6.4 and 6.5, with the discharge of one runoff everywhere (6.6a).

@@ -6,7 +6,7 @@
 
 #include "geo/kernels/numerics/shapes.hpp"
 #include "geo/stages/isostasy/deformation.hpp"
-#include "geo/stages/isostasy/swell.hpp"
+#include "geo/stages/isostasy/unit_noise.hpp"
 
 namespace geo {
 
@@ -56,29 +56,29 @@ void cut_sections(const Crust<V>& crust, const CoarseGrid& coarse, const Tectoni
                   Tectonics<V>& t) {
   const IsostasyParameters& p = crust.parameters;
   const Grid& grid = coarse.grid();
-  const auto swell_of = [&](std::string_view stream, double wavelength_km, int octaves,
-                            double gain) {
-    return Swell(grid, crust.seed, stream, wavelength_km, octaves, gain, crust.noise);
+  const auto unit_noise = [&](std::string_view stream, double wavelength_km, int octaves,
+                              double gain) {
+    return UnitNoise(grid, crust.seed, stream, wavelength_km, octaves, gain, crust.noise);
   };
-  const Swell along = swell_of("isostasy.belts", 1100.0, 3, 0.6);
-  const Swell shift = swell_of("isostasy.belt_shift", 700.0, 3, 0.6);
-  const Swell noise = swell_of("isostasy.thickness", 3200.0, 4, 0.55);
-  const Swell swell = swell_of("isostasy.swells", 2600.0, 5, 0.6);
-  const Swell floor = swell_of("isostasy.ocean_swells", 2800.0, 4, 0.55);
-  const Swell suture = swell_of("isostasy.sutures", 4200.0, 4, 0.5);
-  const Swell worn = swell_of("isostasy.worn", 2000.0, 3, 0.6);
+  const UnitNoise along = unit_noise("isostasy.belts", 1100.0, 3, 0.6);
+  const UnitNoise shift = unit_noise("isostasy.belt_shift", 700.0, 3, 0.6);
+  const UnitNoise noise = unit_noise("isostasy.thickness", 3200.0, 4, 0.55);
+  const UnitNoise mantle_swell = unit_noise("isostasy.swells", 2600.0, 5, 0.6);
+  const UnitNoise floor = unit_noise("isostasy.ocean_swells", 2800.0, 4, 0.55);
+  const UnitNoise suture = unit_noise("isostasy.sutures", 4200.0, 4, 0.5);
+  const UnitNoise worn = unit_noise("isostasy.worn", 2000.0, 3, 0.6);
   for (auto* field : {&t.thickening, &t.arc, &t.trench_m, &t.thickness_noise_km, &t.swell_m}) {
     field->assign(grid.size(), V(0.0F));
   }
   t.ocean_swell.resize(grid.size());
   t.relict.resize(grid.size());
-  const Arithmetic<V> thickness_noise_km = crust.lift(p.thickness_noise_km);
-  const Arithmetic<V> swell_m = crust.lift(p.swell_m);
-  const Arithmetic<V> trenches = crust.lift(p.trench_depth_m) / kDeepestTrench_m;
+  const Arithmetic<V> thickness_noise_km = crust.active(p.thickness_noise_km);
+  const Arithmetic<V> swell_m = crust.active(p.swell_m);
+  const Arithmetic<V> trenches = crust.active(p.trench_depth_m) / kDeepestTrench_m;
 #pragma omp parallel
   {
     NoiseRow row(grid);
-    Swell::Line alongs(along, grid.nx()), shifts(shift, grid.nx()), noises(noise, grid.nx()),
+    UnitNoise::Line alongs(along, grid.nx()), shifts(shift, grid.nx()), noises(noise, grid.nx()),
         swells(swell, grid.nx()), floors(floor, grid.nx()), sutures(suture, grid.nx()),
         worns(worn, grid.nx());
 #pragma omp for schedule(dynamic, 8)
@@ -105,7 +105,7 @@ void cut_sections(const Crust<V>& crust, const CoarseGrid& coarse, const Tectoni
       }
     }
   }
-  const Arithmetic<V> smoothing_km = crust.lift(p.deformation_smoothing_km);
+  const Arithmetic<V> smoothing_km = crust.active(p.deformation_smoothing_km);
   soften_far_edges<V>(grid, frame.margins, 2e3 * smoothing_km, t.thickening);
   blur(grid, t.arc, 0.7e3 * smoothing_km);
   blur(grid, t.trench_m, 0.6e3 * smoothing_km);

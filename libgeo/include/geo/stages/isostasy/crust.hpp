@@ -6,7 +6,7 @@
 #include "geo/core/stage.hpp"
 #include "geo/kernels/crust/airy.hpp"
 #include "geo/stages/isostasy/isostasy.hpp"
-#include "geo/stages/isostasy/swell.hpp"
+#include "geo/stages/isostasy/unit_noise.hpp"
 
 namespace geo {
 
@@ -36,21 +36,21 @@ struct Crust {
   std::span<float> erodibility;
   std::span<V> elevation_m;
 
-  Lift<V> lift = {};
+  ActiveVariables<V> active = {};
   NoiseStore* noise = nullptr;  ///< keeps noise for further planets of this seed and grid
 
   [[nodiscard]] double radius_km() const { return 1e-3 * grid.figure().radius_m; }
   [[nodiscard]] BasicColumnDensities<Arithmetic<V>> densities() const {
     const ColumnDensities& d = parameters.density;
-    return {lift(d.mantle), lift(d.continental_crust), lift(d.oceanic_crust), lift(d.water),
-            lift(d.sediment)};
+    return {active(d.mantle), active(d.continental_crust), active(d.oceanic_crust), active(d.water),
+            active(d.sediment)};
   }
   [[nodiscard]] BasicAiryDatum<Arithmetic<V>> datum() const {
     return BasicAiryDatum<Arithmetic<V>>(densities());
   }
-  [[nodiscard]] Swell swell(std::string_view stream, double wavelength_km, int octaves,
-                            double gain) const {
-    return Swell(grid, seed, stream, wavelength_km, octaves, gain, noise);
+  [[nodiscard]] UnitNoise unit_noise(std::string_view stream, double wavelength_km, int octaves,
+                                     double gain) const {
+    return UnitNoise(grid, seed, stream, wavelength_km, octaves, gain, noise);
   }
 };
 

@@ -20,9 +20,9 @@ Tectonics<V> deform(const Crust<V>& crust, const CoarseGrid& coarse, const Tecto
   using std::exp;
   const IsostasyParameters& p = crust.parameters;
   const Grid& grid = coarse.grid();
-  const Number smoothing_m = 1e3 * crust.lift(p.deformation_smoothing_km);
+  const Number smoothing_m = 1e3 * crust.active(p.deformation_smoothing_km);
   const auto spread = [&](const DeformationSources& from, const double& length_member) {
-    const Number length_km = crust.lift(length_member);
+    const Number length_km = crust.active(length_member);
     std::vector<V> field(grid.size());
     for (Index cell = 0; cell < grid.size(); ++cell) {
       field[cell] = V(from.strength[cell]) * V(exp(-from.distance_km[cell] / length_km));
@@ -44,7 +44,7 @@ Tectonics<V> deform(const Crust<V>& crust, const CoarseGrid& coarse, const Tecto
     errors.guard([&] { t.transform = spread(frame.transform, p.transform_length_km); });
 #pragma omp section
     errors.guard([&] {
-      const Number length_km = crust.lift(p.weakness_length_km);
+      const Number length_km = crust.active(p.weakness_length_km);
       t.weakness.resize(grid.size());
       for (Index cell = 0; cell < grid.size(); ++cell) {
         t.weakness[cell] = V(exp(-static_cast<double>(frame.boundary_km[cell]) / length_km));

@@ -23,9 +23,9 @@ void fill_sea(const Crust<V>& crust, const V& level_m) {
   using std::log;
   const IsostasyParameters& p = crust.parameters;
   const bool shelves = p.crust != "blueprint" && p.crust != "given" && p.shelf_depth_m > 0.0;
-  const Number edge = crust.lift(p.shelf_edge);
+  const Number edge = crust.active(p.shelf_edge);
   const Number whole_shelf = edge + 0.8 * (1.0 - edge);
-  const Number shelf_depth_m = crust.lift(p.shelf_depth_m);
+  const Number shelf_depth_m = crust.active(p.shelf_depth_m);
 #pragma omp parallel for schedule(static)
   for (Index cell = 0; cell < crust.grid.size(); ++cell) {
     V& z = crust.elevation_m[cell];

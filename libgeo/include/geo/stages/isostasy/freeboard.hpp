@@ -49,7 +49,7 @@ Arithmetic<V> settle_continents(const Crust<V>& crust, const V& level_m,
                        }) /
       sea;
   const Number rise_m =
-      (crust.lift(crust.parameters.ocean_depth_m) - depth_m) * (reaches * sea / basins);
+      (crust.active(crust.parameters.ocean_depth_m) - depth_m) * (reaches * sea / basins);
   const auto density = crust.densities();
   const Number thickening_m = rise_m / (1.0 - density.continental_crust / density.mantle);
 #pragma omp parallel for schedule(static)

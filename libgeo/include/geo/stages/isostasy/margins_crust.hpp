@@ -7,8 +7,8 @@
 #include "geo/kernels/crust/ocean_depth.hpp"
 #include "geo/kernels/numerics/shapes.hpp"
 #include "geo/kernels/remapping/cubic_rows.hpp"
-#include "geo/stages/isostasy/swell.hpp"
 #include "geo/stages/isostasy/tectonics.hpp"
+#include "geo/stages/isostasy/unit_noise.hpp"
 
 namespace geo {
 
@@ -20,16 +20,16 @@ class Columns {
 
   explicit Columns(const Crust<V>& crust)
       : crust_(crust),
-        p_(crust.lift, crust.parameters),
+        p_(crust.active, crust.parameters),
         density_(crust.densities()),
         datum_(crust.datum()),
         is_dry_(crust.parameters.compensation == "airy-dry"),
         craton_slope_((1.0 - density_.continental_crust / density_.mantle) /
                       (1e-3 * AiryDatum::kColdLithosphereM)),
-        land_(crust.swell("isostasy.land", 420.0, 7, 0.52)),
-        ranges_(crust.swell("isostasy.ranges", 230.0, 4, 0.55)),
-        hills_(crust.swell("isostasy.hills", 260.0, 6, 0.6)),
-        mounts_(crust.swell("isostasy.seamounts", 330.0, 3, 0.6)) {}
+        land_(crust.unit_noise("isostasy.land", 420.0, 7, 0.52)),
+        ranges_(crust.unit_noise("isostasy.ranges", 230.0, 4, 0.55)),
+        hills_(crust.unit_noise("isostasy.hills", 260.0, 6, 0.6)),
+        mounts_(crust.unit_noise("isostasy.seamounts", 330.0, 3, 0.6)) {}
 
   /// Scratch of one thread: what the coarse grid and the noise say along a row.
   class Row {
@@ -74,7 +74,7 @@ class Columns {
     int nx;
     Tectonics<V> from_afar;
     std::vector<float> rift_km, offshore_km, inland_km;
-    Swell::Line land, ranges, hills, mounts;
+    UnitNoise::Line land, ranges, hills, mounts;
 
    private:
     NoiseRow noise_;
@@ -97,25 +97,26 @@ class Columns {
 
   /// The settings as numbers to compute with.
   struct Settings {
-    Settings(const Lift<V>& lift, const IsostasyParameters& p)
-        : continental_km(lift(p.continental_km)),
-          oceanic_km(lift(p.oceanic_km)),
-          collision_km(lift(p.collision_km)),
-          arc_km(lift(p.arc_km)),
-          rift_km(lift(p.rift_km)),
-          transpression_km(lift(p.transpression_km)),
-          lithosphere(lift(p.lithosphere)),
-          craton_compensation(lift(p.craton_compensation)),
-          ocean_swell_m(lift(p.ocean_swell_m)),
-          margin_tilt_m(lift(p.margin_tilt_m)),
-          margin_tilt_km(lift(p.margin_tilt_km)),
-          relict_km(lift(p.relict_km)),
-          heat_m(lift(p.heat_m)),
-          seamount_m(lift(p.seamount_m)),
-          seafloor_roughness_m(lift(p.seafloor_roughness_m)),
-          land_roughness_m(lift(p.land_roughness_m)),
-          sediment{lift(p.sediment.early_m), p.sediment.early_time_myr, lift(p.sediment.rate_m_myr),
-                   lift(p.sediment.apron_m), lift(p.sediment.apron_length_km)} {}
+    Settings(const ActiveVariables<V>& active, const IsostasyParameters& p)
+        : continental_km(active(p.continental_km)),
+          oceanic_km(active(p.oceanic_km)),
+          collision_km(active(p.collision_km)),
+          arc_km(active(p.arc_km)),
+          rift_km(active(p.rift_km)),
+          transpression_km(active(p.transpression_km)),
+          lithosphere(active(p.lithosphere)),
+          craton_compensation(active(p.craton_compensation)),
+          ocean_swell_m(active(p.ocean_swell_m)),
+          margin_tilt_m(active(p.margin_tilt_m)),
+          margin_tilt_km(active(p.margin_tilt_km)),
+          relict_km(active(p.relict_km)),
+          heat_m(active(p.heat_m)),
+          seamount_m(active(p.seamount_m)),
+          seafloor_roughness_m(active(p.seafloor_roughness_m)),
+          land_roughness_m(active(p.land_roughness_m)),
+          sediment{active(p.sediment.early_m), p.sediment.early_time_myr,
+                   active(p.sediment.rate_m_myr), active(p.sediment.apron_m),
+                   active(p.sediment.apron_length_km)} {}
     Number continental_km, oceanic_km, collision_km, arc_km, rift_km, transpression_km, lithosphere,
         craton_compensation, ocean_swell_m, margin_tilt_m, margin_tilt_km, relict_km, heat_m,
         seamount_m, seafloor_roughness_m, land_roughness_m;
@@ -254,7 +255,7 @@ class Columns {
   BasicAiryDatum<Number> datum_;
   bool is_dry_;
   Number craton_slope_;
-  Swell land_, ranges_, hills_, mounts_;
+  UnitNoise land_, ranges_, hills_, mounts_;
 };
 
 /// crust = "margins": thickness, density and height of every column of the full grid, from the

@@ -22,8 +22,8 @@ std::vector<V> held_up_m(const Crust<V>& crust, const Grid& coarse, const std::v
   plate.radius_m = 1e3 * crust.radius_km();
   std::vector<V> held(local_m), flexed(local_m);
   apply_linear<V, 4>(flexed,
-                     {crust.lift(p.elastic_thickness_km), crust.lift(p.density.mantle), infill,
-                      crust.lift(crust.planet.gravity_m_s2)},
+                     {crust.active(p.elastic_thickness_km), crust.active(p.density.mantle), infill,
+                      crust.active(crust.planet.gravity_m_s2)},
                      [&](auto values, const std::array<double, 4>& of_plate) {
                        plate.thickness_m = 1e3 * of_plate[0];
                        plate.mantle_kg_m3 = of_plate[1];
@@ -52,8 +52,8 @@ BeltLoads<V> belt_loads_m(const Crust<V>& crust, const CoarseGrid& coarse, const
   const IsostasyParameters& p = crust.parameters;
   const auto density = crust.densities();
   const Number belt_m =
-      1e3 * crust.lift(p.collision_km) * density.continental_crust / density.mantle;
-  const Number arc_m = 1e3 * crust.lift(p.arc_km) * (density.oceanic_crust - density.water) /
+      1e3 * crust.active(p.collision_km) * density.continental_crust / density.mantle;
+  const Number arc_m = 1e3 * crust.active(p.arc_km) * (density.oceanic_crust - density.water) /
                        (density.mantle - density.water);
   const auto share = coarse.middle(std::span<const float>(crust.fraction));
   BeltLoads<V> loads{std::vector<V>(share.size()), std::vector<V>(share.size())};
@@ -79,7 +79,7 @@ std::vector<V> flexure_of_belts_m(const Crust<V>& crust, const CoarseGrid& coars
   std::vector<V> held = held_up_m(crust, coarse.grid(), loads.on_land, Arithmetic<V>(0.0));
   if (!loads.any_at_sea) return held;
   const std::vector<V> under_arcs =
-      held_up_m(crust, coarse.grid(), loads.at_sea, crust.lift(p.density.water));
+      held_up_m(crust, coarse.grid(), loads.at_sea, crust.active(p.density.water));
   for (std::size_t cell = 0; cell < held.size(); ++cell) held[cell] += under_arcs[cell];
   return held;
 }

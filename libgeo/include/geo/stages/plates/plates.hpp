@@ -59,7 +59,7 @@ struct PlatesParameters {
   SphereStart start;
 
   // Of the model "hypsography", and of "sphere" that starts from one.
-  std::string first_relief = "noise";
+  std::string initial_elevation = "noise";
   HypsographicRanking ranking;
   // Of the model "raster".
   RasterParameters raster;

@@ -179,8 +179,8 @@ std::int32_t RasterTectonics::arc_place(const Subduction& event, int row,
                     static_cast<int>(std::floor(row + offset[1] + sy)));
 }
 
-/// Takes what went down off the books and lets its magma rise; where the upper plate has no crust
-/// it stays below.
+/// Takes what went down out of the budget and lets its magma rise; where the upper plate has no
+/// crust it stays below.
 void RasterTectonics::raise_arcs() {
   const RandomStream random(seed_, "raster.arcs");
   const auto now = static_cast<std::int16_t>(budget_.steps);

@@ -25,7 +25,7 @@ double sum_over(std::int32_t count, Value&& value) {
   return sum;
 }
 
-/// Adds to a stored value and tells what it has gained, after rounding: books of many steps close
+/// Adds to a stored value and tells what it has gained, after rounding: budgets of many steps close
 /// only if they hold that.
 inline double put(float& value, double gain) {
   const double before = value;

@@ -59,7 +59,7 @@ void SphereTectonics::collide() {
   if (changed) repartition();
 }
 
-/// Before all crust is read anew, and what lies below a continent becomes its root: pairs remember
+/// Before all crust is resampled, and what lies below a continent becomes its root: pairs remember
 /// how far they have come by then, as far as it would have counted.
 void SphereTectonics::remember_penetration() {
   const SphereCrust& crust = state_.crust;
@@ -87,7 +87,7 @@ const PlatePair& SphereTectonics::pair_of(std::int32_t sample) const {
 }
 
 /// How far a sample has gone below another plate: back along the way by which it has come since all
-/// crust was read anew, when no plates overlapped, to that plate's edge, which it finds to a
+/// crust was resampled, when no plates overlapped, to that plate's edge, which it finds to a
 /// quarter of the spacing. Never more than that way itself.
 double SphereTectonics::penetration_km(std::int32_t sample) const {
   const FibonacciSphere& samples = mesh_->samples();

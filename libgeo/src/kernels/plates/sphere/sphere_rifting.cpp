@@ -205,8 +205,8 @@ bool SphereTectonics::part(int plate, std::span<const std::int8_t> fragment,
     size[carried.back().second] += partition_.cap(p).samples;
   }
   const auto largest = std::max_element(size.begin(), size.end()) - size.begin();
-  const auto origin =
-      kind == SphereEvent::Kind::rift ? PlateLife::Origin::rift : PlateLife::Origin::foundering;
+  const auto origin = kind == SphereEvent::Kind::rift ? PlateLife::Origin::rift
+                                                      : PlateLife::Origin::subduction_initiation;
   std::vector<int> numbers;
   for (std::size_t k = 0; k < away.size(); ++k) {
     if (size[k] == 0) continue;

@@ -29,10 +29,10 @@ double age_below_sediment_myr(double depth_m, double oldest_myr) {
   return low;
 }
 
-class Beginning {
+class InitialConditions {
  public:
-  Beginning(const SphereMesh& mesh, const SphereStart& start, const SphereSettings& settings,
-            std::uint64_t seed)
+  InitialConditions(const SphereMesh& mesh, const SphereStart& start,
+                    const SphereSettings& settings, std::uint64_t seed)
       : mesh_(mesh), start_(start), settings_(settings), seed_(seed) {
     state_.crust.resize(mesh.size());
   }
@@ -212,7 +212,7 @@ class Beginning {
     if (!start_.elevation_m.empty()) return take_relief();
     SphereCrust& crust = state_.crust;
     const std::vector<float> boundary_km = distance_to_boundary_km();
-    const Noise swell(seed_, "plates.first_relief");
+    const Noise swell(seed_, "plates.initial_elevation");
     const auto relief =
         fbm_at(swell, mesh_.samples().positions(), settings_.radius_km / 1800.0, 5, 0.5);
     const std::vector<double> kept = shares_kept_at_edges();
@@ -339,7 +339,7 @@ class Beginning {
 
 SphereState start_sphere(const SphereMesh& mesh, const SphereStart& start,
                          const SphereSettings& settings, std::uint64_t seed) {
-  return Beginning(mesh, start, settings, seed).make();
+  return InitialConditions(mesh, start, settings, seed).make();
 }
 
 }  // namespace geo

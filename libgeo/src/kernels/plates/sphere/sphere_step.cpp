@@ -266,7 +266,7 @@ void SphereTectonics::advance() {
   collide();
   spread_roots();
   rift_by_chance();
-  founder_by_chance();
+  initiate_subduction_by_chance();
   if (is_due()) {
     resample();
   } else {

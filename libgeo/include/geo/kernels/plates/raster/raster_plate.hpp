@@ -175,7 +175,7 @@ class RasterPlate {
   [[nodiscard]] RasterContinents& continents() { return continents_; }
   [[nodiscard]] const RasterContinents& continents() const { return continents_; }
   void forget_continents() { continents_known_ = false; }
-  /// Keeps the books of a change that has been made to a cell.
+  /// Enters a change into the budget that has been made to a cell.
   void note(float before, float after) {
     mass += static_cast<double>(after) - before;
     if ((before >= 1.0F) != (after >= 1.0F)) land_changed_ = true;

@@ -48,9 +48,9 @@ struct SpherePlate {
 
 /// What is known of a plate by its number, also when it is no more.
 struct PlateLife {
-  /// There from the beginning; from a rift; floor that foundered; a piece that was left over; a
-  /// terrane whose new plate has gone down before they had become one.
-  enum class Origin : std::int8_t { first, rift, foundering, piece, terrane };
+  /// There from the beginning; from a rift; floor whose subduction began at a margin; a piece that
+  /// was left over; a terrane whose new plate has gone down before they had become one.
+  enum class Origin : std::int8_t { first, rift, subduction_initiation, piece, terrane };
 
   Origin origin = Origin::first;
   std::int16_t parent = -1;  ///< number of the plate of which it was a part

@@ -49,17 +49,18 @@ struct SphereSettings {
   double rift_speed_mm_yr = 30.0;     ///< at which fragments part
   double rift_onset_myr = 0.0;        ///< in which they come to it
   double rift_warp_km = 400.0;        ///< of their borders
-  double founder_per_myr = 0.01;      ///< rate at which 1000 km of old passive margin founder
-  double founder_age_myr = 120.0;     ///< from which floor at a passive margin is old
-  double founder_speed_mm_yr = 50.0;  ///< at which floor that founders goes below its continent
-  double coast_warp_km = 120.0;       ///< of crust that events change
-  double mean_area_km2 = 1.27e7;      ///< A_0
-  double smallest_piece_km2 = 5e5;    ///< detached pieces below join a neighbour
-  double plume_mm_yr = 0.0;           ///< output of the first plumes, as growth of one mound
-  double plume_km = 60.0;             ///< over which that would fall to a half
-  double volcano_km = 30.0;           ///< over which the growth of one volcano does
-  double volcano_spacing_km = 100.0;  ///< mean way of a plate from one volcano to the next
-  double island_wear_myr = 6.0;       ///< in which ocean floor above the sea wears down to 1/e
+  double initiation_per_myr =
+      0.01;  ///< rate at which 1000 km of old passive margin begin to subduct
+  double initiation_age_myr = 120.0;     ///< from which floor at a passive margin is old
+  double initiation_speed_mm_yr = 50.0;  ///< at which such floor goes below its continent
+  double coast_warp_km = 120.0;          ///< of crust that events change
+  double mean_area_km2 = 1.27e7;         ///< A_0
+  double smallest_piece_km2 = 5e5;       ///< detached pieces below join a neighbour
+  double plume_mm_yr = 0.0;              ///< output of the first plumes, as growth of one mound
+  double plume_km = 60.0;                ///< over which that would fall to a half
+  double volcano_km = 30.0;              ///< over which the growth of one volcano does
+  double volcano_spacing_km = 100.0;     ///< mean way of a plate from one volcano to the next
+  double island_wear_myr = 6.0;          ///< in which ocean floor above the sea wears down to 1/e
   double swell_decay_myr = 30.0;  ///< the same of what lifted floor, with floor_by_age; 0: never
   double plume_top_km = 2.0;      ///< height that volcanoes of the sea floor reach
   // Rules of Driftworld in place of the paper's.
@@ -82,7 +83,7 @@ struct SphereBudget {
   double time_myr = 0.0;
   int plates = 0;
   bool resampled = false;
-  int collisions = 0, rifts = 0, founderings = 0;
+  int collisions = 0, rifts = 0, subduction_initiations = 0;
   double area_error = 0.0;        ///< sum of the plates' areas over the sphere's, less 1
   double created_km2 = 0.0;       ///< new ocean floor
   double consumed_km2 = 0.0;      ///< ocean floor that had gone below another plate
@@ -107,7 +108,7 @@ struct SphereBudget {
 
 /// A happening worth telling.
 struct SphereEvent {
-  enum class Kind { collision, rift, foundering } kind;
+  enum class Kind { collision, rift, subduction_initiation } kind;
   double time_myr;
   int first, second;  ///< plates: terrane's and collided one, or the plate that broke and -1
   Vector3 place;      ///< centroid, unit vector
@@ -122,7 +123,7 @@ struct SphereEvent {
 /// over the sample nearest to it. Only samples in blocks that may touch another plate are asked.
 /// The top of an overlap is the continental crust, of two oceans the plate whose floor was younger
 /// when they met, of two continents the plate that carries more of it. From time to time all is
-/// read anew at the lattice's places (resampling), where new floor fills what has opened.
+/// resampled at the lattice's places (resampling), where new floor fills what has opened.
 ///
 /// Results do not depend on the number of threads. Cost: linear in samples.
 class SphereTectonics {
@@ -133,8 +134,8 @@ class SphereTectonics {
 
   /// Takes the common rotation of the plates away that are not held, but for what they keep.
   void subtract_net_rotation();
-  /// Opens the books of the next step and, with settings.no_net_rotation, subtracts that. What is
-  /// done to the model from outside before advance() is in those books. advance() does it where it
+  /// Opens the budget of the next step and, with settings.no_net_rotation, subtracts that. What is
+  /// done to the model from outside before advance() is in that budget. advance() does it where it
   /// has not been done.
   void begin_step();
   /// One step of settings.law.step_myr.
@@ -258,8 +259,8 @@ class SphereTectonics {
   bool part(int plate, std::span<const std::int8_t> fragment, std::span<const Vector3> away,
             double speed_mm_yr, SphereEvent::Kind kind);
   [[nodiscard]] std::vector<std::int32_t> old_margins() const;
-  void founder_by_chance();
-  void founder(std::int32_t start);
+  void initiate_subduction_by_chance();
+  void initiate_subduction(std::int32_t start);
   [[nodiscard]] Vector3 driven_rotation(int plate) const;
   [[nodiscard]] Vector3 net_rotation() const;
   void fill_gaps(SphereCrust& now, std::vector<std::int16_t>& owner,

@@ -16,12 +16,13 @@ namespace {
 constexpr double kContinent_km2 = 1e6;
 /// Smaller pieces of floor stay, however large a plate must be to last.
 constexpr double kSinking_km2 = 1e6;
-/// How far along a margin the floor breaks that is old enough to go with it, in ages of foundering.
+/// How far along a margin the floor breaks that is old enough to go with it, in ages at which
+/// subduction begins.
 constexpr double kAlong = 0.75;
 
 }  // namespace
 
-/// Floor beside the continent of its own plate, old enough to founder: samples in order.
+/// Floor beside the continent of its own plate, old enough to subduct: samples in order.
 std::vector<std::int32_t> SphereTectonics::old_margins() const {
   const SphereCrust& crust = state_.crust;
   constexpr std::int32_t kChunk = 8192;
@@ -30,7 +31,7 @@ std::vector<std::int32_t> SphereTectonics::old_margins() const {
     const auto from = static_cast<std::int32_t>(chunk) * kChunk;
     for (std::int32_t i = from; i < std::min(crust.size(), from + kChunk); ++i) {
       if (crust.plate[i] < 0 || crust.continental[i] != 0 || hidden_[i] != 0) continue;
-      if (crust.age_myr[i] < settings_.founder_age_myr) continue;
+      if (crust.age_myr[i] < settings_.initiation_age_myr) continue;
       const auto ring = mesh_->neighbours(i);
       const bool is_margin = std::any_of(ring.begin(), ring.end(), [&](std::int32_t j) {
         return crust.plate[j] == crust.plate[i] && crust.continental[j] != 0;
@@ -47,8 +48,8 @@ std::vector<std::int32_t> SphereTectonics::old_margins() const {
 
 /// Old floor at a passive margin breaks away from the continent and becomes a plate that goes below
 /// it: a Poisson process, at a rate for each length of margin whose floor is old enough.
-void SphereTectonics::founder_by_chance() {
-  if (settings_.founder_per_myr <= 0.0) return;
+void SphereTectonics::initiate_subduction_by_chance() {
+  if (settings_.initiation_per_myr <= 0.0) return;
   const RandomStream random(seed_, "plates.foundering");
   const auto step = static_cast<std::uint64_t>(state_.steps) << 10U;
   const auto plates = static_cast<int>(state_.plates.size());
@@ -60,17 +61,17 @@ void SphereTectonics::founder_by_chance() {
     if (of_plate[p].empty() || !plate.alive || plate.carrier >= 0 || plate.is_held) continue;
     const auto count = static_cast<double>(of_plate[p].size());
     const double expected =
-        settings_.founder_per_myr * count * sample_length * settings_.law.step_myr;
+        settings_.initiation_per_myr * count * sample_length * settings_.law.step_myr;
     const std::uint64_t index = step + static_cast<std::uint64_t>(p);
     if (random.uniform(index) >= -std::expm1(-expected)) continue;
-    founder(of_plate[p][static_cast<std::size_t>(count * random.uniform(index, 1))]);
+    initiate_subduction(of_plate[p][static_cast<std::size_t>(count * random.uniform(index, 1))]);
   }
 }
 
 /// Breaks the floor of a plate along the margin about a sample and sends it below the continent:
 /// all that lies nearer to the old part of that margin than to any other. Nothing happens where
 /// that is too small for a plate, or the margin that of an island.
-void SphereTectonics::founder(std::int32_t start) {
+void SphereTectonics::initiate_subduction(std::int32_t start) {
   const SphereCrust& crust = state_.crust;
   const std::int16_t plate = crust.plate[start];
   const std::int32_t n = mesh_->size();
@@ -91,7 +92,7 @@ void SphereTectonics::founder(std::int32_t start) {
   }
   if (is_margin[start] == 0) return;
   // Floor along the margin is narrow: samples beside it keep the line together.
-  const double old_myr = kAlong * settings_.founder_age_myr;
+  const double old_myr = kAlong * settings_.initiation_age_myr;
   Vector3 shore{}, middle{};
   for (const std::int32_t i : flooded_from(*mesh_, start, is_old, [&](std::int32_t j) {
          return is_margin[j] != 0 && crust.age_myr[j] >= old_myr;
@@ -112,11 +113,11 @@ void SphereTectonics::founder(std::int32_t start) {
   }
   const Vector3 down = times(frame_[plate], normalised(cross(middle, shore)));
   const std::vector<Vector3> turns{Vector3{}, down};
-  const double speed_mm_yr = settings_.founder_speed_mm_yr;
-  if (!part(plate, fragment, turns, speed_mm_yr, SphereEvent::Kind::foundering)) return;
+  const double speed_mm_yr = settings_.initiation_speed_mm_yr;
+  if (!part(plate, fragment, turns, speed_mm_yr, SphereEvent::Kind::subduction_initiation)) return;
   events_.back().area_km2 = sample_km2() * static_cast<double>(sinking.size());
   events_.back().place = times(frame_[plate], normalised(shore));
-  ++budget_.founderings;
+  ++budget_.subduction_initiations;
 }
 
 }  // namespace geo

@@ -1,4 +1,4 @@
-#include "calibration/held_fast.hpp"
+#include "calibration/frozen_drainage.hpp"
 
 #include <ceres/ceres.h>
 
@@ -8,9 +8,9 @@ namespace geo::calibration {
 namespace {
 
 /// The objective with all held fast as Ceres sees it.
-class HeldFastCost final : public ceres::CostFunction {
+class FrozenCost final : public ceres::CostFunction {
  public:
-  explicit HeldFastCost(Objective& objective, Eigen::Index parameters) : objective_(objective) {
+  explicit FrozenCost(Objective& objective, Eigen::Index parameters) : objective_(objective) {
     mutable_parameter_block_sizes()->push_back(static_cast<int>(parameters));
     set_num_residuals(static_cast<int>(objective.residuals()));
   }
@@ -20,7 +20,7 @@ class HeldFastCost final : public ceres::CostFunction {
     const Eigen::VectorXd x = Eigen::Map<const Eigen::VectorXd>(parameters[0], count);
     const bool wants_rates = jacobians != nullptr && jacobians[0] != nullptr;
     const bool renews = wants_rates && rates_.size() == 0;
-    const Eigen::VectorXd residual = objective_.follow(x, renews ? &rates_ : nullptr);
+    const Eigen::VectorXd residual = objective_.linearise(x, renews ? &rates_ : nullptr);
     Eigen::Map<Eigen::VectorXd>(residuals, residual.size()) = residual;
     if (wants_rates) {
       using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -37,8 +37,9 @@ class HeldFastCost final : public ceres::CostFunction {
 
 }  // namespace
 
-Eigen::VectorXd solve_held_fast(Objective& objective, const Problem& problem, Eigen::VectorXd x,
-                                const HeldFastOptions& options) {
+Eigen::VectorXd solve_with_frozen_drainage(Objective& objective, const Problem& problem,
+                                           Eigen::VectorXd x,
+                                           const FrozenDrainageOptions& options) {
   const auto count = static_cast<int>(x.size());
   if (options.fixed && count == 1) return x;
   ceres::Problem held;
@@ -54,7 +55,7 @@ Eigen::VectorXd solve_held_fast(Objective& objective, const Problem& problem, Ei
     held.SetManifold(x.data(),
                      new ceres::SubsetManifold(count, {static_cast<int>(*options.fixed)}));
   }
-  held.AddResidualBlock(new HeldFastCost(objective, x.size()), nullptr, x.data());
+  held.AddResidualBlock(new FrozenCost(objective, x.size()), nullptr, x.data());
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_QR;
   solver.max_num_iterations = options.steps;

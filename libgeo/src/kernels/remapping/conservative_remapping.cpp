@@ -1,4 +1,4 @@
-#include "geo/kernels/remapping/overlay.hpp"
+#include "geo/kernels/remapping/conservative_remapping.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -53,17 +53,18 @@ Grid coarser_grid(const Grid& fine, double spacing_m) {
   return Grid::plane(nx, ny, middle_dx_m * fine.nx() / nx, dy_m * fine.ny() / ny, fine.edges());
 }
 
-Overlay::Overlay(const Grid& fine, const Grid& coarse)
+ConservativeRemapping::ConservativeRemapping(const Grid& fine, const Grid& coarse)
     : fine_(fine),
       coarse_(coarse),
       column_edge_(even_edges(fine.nx(), coarse.nx())),
       row_edge_(even_edges(fine.ny(), coarse.ny())) {
   if (fine.topology() != coarse.topology()) throw Bug("overlay: topologies differ");
-  overlay_columns();
+  overlap_columns();
 }
 
-Overlay::Overlay(const Grid& fine, const Grid& coarse_sphere, std::span<const double> row_edge_deg,
-                 std::span<const double> column_edge_deg)
+ConservativeRemapping::ConservativeRemapping(const Grid& fine, const Grid& coarse_sphere,
+                                             std::span<const double> row_edge_deg,
+                                             std::span<const double> column_edge_deg)
     : fine_(fine), coarse_(coarse_sphere) {
   if (coarse_sphere.topology() != Topology::sphere) throw Bug("overlay: coarse grid is no sphere");
   for (const double edge : row_edge_deg) {
@@ -72,10 +73,10 @@ Overlay::Overlay(const Grid& fine, const Grid& coarse_sphere, std::span<const do
   for (const double edge : column_edge_deg) {
     column_edge_.push_back((edge + 180.0) / 360.0 * coarse_.nx());
   }
-  overlay_columns();
+  overlap_columns();
 }
 
-void Overlay::overlay_columns() {
+void ConservativeRemapping::overlap_columns() {
   const int coarse_nx = coarse_.nx();
   const bool wraps = coarse_.topology() != Topology::plane;
   for (int i = 0; i < fine_.nx(); ++i) {
@@ -89,7 +90,7 @@ void Overlay::overlay_columns() {
 }
 
 template <class Visit>
-void Overlay::for_overlaps(int coarse_row, Visit&& visit) const {
+void ConservativeRemapping::for_overlaps(int coarse_row, Visit&& visit) const {
   const auto after = std::upper_bound(row_edge_.begin(), row_edge_.end(), double(coarse_row));
   int j = std::max(0, static_cast<int>(after - row_edge_.begin()) - 1);
   for (; j < fine_.ny() && row_edge_[j] < coarse_row + 1.0; ++j) {
@@ -102,7 +103,7 @@ void Overlay::for_overlaps(int coarse_row, Visit&& visit) const {
   }
 }
 
-void Overlay::average(std::span<const float> values, std::span<float> mean) const {
+void ConservativeRemapping::average(std::span<const float> values, std::span<float> mean) const {
   ParallelErrors errors;
 #pragma omp parallel
   {
@@ -127,8 +128,10 @@ void Overlay::average(std::span<const float> values, std::span<float> mean) cons
   errors.rethrow();
 }
 
-void Overlay::average_relief(std::span<const float> elevation, std::span<float> land_fraction,
-                             std::span<float> height_m, std::span<float> coverage) const {
+void ConservativeRemapping::average_relief(std::span<const float> elevation,
+                                           std::span<float> land_fraction,
+                                           std::span<float> height_m,
+                                           std::span<float> coverage) const {
   ParallelErrors errors;
 #pragma omp parallel
   {
@@ -175,8 +178,8 @@ Interpolator::Taps Interpolator::taps(double position, int count, bool wraps) {
            static_cast<float>(f * f * f / 6.0)}};
 }
 
-Interpolator::Interpolator(const Overlay& overlay, std::span<const float> coarse_values,
-                           Kind kind) {
+Interpolator::Interpolator(const ConservativeRemapping& overlay,
+                           std::span<const float> coarse_values, Kind kind) {
   const Grid& coarse = overlay.coarse_;
   const int nx = coarse.nx(), ny = coarse.ny();
   const Topology topology = coarse.topology();

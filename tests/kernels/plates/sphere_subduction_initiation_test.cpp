@@ -23,7 +23,7 @@ SphereSettings settings() {
   s.no_net_rotation = false;
   s.floor_by_age = true;
   s.least_steps = s.most_steps = 1000;
-  s.founder_per_myr = 1e3;  // whatever is old enough does
+  s.initiation_per_myr = 1e3;  // whatever is old enough does
   return s;
 }
 
@@ -51,10 +51,10 @@ TEST(Foundering, OldFloorBreaksOffAlongItsMarginAndGoesBelowTheContinent) {
   const SampledSphere world(20000);
   SphereTectonics model(world.mesh, settings(), beginning(world, 130.0F), 1);
   model.advance();
-  EXPECT_EQ(model.budget().founderings, 1);
+  EXPECT_EQ(model.budget().subduction_initiations, 1);
   EXPECT_EQ(model.budget().rifts, 0);
   ASSERT_EQ(model.events().size(), 1U);
-  EXPECT_EQ(model.events()[0].kind, SphereEvent::Kind::foundering);
+  EXPECT_EQ(model.events()[0].kind, SphereEvent::Kind::subduction_initiation);
   EXPECT_NEAR(longitude_deg(model.events()[0].place), 110.0, 3.0);
   ASSERT_EQ(model.state().plates.size(), 3U);
   const SphereCrust& crust = model.state().crust;
@@ -85,23 +85,23 @@ TEST(Foundering, OldFloorBreaksOffAlongItsMarginAndGoesBelowTheContinent) {
 
 TEST(Foundering, NeedsOldFloorARateAndAPlateThatIsFree) {
   const SampledSphere world(20000);
-  const auto founderings = [&](const SphereSettings& s, float old_myr, bool is_held) {
+  const auto subduction_initiations = [&](const SphereSettings& s, float old_myr, bool is_held) {
     SphereState state = beginning(world, old_myr);
     state.plates[1].is_held = is_held;
     SphereTectonics model(world.mesh, s, std::move(state), 1);
     model.advance();
-    return model.budget().founderings;
+    return model.budget().subduction_initiations;
   };
-  EXPECT_EQ(founderings(settings(), 100.0F, false), 0);
-  EXPECT_EQ(founderings(settings(), 130.0F, true), 0);
+  EXPECT_EQ(subduction_initiations(settings(), 100.0F, false), 0);
+  EXPECT_EQ(subduction_initiations(settings(), 130.0F, true), 0);
   SphereSettings never = settings();
-  never.founder_per_myr = 0.0;
-  EXPECT_EQ(founderings(never, 130.0F, false), 0);
-  EXPECT_EQ(founderings(settings(), 130.0F, false), 1);
+  never.initiation_per_myr = 0.0;
+  EXPECT_EQ(subduction_initiations(never, 130.0F, false), 0);
+  EXPECT_EQ(subduction_initiations(settings(), 130.0F, false), 1);
   // Floor of a sea goes down also where plates of its size would not stay.
   SphereSettings large_plates = settings();
   large_plates.smallest_piece_km2 = 1e8;
-  EXPECT_EQ(founderings(large_plates, 130.0F, false), 1);
+  EXPECT_EQ(subduction_initiations(large_plates, 130.0F, false), 1);
 }
 
 TEST(Foundering, LeavesASeaOfLessThanAMillionSquareKilometres) {
@@ -110,7 +110,7 @@ TEST(Foundering, LeavesASeaOfLessThanAMillionSquareKilometres) {
   s.smallest_piece_km2 = 1e8;
   // Old floor in the midst of the continent: 0.6 and 2.4 million km2, and young floor all around
   // it.
-  for (const auto& [half_deg, founderings] : {std::pair{3.5, 0}, std::pair{7.0, 1}}) {
+  for (const auto& [half_deg, subduction_initiations] : {std::pair{3.5, 0}, std::pair{7.0, 1}}) {
     SphereState state = beginning(world, 40.0F);
     for (std::int32_t i = 0; i < world.mesh.size(); ++i) {
       const Vector3& at = world.samples.position(i);
@@ -123,7 +123,7 @@ TEST(Foundering, LeavesASeaOfLessThanAMillionSquareKilometres) {
     }
     SphereTectonics model(world.mesh, s, std::move(state), 1);
     model.advance();
-    EXPECT_EQ(model.budget().founderings, founderings) << half_deg;
+    EXPECT_EQ(model.budget().subduction_initiations, subduction_initiations) << half_deg;
   }
 }
 
@@ -131,14 +131,14 @@ TEST(Foundering, IsAsLikelyAsItsMarginIsLong) {
   const SampledSphere world(20000);
   SphereSettings s = settings();
   // 40 degrees of margin are 4400 km: 0.44 per step of 2 Myr.
-  s.founder_per_myr = 0.05;
+  s.initiation_per_myr = 0.05;
   int count = 0;
   constexpr int kTries = 120;
   for (int seed = 0; seed < kTries; ++seed) {
     SphereTectonics model(world.mesh, s, beginning(world, 130.0F),
                           static_cast<std::uint64_t>(seed));
     model.advance();
-    count += model.budget().founderings;
+    count += model.budget().subduction_initiations;
   }
   const double chance = -std::expm1(-0.44);
   EXPECT_NEAR(count, kTries * chance, 4.0 * std::sqrt(kTries * chance * (1.0 - chance)));

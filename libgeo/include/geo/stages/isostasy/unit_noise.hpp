@@ -38,10 +38,10 @@ inline const std::vector<float>* stored_fbm(const Grid& grid, const Noise& noise
 }
 
 /// Gradient noise of several octaves scaled to unit standard deviation.
-class Swell {
+class UnitNoise {
  public:
-  Swell(const Grid& grid, std::uint64_t seed, std::string_view stream, double wavelength_km,
-        int octaves, double gain, NoiseStore* store)
+  UnitNoise(const Grid& grid, std::uint64_t seed, std::string_view stream, double wavelength_km,
+            int octaves, double gain, NoiseStore* store)
       : noise_(seed, stream),
         frequency_(1e-3 * grid.figure().radius_m / wavelength_km),
         octaves_(octaves),
@@ -59,7 +59,7 @@ class Swell {
   /// A row's values, in the columns that were wanted.
   class Line {
    public:
-    Line(const Swell& swell, int columns) : swell_(swell), noise_(columns) {}
+    Line(const UnitNoise& swell, int columns) : swell_(swell), noise_(columns) {}
     void read(NoiseRow& row) {
       if (swell_.stored_ != nullptr) {
         std::copy_n(swell_.stored_->begin() + row.first_cell(), noise_.size(), noise_.begin());
@@ -70,7 +70,7 @@ class Swell {
     double operator[](int column) const { return swell_.scale_ * noise_[column]; }
 
    private:
-    const Swell& swell_;
+    const UnitNoise& swell_;
     std::vector<float> noise_;
   };
 

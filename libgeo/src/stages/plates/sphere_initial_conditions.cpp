@@ -1,4 +1,4 @@
-#include "sphere_beginning.hpp"
+#include "sphere_initial_conditions.hpp"
 
 #include <fmt/format.h>
 
@@ -117,12 +117,12 @@ std::vector<float> means_at_samples(const GivenRelief& given, const std::vector<
 
 void take_relief(const Grid& grid, const SphereMesh& mesh, const Context& context,
                  SphereStart& start) {
-  if (!context.first_relief) {
+  if (!context.initial_elevation) {
     throw InputError(
-        "plates: plates.first_relief = given needs fields.first_relief, a NetCDF "
+        "plates: plates.initial_elevation = given needs fields.initial_elevation, a NetCDF "
         "file of a planet's relief");
   }
-  const GivenRelief& given = *context.first_relief;
+  const GivenRelief& given = *context.initial_elevation;
   start.real_floor = true;
   start.elevation_m = means_at_samples(given, given.elevation_m, grid, mesh);
   if (given.age_myr.empty()) return;
@@ -170,13 +170,14 @@ SphereStart sphere_start(const PlatesParameters& parameters, const SphereMesh& m
   start.whole_plates = parameters.continents == "plates";
   start.oldest_floor_myr = parameters.oldest_floor_myr;
   if (!context.plates.empty()) take_plates(io.grid(), mesh, context, start);
-  if (parameters.first_relief == "hypsography") {
+  if (parameters.initial_elevation == "hypsography") {
     start.elevation_m = hypsographic_heights_m(parameters, io, context, mesh.samples().positions());
-  } else if (parameters.first_relief == "given") {
+  } else if (parameters.initial_elevation == "given") {
     take_relief(io.grid(), mesh, context, start);
   }
-  if (parameters.first_relief != "given" && context.first_relief) {
-    context.warnings.push_back("fields.first_relief is for plates.first_relief = given: not used");
+  if (parameters.initial_elevation != "given" && context.initial_elevation) {
+    context.warnings.push_back(
+        "fields.initial_elevation is for plates.initial_elevation = given: not used");
   }
   return start;
 }

@@ -18,6 +18,6 @@ struct TargetDistribution {
 /// One float per cell. Equal values stay equal, so that the result depends on no cell's index.
 /// Cost: one radix sort, 16 bytes per cell while it lasts. Throws InputError for a field that
 /// does not fit the grid or holds NaN, and for a target that is no distribution.
-void rank_match(const Grid& grid, const TargetDistribution& target, std::span<float> field);
+void map_quantiles(const Grid& grid, const TargetDistribution& target, std::span<float> field);
 
 }  // namespace geo

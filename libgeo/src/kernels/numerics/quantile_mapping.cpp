@@ -1,4 +1,4 @@
-#include "geo/kernels/numerics/rank_match.hpp"
+#include "geo/kernels/numerics/quantile_mapping.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -57,7 +57,7 @@ std::vector<Entry> sorted(std::span<const float> field) {
 
 }  // namespace
 
-void rank_match(const Grid& grid, const TargetDistribution& target, std::span<float> field) {
+void map_quantiles(const Grid& grid, const TargetDistribution& target, std::span<float> field) {
   check(grid, target, field);
   const std::vector<Entry> order = sorted(field);
   double total_m2 = 0.0;

@@ -18,14 +18,15 @@ Grid coarser_grid(const Grid& fine, double spacing_m);
 /// Either both grids cover the same area (sphere on sphere, torus on torus, plane on plane), or the
 /// fine one is a part of the planet (a window, or a plane that knows or is given its latitude)
 /// embedded in a coarse sphere.
-class Overlay {
+class ConservativeRemapping {
  public:
   /// Same area, same topology.
-  Overlay(const Grid& fine, const Grid& coarse);
+  ConservativeRemapping(const Grid& fine, const Grid& coarse);
   /// A part of the planet, by the latitude of its row edges (ny + 1) and the longitude of its
   /// column edges (nx + 1), ascending, degrees.
-  Overlay(const Grid& fine, const Grid& coarse_sphere, std::span<const double> row_edge_deg,
-          std::span<const double> column_edge_deg);
+  ConservativeRemapping(const Grid& fine, const Grid& coarse_sphere,
+                        std::span<const double> row_edge_deg,
+                        std::span<const double> column_edge_deg);
 
   [[nodiscard]] const Grid& fine() const noexcept { return fine_; }
   [[nodiscard]] const Grid& coarse() const noexcept { return coarse_; }
@@ -44,7 +45,7 @@ class Overlay {
   /// under a coarse row.
   template <class Visit>
   void for_overlaps(int coarse_row, Visit&& visit) const;
-  void overlay_columns();
+  void overlap_columns();
 
   /// What a coarse column has of a fine one, in widths of the coarse.
   struct ColumnOverlap {
@@ -63,7 +64,7 @@ class Overlay {
 class Interpolator {
  public:
   enum class Kind { scalar, vector_component };
-  Interpolator(const Overlay& overlay, std::span<const float> coarse_values,
+  Interpolator(const ConservativeRemapping& overlay, std::span<const float> coarse_values,
                Kind kind = Kind::scalar);
 
   /// Values along one fine row. `scratch` holds at least scratch_size() floats.

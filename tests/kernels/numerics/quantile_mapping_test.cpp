@@ -1,4 +1,4 @@
-#include "geo/kernels/numerics/rank_match.hpp"
+#include "geo/kernels/numerics/quantile_mapping.hpp"
 
 #include <gtest/gtest.h>
 
@@ -28,10 +28,10 @@ std::vector<float> relief(const Grid& grid) {
   return z;
 }
 
-TEST(RankMatch, QuantilesByAreaAreTheTargets) {
+TEST(QuantileMapping, QuantilesByAreaAreTheTargets) {
   const Grid grid = Grid::sphere(1024, 512);
   std::vector<float> z = relief(grid);
-  rank_match(grid, {kFraction, kValue}, z);
+  map_quantiles(grid, {kFraction, kValue}, z);
   std::vector<double> fractions;
   for (int permille = 0; permille <= 1000; ++permille) fractions.push_back(permille / 1000.0);
   const std::vector<float> found = quantiles(grid, z, fractions);
@@ -40,11 +40,11 @@ TEST(RankMatch, QuantilesByAreaAreTheTargets) {
   }
 }
 
-TEST(RankMatch, KeepsTheOrderOfCells) {
+TEST(QuantileMapping, KeepsTheOrderOfCells) {
   const Grid grid = Grid::sphere(128, 64);
   const std::vector<float> before = relief(grid);
   std::vector<float> after = before;
-  rank_match(grid, {kFraction, kValue}, after);
+  map_quantiles(grid, {kFraction, kValue}, after);
   for (Index c = 1; c < grid.size(); ++c) {
     if (before[c] == before[c - 1]) {
       EXPECT_EQ(after[c], after[c - 1]);
@@ -54,21 +54,21 @@ TEST(RankMatch, KeepsTheOrderOfCells) {
   }
 }
 
-TEST(RankMatch, EqualCellsStayEqual) {
+TEST(QuantileMapping, EqualCellsStayEqual) {
   const Grid grid = Grid::sphere(16, 8);
   std::vector<float> z(grid.size(), 7.0F);
-  rank_match(grid, {kFraction, kValue}, z);
+  map_quantiles(grid, {kFraction, kValue}, z);
   for (const float value : z) EXPECT_FLOAT_EQ(value, static_cast<float>(wanted(0.5)));
 }
 
-TEST(RankMatch, RefusesWhatIsNoDistribution) {
+TEST(QuantileMapping, RefusesWhatIsNoDistribution) {
   const Grid grid = Grid::sphere(16, 8);
   std::vector<float> z(grid.size(), 7.0F);
   const std::vector<double> half{0.0, 0.5}, falling{1.0, 0.0}, whole{0.0, 1.0};
-  EXPECT_THROW(rank_match(grid, {half, whole}, z), InputError);
-  EXPECT_THROW(rank_match(grid, {whole, falling}, z), InputError);
+  EXPECT_THROW(map_quantiles(grid, {half, whole}, z), InputError);
+  EXPECT_THROW(map_quantiles(grid, {whole, falling}, z), InputError);
   z[5] = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_THROW(rank_match(grid, {whole, whole}, z), InputError);
+  EXPECT_THROW(map_quantiles(grid, {whole, whole}, z), InputError);
 }
 
 }  // namespace
