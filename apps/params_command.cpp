@@ -21,19 +21,15 @@ namespace {
 
 using Rows = std::vector<geo::Parameter>;
 
-std::string_view section_of(const geo::Parameter& parameter) {
-  return parameter.name.substr(0, parameter.name.find('.'));
-}
-
-/// The parameters of one section, or all.
+/// The parameters of one section and those below it, or all.
 Rows chosen_rows(const Rows& all, const std::string& section) {
   if (section.empty()) return all;
   Rows rows;
   std::vector<std::string_view> sections;
   for (const geo::Parameter& parameter : all) {
-    if (section_of(parameter) == section) rows.push_back(parameter);
-    if (sections.empty() || sections.back() != section_of(parameter)) {
-      sections.push_back(section_of(parameter));
+    if (geo::is_section_of(parameter.section(), section)) rows.push_back(parameter);
+    if (sections.empty() || sections.back() != parameter.section()) {
+      sections.push_back(parameter.section());
     }
   }
   if (rows.empty()) {
@@ -87,8 +83,8 @@ nlohmann::ordered_json to_json(const Rows& rows) {
 void print_markdown(const Rows& rows, std::string_view heading = {}) {
   std::string_view section;
   for (const geo::Parameter& row : rows) {
-    if (section_of(row) != section) {
-      section = section_of(row);
+    if (row.section() != section) {
+      section = row.section();
       fmt::print("\n## {}\n\n| key | default | unit | range | meaning | source |\n",
                  heading.empty() ? fmt::format("[{}]", section) : heading);
       fmt::print("|---|---|---|---|---|---|\n");

@@ -65,7 +65,7 @@ class Globe:
         if self.run.frames is None:
             raise RunError(
                 f"{self.run.folder}: no frames of drifting plates; run with --preset sphere "
-                "--set plates.frames_myr=10"
+                "--set plates.sphere.frames_myr=10"
             )
         self.islands = {}
         reader = simple.PVDReader(registrationName="drift", FileName=str(self.run.frames))

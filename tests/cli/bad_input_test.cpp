@@ -563,13 +563,14 @@ const BadInput kPlates[] = {
      [](const fs::path& folder) {
        const Words drift{"run", "-o", (folder / "out").string(), "--set", "plates.model=sphere"};
        Words first = drift, again = drift;
-       for (const char* word : {"--grid", "64x32", "--to", "plates", "--set", "plates.samples=2000",
-                                "--set", "plates.time_myr=4", "--no-vtk", "--no-maps"}) {
+       for (const char* word :
+            {"--grid", "64x32", "--to", "plates", "--set", "plates.sphere.samples=2000", "--set",
+             "plates.sphere.time_myr=4", "--no-vtk", "--no-maps"}) {
          first.emplace_back(word);
        }
-       for (const char* word :
-            {"--overwrite", "--from", "isostasy", "--to", "isostasy", "--set",
-             "plates.samples=2000", "--set", "plates.time_myr=4", "--set", "fields.plates=earth"}) {
+       for (const char* word : {"--overwrite", "--from", "isostasy", "--to", "isostasy", "--set",
+                                "plates.sphere.samples=2000", "--set", "plates.sphere.time_myr=4",
+                                "--set", "fields.plates=earth"}) {
          again.emplace_back(word);
        }
        const Outcome outcome = terrane(first);
@@ -592,16 +593,17 @@ const BadInput kPlates[] = {
      drift_of(two_plates(R"("Code": "AF")", "[[0, 0], [9e5, 0], [9e5, 9], [0, 0]]"))},
     {"NoFirstRelief",
      kConfiguration,
-     {"plates.initial_elevation = given", "fields.initial_elevation"},
-     drift_of("", {"--set", "fields.plates=earth", "--set", "plates.initial_elevation=given"})},
+     {"plates.sphere.initial_elevation = given", "fields.initial_elevation"},
+     drift_of("",
+              {"--set", "fields.plates=earth", "--set", "plates.sphere.initial_elevation=given"})},
     {"FirstReliefOfAPart",
      kInput,
      {"fields.initial_elevation", "must cover the whole planet"},
      [](const fs::path& folder) {
        ReliefFile{.north_deg = 60.0}.write(folder / "part.nc");
        return drift_of(
-           "", {"--set", "fields.plates=earth", "--set", "plates.initial_elevation=given", "--set",
-                "fields.initial_elevation=" + (folder / "part.nc").string()})(folder);
+           "", {"--set", "fields.plates=earth", "--set", "plates.sphere.initial_elevation=given",
+                "--set", "fields.initial_elevation=" + (folder / "part.nc").string()})(folder);
      }},
 };
 

@@ -55,7 +55,7 @@ TEST(Params, TellTheSameInEveryFormat) {
   EXPECT_EQ(lines_of(table).size(), json.size() + 1);
   for (const auto& parameter : json) {
     const std::string name = parameter.at("name");
-    const std::string key = name.substr(name.find('.') + 1);
+    const std::string key = name.substr(name.rfind('.') + 1);
     EXPECT_THAT(table, HasSubstr(name + " "));
     EXPECT_THAT(markdown, HasSubstr("| `" + key + "` |"));
     EXPECT_THAT(toml, HasSubstr("\n" + key + " = "));

@@ -91,7 +91,7 @@ class Scenario : public testing::Test {
                     "-o",        out_.string(),
                     "--to",      "plates",
                     "--grid",    "128x64",
-                    "--set",     "plates.samples=12000",
+                    "--set",     "plates.sphere.samples=12000",
                     "--no-maps", "--quiet"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Outcome outcome = terrane(arguments);
@@ -126,7 +126,7 @@ TEST_F(Scenario, AnIslandIsDrivenIntoAContinentAndASupercontinentBreaks) {
 
 TEST_F(Scenario, TheIslandCollidesOnAFinerLatticeToo) {
   run("island-and-supercontinent.toml",
-      {"--set", "plates.samples=100000", "--set", "plates.time_myr=100"});
+      {"--set", "plates.sphere.samples=100000", "--set", "plates.sphere.time_myr=100"});
   const auto all = happenings(out_);
   const auto collision = std::find_if(all.begin(), all.end(), [](const Happening& one) {
     return one.kind == "continental-collision";
@@ -164,7 +164,7 @@ TEST_F(FutureEarth, AfricaBreaksAndAustraliaMeetsAsia) {
 
 TEST_F(Scenario, ItsFramesAreWrittenAndGoOn) {
   run("island-and-supercontinent.toml",
-      {"--set", "plates.time_myr=60", "--set", "plates.frames_myr=30"});
+      {"--set", "plates.sphere.time_myr=60", "--set", "plates.sphere.frames_myr=30"});
   const fs::path middle = out_ / "frames" / "plates-0030.00.nc";
   for (const fs::path& file :
        {middle, out_ / "frames" / "plates-0060.00.vti", out_ / "plates.pvd"}) {
@@ -177,8 +177,8 @@ TEST_F(Scenario, ItsFramesAreWrittenAndGoOn) {
   };
   const std::string whole = plates(first);
   run("island-and-supercontinent.toml",
-      {"--overwrite", "--set", "plates.time_myr=60", "--set", "plates.frames_myr=0", "--set",
-       "fields.start_frame=" + middle.string()});
+      {"--overwrite", "--set", "plates.sphere.time_myr=60", "--set", "plates.sphere.frames_myr=0",
+       "--set", "fields.start_frame=" + middle.string()});
   EXPECT_EQ(plates(first), whole);  // digests of every field among it
 }
 

@@ -23,11 +23,11 @@ class Torus : public testing::Test {
                     "--no-vtk",
                     "--quiet",
                     "--set",
-                    "plates.map_columns=64",
+                    "plates.raster.map_columns=64",
                     "--set",
-                    "plates.map_rows=64",
+                    "plates.raster.map_rows=64",
                     "--set",
-                    "plates.cycle_steps=60",
+                    "plates.raster.cycle_steps=60",
                     "--set",
                     "erosion.steps=5",
                     "--set",
@@ -72,7 +72,7 @@ TEST_F(Torus, SaysInOneLineWhatATorusHasNot) {
       {{"--set", "plates.model=growth"}, "plates.model must be raster"},
       {{"--set", "isostasy.crust=margins"}, "isostasy.crust must be simulated"},
       {{"--to", "island"}, "a torus is none"},
-      {{"--grid", "64x32"}, "plates.map_rows = 64"},
+      {{"--grid", "64x32"}, "plates.raster.map_rows = 64"},
       {{"--dem", "relief.nc"}, "run.topology = torus"},
   };
   for (const Wrong& wrong : wrongs) {

@@ -90,7 +90,7 @@ TEST_F(EveryParameter, HasUnitsThatUdunitsReadsAndNoneForWords) {
 
 TEST_F(EveryParameter, EndsInItsUnit) {
   for (const Parameter& p : all) {
-    const std::string key(p.name.substr(p.name.find('.') + 1)), units(p.units);
+    const std::string key(p.key()), units(p.units);
     if (units.empty() || units == "1") {
       const auto last = words(key, '_').back();
       EXPECT_FALSE(kUnitWords.contains(last)) << p.name << " has no unit but ends in one";

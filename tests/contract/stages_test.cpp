@@ -67,8 +67,8 @@ std::unique_ptr<Stage> quick(const StageEntry& entry, const std::string& model) 
   const auto set = [&](std::string_view name, std::string_view text) {
     if (const Parameter* p = find_parameter(parameters, name)) p->set_text(text);
   };
-  set("plates.samples", "1500");
-  set("plates.time_myr", "44");
+  set("plates.sphere.samples", "1500");
+  set("plates.sphere.time_myr", "44");
   set("erosion.steps", "3");
   set("erosion.uplift_mm_yr", "0.2");
   set("erosion.rebound_fraction", "0.8");

@@ -18,9 +18,9 @@ import time
 from pathlib import Path
 
 SIZE = ["--grid", "24x12", "--no-maps", "--no-vtk", "--quiet", "--overwrite", "--threads", "1"]
-SMALL = {"island.nx": 32, "island.ny": 32, "plates.samples": 2000, "climate.resolution_deg": 10}
+SMALL = {"island.nx": 32, "island.ny": 32, "plates.sphere.samples": 2000, "climate.resolution_deg": 10}
 # What says how long, how large or where, but not what the planet is like.
-APART = {"run.grid", "run.threads", "plates.samples", "island.nx", "island.ny", "calibration."}
+APART = {"run.grid", "run.threads", "plates.sphere.samples", "island.nx", "island.ny", "calibration."}
 PRESETS = ["preview", "tectonica", "sphere", "raster", "hypsography"]
 SECONDS = 120
 CLOSED = 1e-9

@@ -21,7 +21,7 @@ PLANET = ["run", "--preset", "preview", "--grid", "96x48", "--to", "island", "--
           "--set", "output.globe=true", "--set", "output.map_width_px=300", "--set", "island.nx=64", "--set", "island.ny=32", "--set", "erosion.steps=10",
           "--threads", "2"]
 DRIFT = ["run", "--preset", "sphere", "--grid", "64x32", "--to", "erosion", "--no-maps", "--set",
-         "plates.samples=3000", "--set", "plates.time_myr=120", "--set", "plates.frames_myr=10", "--threads", "2"]
+         "plates.sphere.samples=3000", "--set", "plates.sphere.time_myr=120", "--set", "plates.sphere.frames_myr=10", "--threads", "2"]
 FIT = ["calibrate", "--target", "earth", "--preset", "preview", "--set", "run.grid=64x32", "--set",
        "calibration.seeds=1", "--set", "calibration.held_out_seeds=1", "--set", "calibration.iterations=6",
        "--threads", "2"]

@@ -27,6 +27,8 @@ grid = "32x16"
 to = "plates"
 [plates]
 model = "sphere"
+
+[plates.sphere]
 samples = 1500
 time_myr = 20.0
 frames_myr = 10.0
@@ -116,7 +118,7 @@ class Trial:
     def drift(self, *settings):
         words = [word for setting in settings for word in ("--set", setting)]
         return ("run", self.sound / "drift.toml", "--no-vtk", "--no-maps", "--overwrite", "-o",
-                self.folder / "out", "--set", "plates.frames_myr=0", *words)
+                self.folder / "out", "--set", "plates.sphere.frames_myr=0", *words)
 
     def relief(self):
         file = self.write(self.sound / "relief.nc", changed_hdf5, self.folder / "in.nc")
@@ -136,7 +138,7 @@ class Trial:
     def plates(self):
         seeds = sorted((Path(__file__).parent / "corpus" / "plates").iterdir())
         file = self.write(self.dice.choice(seeds), changed_text, self.folder / "in.geojson")
-        return file, self.drift(f"fields.plates={file}", "plates.time_myr=4")
+        return file, self.drift(f"fields.plates={file}", "plates.sphere.time_myr=4")
 
     def folder_of_run(self):
         run = self.folder / "run"

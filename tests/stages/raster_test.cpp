@@ -350,7 +350,7 @@ TEST(RasterPlanet, SaysWhichOfThePlatesOwnSettingsIsWrong) {
     laid(Grid::sphere(72, 36), 1, p);
     FAIL() << "accepted a folding ratio of 7";
   } catch (const ConfigurationError& error) {
-    EXPECT_NE(std::string(error.what()).find("plates.plate_folding"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("plates.raster.plate_folding"), std::string::npos);
     EXPECT_NE(std::string(error.what()).find("entry 1"), std::string::npos);
   }
   EXPECT_THROW(laid(Grid::plane(64, 64, 1e4, 1e4), 1, quick()), InputError);

@@ -79,14 +79,23 @@ void Pipeline::check(std::span<const FieldSpec* const> initial, int first, int l
         }
         writers += fmt::format("{}{}", writers.empty() ? "" : " or ", stage->info().name);
       }
-      throw ConfigurationError(fmt::format("stage {} needs the field {}, which {}", info.name,
-                                           wanted->name,
-                                           writers.empty() ? "no stage writes: give it with --dem"
-                                                           : "stage " + writers + " writes"));
+      throw ConfigurationError(
+          fmt::format("stage {} needs the field {}, which {}", info.name, wanted->name,
+                      writers.empty() ? "no stage writes, so that it must be given"
+                                      : "stage " + writers + " writes"));
     }
     if (info.own_grid) continue;
     for (const FieldSpec* written : info.writes) there.insert(written->name);
   }
+}
+
+bool Pipeline::is_read_after(const FieldSpec& spec, int at, int last) const {
+  for (int later = at + 1; later <= last; ++later) {
+    const StageInfo& info = stages_[later]->info();
+    if (lists(info.reads, spec) || lists(info.optional, spec)) return true;
+    if (!info.own_grid && lists(info.writes, spec)) return false;  // made anew
+  }
+  return false;
 }
 
 void Pipeline::run(State& state, Context& context, int first, int last,
@@ -111,12 +120,7 @@ void Pipeline::run(State& state, Context& context, int first, int last,
     context.advance(1.0);
     if (observer.after) observer.after(at, io.result(), context);
     for (const FieldSpec* spec : state.present()) {
-      bool needed = false;
-      for (int later = at + 1; later <= last && !needed; ++later) {
-        needed = lists(stages_[later]->info().reads, *spec) ||
-                 lists(stages_[later]->info().optional, *spec);
-      }
-      if (!needed) state.erase(*spec);
+      if (!is_read_after(*spec, at, last)) state.erase(*spec);
     }
   }
 }

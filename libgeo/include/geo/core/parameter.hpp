@@ -10,12 +10,24 @@
 
 namespace geo {
 
+/// The section in a parameter's full name: all before its last dot.
+constexpr std::string_view section_of(std::string_view name) {
+  const auto dot = name.rfind('.');
+  return name.substr(0, dot == std::string_view::npos ? name.size() : dot);
+}
+/// Whether a section is `of` itself or one below it: "plates.sphere" of "plates".
+constexpr bool is_section_of(std::string_view section, std::string_view of) {
+  return section.starts_with(of) && (section.size() == of.size() || section[of.size()] == '.');
+}
+
 using ParameterValue = std::variant<double, std::int64_t, bool, std::string>;
 
 /// One declaration of one parameter. It lives beside the struct member that holds the value and
 /// serves the configuration file, `--set`, `terrane params`, docs, file attributes and calibration.
 struct Parameter {
-  std::string_view name;   ///< "section.key"; the key ends in the unit where it has one
+  /// "section.key" or, for one model of a stage, "section.model.key"; the key ends in the unit
+  /// where it has one.
+  std::string_view name;
   std::string_view units;  ///< UDUNITS, "1" for pure numbers, "" for flags and choices
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
@@ -26,6 +38,9 @@ struct Parameter {
   ParameterValue default_value;
   bool takes_list = false;  ///< a text of entries with commas between, in TOML also an array
 
+  /// All before the last dot of the name, and what follows it.
+  [[nodiscard]] std::string_view section() const { return section_of(name); }
+  [[nodiscard]] std::string_view key() const { return name.substr(name.rfind('.') + 1); }
   [[nodiscard]] ParameterValue value() const;
   /// Checks type and range (NaN-safe) and stores. An integer is accepted where a real number is
   /// asked for. Throws ConfigurationError whose text names the key, the value and what is allowed.

@@ -37,6 +37,9 @@ class Pipeline {
   void run(State& state, Context& context, int first, int last, const Observer& observer) const;
 
  private:
+  /// Whether a stage behind `at` reads the values that the field has now.
+  [[nodiscard]] bool is_read_after(const FieldSpec& spec, int at, int last) const;
+
   std::vector<std::unique_ptr<Stage>> stages_;
 };
 

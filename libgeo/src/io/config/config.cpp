@@ -34,9 +34,45 @@ toml::table parse(std::string_view text, const std::string& source_name) {
 /// The parameter that has `key` in some section; empty when none has.
 std::string_view home_of(std::string_view key, std::span<const Parameter> parameters) {
   for (const Parameter& parameter : parameters) {
-    if (parameter.name.substr(parameter.name.find('.') + 1) == key) return parameter.name;
+    if (parameter.key() == key) return parameter.name;
   }
   return {};
+}
+
+bool has_section(std::string_view section, std::span<const Parameter> parameters) {
+  return std::any_of(parameters.begin(), parameters.end(), [&](const Parameter& parameter) {
+    return is_section_of(parameter.section(), section);
+  });
+}
+
+/// Keys of a section and of those below it, each with its full name. What is a table without being
+/// a section is handed on as a key.
+template <class Visit>
+void visit_keys(const toml::table& table, const std::string& section,
+                std::span<const Parameter> parameters, const Visit& visit) {
+  visit_in_text_order(table, [&](const toml::key& key, const toml::node& value) {
+    const std::string name = fmt::format("{}.{}", section, key.str());
+    if (value.is_table() && has_section(name, parameters)) {
+      visit_keys(*value.as_table(), name, parameters, visit);
+    } else {
+      visit(name, key, value);
+    }
+  });
+}
+
+/// All keys of a configuration that a run has written, with their full names: its tables are its
+/// sections.
+template <class Visit>
+void visit_all_keys(const toml::table& table, const std::string& section, const Visit& visit) {
+  visit_in_text_order(table, [&](const toml::key& key, const toml::node& value) {
+    const std::string name =
+        section.empty() ? std::string(key.str()) : fmt::format("{}.{}", section, key.str());
+    if (value.is_table()) {
+      visit_all_keys(*value.as_table(), name, visit);
+    } else if (!section.empty()) {
+      visit(name, value);
+    }
+  });
 }
 
 /// "event 2 is another, or absent"; empty when all are the same.
@@ -88,15 +124,14 @@ std::vector<std::string> apply_toml(std::string_view text, const std::string& so
           fmt::format("{}key {} must stand in a section{}", where_of(section), section.str(),
                       home.empty() ? "" : fmt::format("; did you mean [{}]?", section_of(home))));
     }
-    if (const auto sections = sections_of(parameters);
-        std::find(sections.begin(), sections.end(), section.str()) == sections.end()) {
-      refuse_unknown(where_of(section), section.str(), parameters);
+    if (!has_section(section.str(), parameters)) {
+      refuse_unknown(where_of(section), fmt::format("{}.", section.str()), parameters);
     }
-    visit_in_text_order(*table, [&](const toml::key& key, const toml::node& value) {
-      const std::string name = fmt::format("{}.{}", section.str(), key.str());
-      apply_node(value, name, where_of(key), parameters);
-      applied.push_back(name);
-    });
+    visit_keys(*table, std::string(section.str()), parameters,
+               [&](const std::string& name, const toml::key& key, const toml::node& value) {
+                 apply_node(value, name, where_of(key), parameters);
+                 applied.push_back(name);
+               });
   });
   return applied;
 }
@@ -158,7 +193,7 @@ std::string write_config(std::span<const Parameter> parameters, std::string_view
   for (const auto section : sections_of(parameters)) {
     text += fmt::format("\n[{}]\n", section);
     for (const Parameter& parameter : parameters) {
-      if (section_of(parameter.name) != section) continue;
+      if (parameter.section() != section) continue;
       text += commented_line(parameter);
     }
   }
@@ -167,8 +202,7 @@ std::string write_config(std::span<const Parameter> parameters, std::string_view
 
 std::string configured_text(std::string_view toml, std::string_view name) {
   const toml::table root = parse(toml, "config.toml");
-  const auto dot = name.find('.');
-  return root[name.substr(0, dot)][name.substr(dot + 1)].value_or(std::string());
+  return root.at_path(name).value_or(std::string());
 }
 
 std::string first_difference(std::string_view before, std::string_view after,
@@ -181,28 +215,26 @@ std::string first_difference(std::string_view before, std::string_view after,
     return std::find(sections.begin(), sections.end(), name) != sections.end();
   };
   const auto is_compared = [&](std::string_view section) {
-    return sections.empty() || is_listed(section);
+    return sections.empty() ||
+           std::any_of(sections.begin(), sections.end(),
+                       [&](const auto& listed) { return is_section_of(section, listed); });
   };
   const auto compare = [&](const toml::table& from, const toml::table& other, bool forward) {
-    visit_in_text_order(from, [&](const toml::key& section, const toml::node& node) {
-      if (node.as_table() == nullptr) return;
-      visit_in_text_order(*node.as_table(), [&](const toml::key& key, const toml::node& here) {
-        const std::string name = fmt::format("{}.{}", section.str(), key.str());
-        if (!found.empty() || !(is_compared(section.str()) || is_listed(name)) ||
-            std::find(ignored_names.begin(), ignored_names.end(), name) != ignored_names.end()) {
-          return;
-        }
-        const toml::node* there = other[section.str()][key.str()].node();
-        const auto shown = [](const toml::node* value) {
-          const auto plain = value == nullptr ? std::nullopt : plain_value(*value);
-          return plain ? to_toml(*plain) : std::string("absent");
-        };
-        const std::string one = shown(&here);
-        const std::string two = shown(there);
-        if (one != two) {
-          found = fmt::format("{} is {}, was {}", name, forward ? one : two, forward ? two : one);
-        }
-      });
+    visit_all_keys(from, {}, [&](const std::string& name, const toml::node& here) {
+      if (!found.empty() || !(is_compared(section_of(name)) || is_listed(name)) ||
+          std::find(ignored_names.begin(), ignored_names.end(), name) != ignored_names.end()) {
+        return;
+      }
+      const toml::node* there = other.at_path(name).node();
+      const auto shown = [](const toml::node* value) {
+        const auto plain = value == nullptr ? std::nullopt : plain_value(*value);
+        return plain ? to_toml(*plain) : std::string("absent");
+      };
+      const std::string one = shown(&here);
+      const std::string two = shown(there);
+      if (one != two) {
+        found = fmt::format("{} is {}, was {}", name, forward ? one : two, forward ? two : one);
+      }
     });
   };
   compare(new_root, old_root, true);

@@ -10,12 +10,6 @@
 namespace geo::io {
 namespace {
 
-std::vector<std::string_view> names_of(std::span<const Parameter> parameters) {
-  std::vector<std::string_view> names;
-  for (const Parameter& parameter : parameters) names.push_back(parameter.name);
-  return names;
-}
-
 std::string_view kind_of(const toml::node& node) {
   if (node.is_array()) return "an array";
   if (node.is_table()) return "a table";
@@ -43,12 +37,10 @@ std::optional<ParameterValue> list_value(const toml::node& node) {
 
 }  // namespace
 
-std::string_view section_of(std::string_view name) { return name.substr(0, name.find('.')); }
-
 std::vector<std::string_view> sections_of(std::span<const Parameter> parameters) {
   std::vector<std::string_view> sections;
   for (const Parameter& parameter : parameters) {
-    const auto section = section_of(parameter.name);
+    const auto section = parameter.section();
     if (std::find(sections.begin(), sections.end(), section) == sections.end()) {
       sections.push_back(section);
     }
@@ -72,11 +64,26 @@ void refuse_unknown(const std::string& where, std::string_view name,
     throw ConfigurationError(
         fmt::format("{}unknown section [{}]{}", where, section, suggestion(section, sections)));
   }
-  std::vector<std::string_view> siblings;
-  for (const auto candidate : names_of(parameters)) {
-    if (section_of(candidate) == section) siblings.push_back(candidate);
+  // Of the same stage: a key that stands in the section of another model, or is misspelt.
+  const std::string_view key = name.substr(name.rfind('.') + 1),
+                         stage = name.substr(0, name.find('.'));
+  std::vector<std::string_view> siblings, keys, full_names;
+  for (const Parameter& other : parameters) {
+    if (!is_section_of(other.section(), stage)) continue;
+    if (other.section() == section) siblings.push_back(other.name);
+    keys.push_back(other.key());
+    full_names.push_back(other.name);
+  }
+  const auto name_of = [&](std::string_view near) {
+    const auto at = std::find(keys.begin(), keys.end(), near) - keys.begin();
+    return fmt::format("; did you mean {}?", full_names[at]);
+  };
+  if (std::find(keys.begin(), keys.end(), key) != keys.end()) {
+    throw ConfigurationError(fmt::format("{}unknown key {}{}", where, name, name_of(key)));
   }
   auto hint = suggestion(name, siblings);
+  if (const auto near = nearest_word(key, keys); hint.empty() && !near.empty())
+    hint = name_of(near);
   if (hint.empty()) hint = fmt::format("; terrane params {} lists what there is", section);
   throw ConfigurationError(fmt::format("{}unknown key {}{}", where, name, hint));
 }
@@ -103,8 +110,7 @@ std::string commented_line(const Parameter& parameter) {
   const std::string range = parameter.range_text();
   return fmt::format("# {}; {}{}{}\n{} = {}\n", parameter.doc, parameter.type_name(),
                      has_unit ? fmt::format(" in {}", parameter.units) : "",
-                     range == "any" ? "" : fmt::format(", {}", range),
-                     parameter.name.substr(parameter.name.find('.') + 1),
+                     range == "any" ? "" : fmt::format(", {}", range), parameter.key(),
                      to_toml(parameter.value()));
 }
 

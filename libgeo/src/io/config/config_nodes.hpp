@@ -15,7 +15,6 @@ namespace geo::io {
 
 // What a configuration file's nodes have in common, whichever table they stand in.
 
-[[nodiscard]] std::string_view section_of(std::string_view name);
 [[nodiscard]] std::vector<std::string_view> sections_of(std::span<const Parameter> parameters);
 
 /// The value of a node, or nothing where it is no plain value (array, table, date).

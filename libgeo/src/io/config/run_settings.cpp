@@ -68,7 +68,7 @@ std::vector<Parameter> RunSettings::parameters() {
            "bird2003"),
       text("fields.initial_elevation", initial_elevation,
            "FILE[:VARIABLE] of a planet's relief from which drift begins where "
-           "plates.initial_elevation "
+           "plates.sphere.initial_elevation "
            "is given",
            "cortial2019"),
       text("fields.initial_age", initial_age,

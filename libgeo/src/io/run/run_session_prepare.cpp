@@ -532,11 +532,12 @@ void RunSession::read_initial_conditions() {
   if (!settings_.plates.empty()) plates_ = read_plate_outlines(settings_.plates);
   if (settings_.initial_elevation.empty()) {
     for (const Parameter& row : pipeline_.stages().front()->parameters()) {
-      if (row.name != "plates.initial_elevation" ||
+      if (row.name != "plates.sphere.initial_elevation" ||
           row.value() != ParameterValue(std::string("given")))
         continue;
       throw ConfigurationError(
-          "plates.initial_elevation = given needs fields.initial_elevation, a NetCDF file of a "
+          "plates.sphere.initial_elevation = given needs fields.initial_elevation, a NetCDF file "
+          "of a "
           "planet's "
           "relief");
     }

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "geo/kernels/numerics/smoothing.hpp"
+#include "geo/kernels/remapping/cubic_weights.hpp"
 
 namespace geo {
 namespace {
@@ -14,8 +15,7 @@ namespace {
 struct Taps {
   Taps(double place, int cells, bool periodic) {
     const double whole = std::floor(place), t = place - whole;
-    weight = {0.5 * t * (-1.0 + t * (2.0 - t)), 1.0 + t * t * (-2.5 + 1.5 * t),
-              0.5 * t * (1.0 + t * (4.0 - 3.0 * t)), 0.5 * t * t * (t - 1.0)};
+    weight = cubic_weights(t);
     const int first = static_cast<int>(whole) - 1;
     for (int k = 0; k < 4; ++k) {
       const int c = first + k;

@@ -5,9 +5,12 @@
 #include <complex>
 #include <limits>
 #include <numbers>
+#include <unsupported/Eigen/FFT>
 
 #include "geo/core/error.hpp"
+#include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/numerics/regression.hpp"
+#include "legendre.hpp"
 
 namespace geo {
 namespace {
@@ -16,23 +19,27 @@ namespace {
 std::vector<std::complex<double>> row_transforms(const Grid& grid, std::span<const float> field,
                                                  int orders) {
   const int nx = grid.nx(), ny = grid.ny();
-  std::vector<std::complex<double>> turn(nx);
-  for (int i = 0; i < nx; ++i) turn[i] = std::polar(1.0 / nx, -2.0 * std::numbers::pi * i / nx);
   std::vector<std::complex<double>> transforms(static_cast<std::size_t>(ny) * orders);
-#pragma omp parallel for schedule(static)
-  for (int j = 0; j < ny; ++j) {
-    for (int m = 0; m < orders; ++m) {
-      double real = 0.0, imaginary = 0.0;
-      for (int i = 0, angle = 0; i < nx; ++i) {
-        const double value = field[grid.cell(i, j)];
-        real += value * turn[angle].real();
-        imaginary += value * turn[angle].imag();
-        angle += m;
-        if (angle >= nx) angle -= nx;
-      }
-      transforms[static_cast<std::size_t>(j) * orders + m] = {real, imaginary};
+  ParallelErrors errors;
+#pragma omp parallel
+  {
+    Eigen::FFT<double> fft;
+    std::vector<double> row;
+    std::vector<std::complex<double>> transform;
+#pragma omp for schedule(static)
+    for (int j = 0; j < ny; ++j) {
+      errors.guard([&] {
+        const auto values = field.subspan(grid.cell(0, j), nx);
+        row.assign(values.begin(), values.end());
+        fft.fwd(transform, row);
+        for (int m = 0; m < orders; ++m) {
+          transforms[static_cast<std::size_t>(j) * orders + m] =
+              transform[m % nx] / static_cast<double>(nx);
+        }
+      });
     }
   }
+  errors.rethrow();
   return transforms;
 }
 
@@ -55,32 +62,17 @@ std::vector<double> harmonic_power(const Grid& grid, std::span<const float> fiel
     weight[j] = grid.area_m2(j) * grid.nx() / grid.total_area_m2();
   }
   std::vector<double> power(orders, 0.0);
-  // Harmonics of order m from P_mm upwards in degree (Holmes & Featherstone 2002), mean square 1.
-  std::vector<double> sectoral(ny, 1.0), below(ny), here(ny);
   for (int m = 0; m < orders; ++m) {
-    if (m > 0) {
-      const double factor = m == 1 ? std::sqrt(3.0) : std::sqrt((2.0 * m + 1.0) / (2.0 * m));
-      for (int j = 0; j < ny; ++j) sectoral[j] *= factor * cosine[j];
-    }
-    here = sectoral;
-    std::fill(below.begin(), below.end(), 0.0);
+    LegendreOrder legendre(m, sine, cosine);
     for (int l = m; l < orders; ++l) {
+      if (l > m) legendre.next();
+      const std::vector<double>& p = legendre.values();
       std::complex<double> coefficient = 0.0;
       for (int j = 0; j < ny; ++j) {
-        coefficient += weight[j] * here[j] * transforms[static_cast<std::size_t>(j) * orders + m];
+        coefficient += weight[j] * p[j] * transforms[static_cast<std::size_t>(j) * orders + m];
       }
-      // The real harmonics' sqrt(2) is in P_lm: cosine and sine parts add up to |c|^2.
-      power[l] += std::norm(coefficient);
-      const double a =
-          std::sqrt((2.0 * l + 1.0) * (2.0 * l + 3.0) / ((l + 1.0 - m) * (l + 1.0 + m)));
-      const double b = l == m ? 0.0
-                              : std::sqrt((2.0 * l + 3.0) * (l + m) * (l - m) /
-                                          ((2.0 * l - 1.0) * (l + 1.0 - m) * (l + 1.0 + m)));
-      for (int j = 0; j < ny; ++j) {
-        const double next = a * sine[j] * here[j] - b * below[j];
-        below[j] = here[j];
-        here[j] = next;
-      }
+      // Orders m and -m.
+      power[l] += (m == 0 ? 1.0 : 2.0) * std::norm(coefficient);
     }
   }
   return power;

@@ -10,6 +10,7 @@
 
 #include "geo/core/error.hpp"
 #include "geo/core/parallel_errors.hpp"
+#include "legendre.hpp"
 
 namespace geo {
 namespace {
@@ -30,38 +31,6 @@ std::vector<double> fejer_weights(int ny) {
   }
   return weight;
 }
-
-/// The normalised Legendre functions of one order at all parallels of one hemisphere, degree by
-/// degree; their squares integrate to 2 over the sine of latitude.
-class LegendreOrder {
- public:
-  LegendreOrder(int order, const std::vector<double>& sine, const std::vector<double>& cosine)
-      : order_(order), degree_(order), sine_(sine), now_(sine.size()), before_(sine.size(), 0.0) {
-    for (std::size_t j = 0; j < sine.size(); ++j) {
-      double p = 1.0;
-      for (int m = 1; m <= order; ++m) p *= std::sqrt((2.0 * m + 1.0) / (2.0 * m)) * cosine[j];
-      now_[j] = p;
-    }
-  }
-  [[nodiscard]] const std::vector<double>& values() const { return now_; }
-  void next() {
-    ++degree_;
-    const double l = degree_, m = order_;
-    const double a = std::sqrt((4.0 * l * l - 1.0) / (l * l - m * m));
-    const double b =
-        std::sqrt(((l - 1.0) * (l - 1.0) - m * m) / (4.0 * (l - 1.0) * (l - 1.0) - 1.0));
-    for (std::size_t j = 0; j < now_.size(); ++j) {
-      const double p = a * (sine_[j] * now_[j] - b * before_[j]);
-      before_[j] = now_[j];
-      now_[j] = p;
-    }
-  }
-
- private:
-  int order_, degree_;
-  const std::vector<double>& sine_;
-  std::vector<double> now_, before_;
-};
 
 /// Parts of one order along the meridian that are even and odd about the equator, and back.
 struct Meridian {

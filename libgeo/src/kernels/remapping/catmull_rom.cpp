@@ -4,17 +4,9 @@
 #include <cmath>
 
 #include "geo/core/error.hpp"
+#include "geo/kernels/remapping/cubic_weights.hpp"
 
 namespace geo {
-namespace {
-
-std::array<double, 4> weights(double t) {
-  return {0.5 * t * ((2.0 - t) * t - 1.0), 0.5 * (t * t * (3.0 * t - 5.0) + 2.0),
-          0.5 * t * ((4.0 - 3.0 * t) * t + 1.0), 0.5 * t * t * (t - 1.0)};
-}
-
-}  // namespace
-
 CatmullRom::CatmullRom(const Grid& planet, Centre position)
     : columns(planet.nx()), half_round(planet.nx() / 2) {
   if (planet.topology() != Topology::sphere) {
@@ -25,8 +17,8 @@ CatmullRom::CatmullRom(const Grid& planet, Centre position)
   const double y = (position.latitude_deg + 90.0) / 180.0 * ny - 0.5;
   const auto wrapped = [&](int i) { return ((i % nx) + nx) % nx; };
   const double x0 = std::floor(x), y0 = std::floor(y);
-  column_weight = weights(x - x0);
-  row_weight = weights(y - y0);
+  column_weight = cubic_weights(x - x0);
+  row_weight = cubic_weights(y - y0);
   for (int k = 0; k < 4; ++k) {
     column[k] = wrapped(static_cast<int>(x0) - 1 + k);
     const int j = static_cast<int>(y0) - 1 + k;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "geo/core/error.hpp"
+#include "geo/kernels/remapping/cubic_weights.hpp"
 
 namespace geo {
 
@@ -23,8 +24,7 @@ std::vector<CubicRows::Stencil> CubicRows::stencils(int from, int to) {
     const double floor = std::floor(position);
     const auto t = static_cast<float>(position - floor);
     all[k].first = static_cast<int>(floor) - 1;
-    all[k].weight = {0.5F * t * (-1.0F + t * (2.0F - t)), 1.0F + 0.5F * t * t * (3.0F * t - 5.0F),
-                     0.5F * t * (1.0F + t * (4.0F - 3.0F * t)), 0.5F * t * t * (t - 1.0F)};
+    all[k].weight = cubic_weights(t);
   }
   return all;
 }

@@ -184,25 +184,25 @@ float seen_at(const Grid& grid, std::span<const float> values, const Vector3& pl
 
 std::vector<Parameter> hypsography_parameters(PlatesParameters& p) {
   return {
-      choice("plates.initial_elevation", p.initial_elevation, {"noise", "hypsography", "given"},
-             "sphere: the first continents from noise, the first crust as the model hypsography "
+      choice("plates.sphere.initial_elevation", p.initial_elevation,
+             {"noise", "hypsography", "given"},
+             "the first continents from noise, the first crust as the model hypsography "
              "has it, or the relief of fields.initial_elevation",
              "davidson2013"),
-      choice("plates.ranking", p.ranking.by, {"great-circles", "fbm"},
-             "hypsography: the noise that orders places by height, unless fields.ranking does",
-             "davidson2013"),
-      integer("plates.circles", p.ranking.cuts.circles, "1", 1, 100'000,
-              "hypsography: great circles along which the ground rises", "davidson2013"),
-      real("plates.circle_steepness", p.ranking.cuts.steepness, "1", 0.1, 1e5,
-           "hypsography: how steeply it rises, per radian", "davidson2013"),
-      real("plates.circle_offset", p.ranking.cuts.offset, "1", 0.0, 1.0,
-           "hypsography: most that circles lie off the planet's centre, in radii; with 0 all "
+      choice("plates.hypsography.ranking", p.ranking.by, {"great-circles", "fbm"},
+             "the noise that orders places by height, unless fields.ranking does", "davidson2013"),
+      integer("plates.hypsography.circles", p.ranking.cuts.circles, "1", 1, 100'000,
+              "great circles along which the ground rises", "davidson2013"),
+      real("plates.hypsography.circle_steepness", p.ranking.cuts.steepness, "1", 0.1, 1e5,
+           "how steeply it rises, per radian", "davidson2013"),
+      real("plates.hypsography.circle_offset", p.ranking.cuts.offset, "1", 0.0, 1.0,
+           "most that circles lie off the planet's centre, in radii; with 0 all "
            "land has the deepest sea at its antipodes",
            "davidson2013"),
-      real("plates.ranking_smoothing_km", p.ranking.smoothing_km, "km", 0.0, 5000.0,
-           "hypsography: length over which a given ranking is smoothed", "design"),
-      real("plates.ranking_roughness", p.ranking.roughness, "1", 0.0, 10.0,
-           "hypsography: noise on a given ranking, in its deviations; settles ties", "design"),
+      real("plates.hypsography.ranking_smoothing_km", p.ranking.smoothing_km, "km", 0.0, 5000.0,
+           "length over which a given ranking is smoothed", "design"),
+      real("plates.hypsography.ranking_roughness", p.ranking.roughness, "1", 0.0, 10.0,
+           "noise on a given ranking, in its deviations; settles ties", "design"),
   };
 }
 

@@ -53,13 +53,14 @@ RasterSettings settings_of(const PlatesParameters& parameters, double width_km) 
   const double radians = parameters.sphere.law.step_myr * std::numbers::pi / 180.0;
   s.spin = p.spin_deg_myr * radians;
   s.curve = p.curve_deg_myr * radians;
-  read_own("plates.plate_speed", p.plate_speed, 0.0, 10.0, &RasterPlateSettings::speed, s.own);
-  read_own("plates.plate_folding", p.plate_folding, 0.0, 1.0, &RasterPlateSettings::folding_ratio,
+  read_own("plates.raster.plate_speed", p.plate_speed, 0.0, 10.0, &RasterPlateSettings::speed,
            s.own);
-  read_own("plates.plate_overlap", p.plate_overlap, 0.0, 10.0,
+  read_own("plates.raster.plate_folding", p.plate_folding, 0.0, 1.0,
+           &RasterPlateSettings::folding_ratio, s.own);
+  read_own("plates.raster.plate_overlap", p.plate_overlap, 0.0, 10.0,
            &RasterPlateSettings::overlap_relative, s.own);
-  read_own("plates.plate_erosion", p.plate_erosion, 0.0, 1e4, &RasterPlateSettings::erosion_steps,
-           s.own);
+  read_own("plates.raster.plate_erosion", p.plate_erosion, 0.0, 1e4,
+           &RasterPlateSettings::erosion_steps, s.own);
   return s;
 }
 
@@ -69,8 +70,8 @@ void check_shape(const Grid& grid, const RasterParameters& p) {
   const double rows = height * static_cast<double>(p.columns);
   if (std::abs(rows - static_cast<double>(p.rows)) < 0.5) return;
   throw ConfigurationError(
-      "plates.map_rows = " + std::to_string(p.rows) +
-      ": must be as high over plates.map_columns = " + std::to_string(p.columns) +
+      "plates.raster.map_rows = " + std::to_string(p.rows) +
+      ": must be as high over plates.raster.map_columns = " + std::to_string(p.columns) +
       " as the torus, " + std::to_string(std::lround(rows)) + " for this grid");
 }
 

@@ -189,7 +189,8 @@ SphereState beginning(const PlatesParameters& parameters, const SphereMesh& mesh
   }
   if (state.crust.size() != mesh.size()) {
     throw InputError("plates: the frame to go on from has " + std::to_string(state.crust.size()) +
-                     " samples: plates.samples must be that, not " + std::to_string(mesh.size()));
+                     " samples: plates.sphere.samples must be that, not " +
+                     std::to_string(mesh.size()));
   }
   return state;
 }

@@ -71,7 +71,7 @@ void take_plates(const Grid& grid, const SphereMesh& mesh, Context& context, Sph
     const PlateOutline& outline = context.plates[p];
     if (number[p] < 0) {
       context.warnings.push_back(fmt::format(
-          "fields.plates: {} is too small for plates.samples and left out", outline.name));
+          "fields.plates: {} is too small for plates.sphere.samples and left out", outline.name));
       continue;
     }
     number[p] = static_cast<std::int16_t>(start.rotation_rad_myr.size());
@@ -119,7 +119,7 @@ void take_relief(const Grid& grid, const SphereMesh& mesh, const Context& contex
                  SphereStart& start) {
   if (!context.initial_elevation) {
     throw InputError(
-        "plates: plates.initial_elevation = given needs fields.initial_elevation, a NetCDF "
+        "plates: plates.sphere.initial_elevation = given needs fields.initial_elevation, a NetCDF "
         "file of a planet's relief");
   }
   const GivenRelief& given = *context.initial_elevation;
@@ -177,7 +177,7 @@ SphereStart sphere_start(const PlatesParameters& parameters, const SphereMesh& m
   }
   if (parameters.initial_elevation != "given" && context.initial_elevation) {
     context.warnings.push_back(
-        "fields.initial_elevation is for plates.initial_elevation = given: not used");
+        "fields.initial_elevation is for plates.sphere.initial_elevation = given: not used");
   }
   return start;
 }

@@ -1,0 +1,143 @@
+#include "geo/core/pipeline.hpp"
+
+#include <gmock/gmock.h>
+
+#include <functional>
+
+#include "geo/core/error.hpp"
+
+namespace geo {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// A stage that does what a test says.
+class TestStage final : public Stage {
+ public:
+  using Work = std::function<void(StageIo&, Context&)>;
+  TestStage(StageInfo info, Work work) : info_(std::move(info)), work_(std::move(work)) {}
+
+  [[nodiscard]] const StageInfo& info() const override { return info_; }
+  [[nodiscard]] std::vector<Parameter> parameters() override { return {}; }
+  void run(StageIo& io, Context& context) const override { work_(io, context); }
+
+ private:
+  StageInfo info_;
+  Work work_;
+};
+
+std::unique_ptr<Stage> stage(StageInfo info, TestStage::Work work) {
+  return std::make_unique<TestStage>(std::move(info), std::move(work));
+}
+
+Pipeline pipeline_of(std::unique_ptr<Stage> first, std::unique_ptr<Stage> second,
+                     std::unique_ptr<Stage> third = nullptr) {
+  std::vector<std::unique_ptr<Stage>> stages;
+  stages.push_back(std::move(first));
+  stages.push_back(std::move(second));
+  if (third) stages.push_back(std::move(third));
+  return Pipeline(std::move(stages));
+}
+
+State empty_state() { return State(std::make_shared<const Grid>(Grid::sphere(8, 4))); }
+
+TestStage::Work fills(const Field<float>& spec, float value) {
+  return [&spec, value](StageIo& io, Context&) {
+    for (float& v : io.write(spec)) v += value;
+  };
+}
+
+TEST(Pipeline, DropsAFieldThatALaterStageMakesAnewUnread) {
+  // The second stage makes elevation anew and reads the age alone.
+  std::vector<std::string> there;
+  const Pipeline pipeline = pipeline_of(
+      stage({.name = "first", .writes = {&field::elevation, &field::crust_age}},
+            [](StageIo& io, Context&) {
+              io.write(field::elevation)[0] = 5.0F;
+              io.write(field::crust_age)[0] = 7.0F;
+            }),
+      stage({.name = "second", .reads = {&field::crust_age}, .writes = {&field::elevation}},
+            [](StageIo& io, Context&) {
+              EXPECT_EQ(io.write(field::elevation)[0], 0.0F);
+              EXPECT_EQ(io.read(field::crust_age)[0], 7.0F);
+            }),
+      stage({.name = "third", .reads = {&field::elevation}, .writes = {&field::temperature}},
+            fills(field::temperature, 1.0F)));
+  State state = empty_state();
+  Context context;
+  pipeline.run(state, context, 0, 2,
+               {.before =
+                    [&](int at) {
+                      if (at == 1) {
+                        for (const FieldSpec* spec : state.present())
+                          there.emplace_back(spec->name);
+                      }
+                    },
+                .after = {}});
+  EXPECT_THAT(there, ElementsAre("crust_age"));
+}
+
+TEST(Pipeline, KeepsAFieldThatALaterStageChanges) {
+  const Pipeline pipeline = pipeline_of(
+      stage({.name = "first", .writes = {&field::elevation}}, fills(field::elevation, 2.0F)),
+      stage({.name = "second", .reads = {&field::elevation}, .writes = {&field::elevation}},
+            fills(field::elevation, 3.0F)));
+  State state = empty_state();
+  Context context;
+  float result = 0.0F;
+  pipeline.run(state, context, 0, 1,
+               {.before = {}, .after = [&](int, const State& made, const Context&) {
+                  result = made.read(field::elevation)[0];
+                }});
+  EXPECT_EQ(result, 5.0F);
+  EXPECT_TRUE(state.present().empty());
+}
+
+TEST(Pipeline, NamesTheFieldThatIsMissingAndWhoWritesIt) {
+  const Pipeline pipeline = pipeline_of(
+      stage({.name = "first", .writes = {&field::elevation}}, fills(field::elevation, 1.0F)),
+      stage({.name = "second", .reads = {&field::elevation}, .writes = {&field::temperature}},
+            fills(field::temperature, 1.0F)));
+  try {
+    pipeline.check({}, 1, 1);
+    FAIL();
+  } catch (const ConfigurationError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("second needs the field elevation"));
+    EXPECT_THAT(error.what(), HasSubstr("stage first writes"));
+  }
+  EXPECT_NO_THROW(pipeline.check({}, 0, 1));
+  const FieldSpec* const given = &field::elevation;
+  EXPECT_NO_THROW(pipeline.check({&given, 1}, 1, 1));
+}
+
+TEST(Pipeline, FindsWhatAStageDidNotDeclareOrDidNotWrite) {
+  State state = empty_state();
+  Context context;
+  const auto runs = [&](StageInfo info, TestStage::Work work) {
+    std::vector<std::unique_ptr<Stage>> stages;
+    stages.push_back(stage(std::move(info), std::move(work)));
+    Pipeline(std::move(stages)).run(state, context, 0, 0, {});
+  };
+  EXPECT_THROW(runs({.name = "lazy", .writes = {&field::elevation}}, [](StageIo&, Context&) {}),
+               Bug);
+  EXPECT_THROW(runs({.name = "curious"},
+                    [](StageIo& io, Context&) { (void)io.read_optional(field::elevation); }),
+               Bug);
+  EXPECT_THROW(runs({.name = "meddling", .reads = {}, .writes = {}}, fills(field::elevation, 1.0F)),
+               Bug);
+}
+
+TEST(Pipeline, StopsBetweenStepsWhenASignalCame) {
+  std::atomic<bool> stop = true;
+  State state = empty_state();
+  Context context;
+  context.stop = &stop;
+  std::vector<std::unique_ptr<Stage>> stages;
+  stages.push_back(
+      stage({.name = "first", .writes = {&field::elevation}}, fills(field::elevation, 1.0F)));
+  EXPECT_THROW(Pipeline(std::move(stages)).run(state, context, 0, 0, {}), Interrupted);
+}
+
+}  // namespace
+}  // namespace geo
