@@ -193,7 +193,7 @@ TEST(Climate, OddPlanetsHaveAClimate) {
   const State land = run(grid, std::vector<float>(size, 300.0F));
   expect_sound(land, "all land");
   EXPECT_LT(area_mean(land, field::precipitation), 100.0) << "no sea, no rain";
-  for (const double obliquity : {0.0, 60.0, 90.0}) {
+  for (const double obliquity : {0.0, 60.0, 90.0, 120.0, 177.4}) {
     for (const double pressure : {0.05, 1.0, 10.0}) {
       Context context;
       context.planet.obliquity_deg = obliquity;

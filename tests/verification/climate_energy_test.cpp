@@ -39,6 +39,19 @@ double second_legendre(double obliquity_deg) {
   return 5.0 * sum;
 }
 
+// A planet that stands on its head turns backwards under the same sun: sin(180 deg - e) = sin e.
+TEST(Insolation, BeyondNinetyDegreesIsThatOfTheSupplement) {
+  for (const double obliquity : {0.0, 23.44, 60.0, 90.0}) {
+    for (const double latitude : {-80.0, -35.0, 0.0, 50.0, 89.0}) {
+      for (double longitude = 0.0; longitude < 360.0; longitude += 15.0) {
+        EXPECT_NEAR(daily_insolation_w_m2(latitude, longitude, 180.0 - obliquity, 1361.0),
+                    daily_insolation_w_m2(latitude, longitude, obliquity, 1361.0), 1e-9)
+            << obliquity << ", " << latitude << ", " << longitude;
+      }
+    }
+  }
+}
+
 TEST(Insolation, SecondLegendreCoefficientFollowsObliquity) {
   for (const double obliquity : {0.0, 23.44, 54.74, 90.0}) {
     const double sine = std::sin(obliquity * kRadians);
