@@ -20,6 +20,8 @@ void add_params_command(CLI::App& program, Action& action);
 void add_fields_command(CLI::App& program, Action& action);
 void add_info_command(CLI::App& program, Action& action);
 void add_presets_command(CLI::App& program, Action& action);
+void add_completion_command(CLI::App& program, Action& action);
+void add_manual_command(CLI::App& program, Action& action);
 void add_calibrate_command(CLI::App& program, Action& action);
 void add_score_command(CLI::App& program, Action& action);
 

@@ -109,6 +109,8 @@ void run_program(int argc, char** argv) {
   terrane::add_fields_command(program, action);
   terrane::add_info_command(program, action);
   terrane::add_presets_command(program, action);
+  terrane::add_completion_command(program, action);
+  terrane::add_manual_command(program, action);
   program.allow_extras();
   // One: what follows it is a stage, a folder or a file, whatever its name.
   program.require_subcommand(0, 1);

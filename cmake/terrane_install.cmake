@@ -3,16 +3,21 @@
 include(CMakePackageConfigHelpers)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/terrane)
 
-install(TARGETS terrane_geo EXPORT terraneTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS terrane_geo EXPORT terraneTargets
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/libgeo/include/geo DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+  COMPONENT development
   FILES_MATCHING PATTERN "*.hpp" PATTERN io EXCLUDE)
-install(EXPORT terraneTargets NAMESPACE terrane:: DESTINATION ${package_folder})
+install(EXPORT terraneTargets NAMESPACE terrane:: DESTINATION ${package_folder}
+  COMPONENT development)
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/terraneConfig.cmake.in
   ${PROJECT_BINARY_DIR}/terraneConfig.cmake INSTALL_DESTINATION ${package_folder})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/terraneConfigVersion.cmake
   COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/terraneConfig.cmake
-  ${PROJECT_BINARY_DIR}/terraneConfigVersion.cmake DESTINATION ${package_folder})
-install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+  ${PROJECT_BINARY_DIR}/terraneConfigVersion.cmake DESTINATION ${package_folder}
+  COMPONENT development)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/paraview DESTINATION ${CMAKE_INSTALL_DATADIR}/terrane
+  COMPONENT program
   PATTERN __pycache__ EXCLUDE PATTERN make_colour_maps.py EXCLUDE)

@@ -129,6 +129,9 @@ std::vector<std::string> apply_toml(std::string_view text, const std::string& so
     }
     visit_keys(*table, std::string(section.str()), parameters,
                [&](const std::string& name, const toml::key& key, const toml::node& value) {
+                 if (value.is_table() && find_parameter(parameters, name) == nullptr) {
+                   refuse_unknown(where_of(key), fmt::format("{}.", name), parameters);
+                 }
                  apply_node(value, name, where_of(key), parameters);
                  applied.push_back(name);
                });

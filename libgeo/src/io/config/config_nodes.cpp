@@ -65,25 +65,19 @@ void refuse_unknown(const std::string& where, std::string_view name,
         fmt::format("{}unknown section [{}]{}", where, section, suggestion(section, sections)));
   }
   // Of the same stage: a key that stands in the section of another model, or is misspelt.
-  const std::string_view key = name.substr(name.rfind('.') + 1),
-                         stage = name.substr(0, name.find('.'));
-  std::vector<std::string_view> siblings, keys, full_names;
+  const std::string_view key = name.substr(name.rfind('.') + 1);
+  const std::string_view stage = name.substr(0, name.find('.'));
+  std::vector<std::string_view> keys, full_names;
   for (const Parameter& other : parameters) {
     if (!is_section_of(other.section(), stage)) continue;
-    if (other.section() == section) siblings.push_back(other.name);
     keys.push_back(other.key());
     full_names.push_back(other.name);
   }
-  const auto name_of = [&](std::string_view near) {
+  std::string hint;
+  if (const auto near = nearest_word(key, keys); !near.empty()) {
     const auto at = std::find(keys.begin(), keys.end(), near) - keys.begin();
-    return fmt::format("; did you mean {}?", full_names[at]);
-  };
-  if (std::find(keys.begin(), keys.end(), key) != keys.end()) {
-    throw ConfigurationError(fmt::format("{}unknown key {}{}", where, name, name_of(key)));
+    hint = fmt::format("; did you mean {}?", full_names[at]);
   }
-  auto hint = suggestion(name, siblings);
-  if (const auto near = nearest_word(key, keys); hint.empty() && !near.empty())
-    hint = name_of(near);
   if (hint.empty()) hint = fmt::format("; terrane params {} lists what there is", section);
   throw ConfigurationError(fmt::format("{}unknown key {}{}", where, name, hint));
 }

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "geo/kernels/landscape/fine_relief.hpp"
 #include "kernels/water/planet_window.hpp"
 
 namespace geo {

@@ -79,7 +79,7 @@ void cut_sections(const Crust<V>& crust, const CoarseGrid& coarse, const Tectoni
   {
     NoiseRow row(grid);
     UnitNoise::Line alongs(along, grid.nx()), shifts(shift, grid.nx()), noises(noise, grid.nx()),
-        swells(swell, grid.nx()), floors(floor, grid.nx()), sutures(suture, grid.nx()),
+        swells(mantle_swell, grid.nx()), floors(floor, grid.nx()), sutures(suture, grid.nx()),
         worns(worn, grid.nx());
 #pragma omp for schedule(dynamic, 8)
     for (int j = 0; j < grid.ny(); ++j) {

@@ -1,0 +1,57 @@
+# `cpack -G DEB` makes two packages: the program, and the library to build against.
+set(package_work ${PROJECT_BINARY_DIR}/package)
+find_program(TERRANE_GZIP gzip)
+set(CPACK_PACKAGE_NAME terrane)
+set(CPACK_PACKAGE_VENDOR "The terrane authors")
+set(CPACK_PACKAGE_CONTACT "The terrane authors <terrane@localhost>")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_COMPONENTS_ALL program development)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+# Folders as Debian has them, whatever the umask of whoever packs.
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE
+  GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME terrane)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "fonts-dejavu-core")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "paraview, ferret-datasets")
+set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "whole planet's surface from physics
+ Grows plates, floats the crust, wears it down with rivers, gives it a climate,
+ rivers and lakes and biomes, and refines islands. Every stage leaves CF-NetCDF
+ and VTK files; a fit calibrates parameters against a target hypsometry.")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libterrane-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libgeographiclib-dev")
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "kernels and stages of terrane as a library
+ Grids, fields, kernels and stages of a planet's surface as functions over spans:
+ headers, a static library and the package that find_package(terrane) reads.")
+if(TERRANE_GZIP)
+  file(WRITE ${package_work}/changelog "terrane (${PROJECT_VERSION}) unstable; urgency=medium
+
+  * See https://keepachangelog.com: CHANGELOG.md of the source.
+
+ -- The terrane authors <terrane@localhost>  Thu, 01 Jan 2026 00:00:00 +0000
+")
+  execute_process(COMMAND ${TERRANE_GZIP} -9nkf ${package_work}/changelog)
+  file(WRITE ${package_work}/copyright "Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/
+Upstream-Name: terrane
+
+Files: *
+Copyright: 2026 The terrane authors
+License: Apache-2.0
+ On Debian systems the full text of the Apache License, version 2.0, is in
+ /usr/share/common-licenses/Apache-2.0.
+")
+  foreach(package terrane libterrane-dev)
+    set(component program)
+    if(package STREQUAL libterrane-dev)
+      set(component development)
+    endif()
+    install(FILES ${package_work}/changelog.gz ${package_work}/copyright
+      DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package} COMPONENT ${component} EXCLUDE_FROM_ALL)
+  endforeach()
+endif()
+include(CPack)
