@@ -1,9 +1,11 @@
 # `cpack -G DEB` makes two packages: the program, and the library to build against.
+# Packs what is built; tests need not be.
+set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)
 set(package_work ${PROJECT_BINARY_DIR}/package)
 find_program(TERRANE_GZIP gzip)
 set(CPACK_PACKAGE_NAME terrane)
 set(CPACK_PACKAGE_VENDOR "The terrane authors")
-set(CPACK_PACKAGE_CONTACT "The terrane authors <terrane@localhost>")
+set(CPACK_PACKAGE_CONTACT "The terrane authors <terrane@terrane.example>")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_COMPONENTS_ALL program development)
@@ -33,7 +35,7 @@ if(TERRANE_GZIP)
 
   * See https://keepachangelog.com: CHANGELOG.md of the source.
 
- -- The terrane authors <terrane@localhost>  Thu, 01 Jan 2026 00:00:00 +0000
+ -- The terrane authors <terrane@terrane.example>  Thu, 01 Jan 2026 00:00:00 +0000
 ")
   execute_process(COMMAND ${TERRANE_GZIP} -9nkf ${package_work}/changelog)
   file(WRITE ${package_work}/copyright "Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/

@@ -259,13 +259,13 @@ TEST(RasterPlates, AMergerHandsItsMomentumOn) {
     RasterTectonics model(settings, seed);
     for (bool goes_on = true; goes_on;) {
       const std::vector<RasterPlate> before = model.plates();
-      const RasterBudget before = model.budget();
+      const RasterBudget earlier = model.budget();
       goes_on = model.advance();
       const auto& plates = model.plates();
-      const int mergers = model.budget().mergers - before.mergers;
-      const double moved = model.budget().merged - before.merged;
+      const int mergers = model.budget().mergers - earlier.mergers;
+      const double moved = model.budget().merged - earlier.merged;
       // New floor, on any plate, comes after a merger.
-      const double floor = model.budget().created - before.created;
+      const double floor = model.budget().created - earlier.created;
       for (std::size_t p = 0; p < plates.size(); ++p) {
         const double east = plates[p].east - before[p].east,
                      north = plates[p].north - before[p].north;
