@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -61,7 +62,14 @@ TEST_F(EveryParameter, HasANameOfItsOwnInTheSectionOfItsOwner) {
   std::set<std::string_view> names;
   for (const Parameter& p : all) {
     EXPECT_TRUE(names.insert(p.name).second) << p.name << " is declared twice";
-    EXPECT_EQ(std::count(p.name.begin(), p.name.end(), '.'), 1) << p.name;
+    // "stage.key", or "stage.model.key" of one of the stage's models.
+    const std::string_view section = p.section();
+    if (const auto dot = section.find('.'); dot != std::string_view::npos) {
+      const Parameter* model = find_parameter(all, std::string(section.substr(0, dot)) + ".model");
+      ASSERT_NE(model, nullptr) << p.name;
+      EXPECT_THAT(model->choices, testing::Contains(section.substr(dot + 1))) << p.name;
+    }
+    EXPECT_FALSE(section.empty() || p.key().empty()) << p.name;
     EXPECT_EQ(p.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_."),
               std::string_view::npos)
         << p.name;

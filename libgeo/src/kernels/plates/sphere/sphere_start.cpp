@@ -212,7 +212,7 @@ class InitialConditions {
     if (!start_.elevation_m.empty()) return take_relief();
     SphereCrust& crust = state_.crust;
     const std::vector<float> boundary_km = distance_to_boundary_km();
-    const Noise swell(seed_, "plates.initial_elevation");
+    const Noise swell(seed_, "plates.first_relief");
     const auto relief =
         fbm_at(swell, mesh_.samples().positions(), settings_.radius_km / 1800.0, 5, 0.5);
     const std::vector<double> kept = shares_kept_at_edges();
