@@ -58,10 +58,12 @@ Values values_for(const FieldSpec& spec, const Grid& grid, bool gaps) {
 }
 
 void write(const std::filesystem::path& folder, const std::string& name, Grid grid,
-           std::vector<std::filesystem::path>& images, std::optional<double> time_myr = {}) {
+           std::vector<std::filesystem::path>& images, std::optional<double> time_myr = {},
+           const std::vector<const FieldSpec*>& wanted = {field::all().begin(),
+                                                          field::all().end()}) {
   io::Snapshot snapshot{name, std::make_shared<const Grid>(std::move(grid)), {}};
   int number = 0;
-  for (const FieldSpec* spec : field::all()) {
+  for (const FieldSpec* spec : wanted) {
     snapshot.fields.emplace_back(
         spec, std::make_shared<const Values>(values_for(*spec, *snapshot.grid, number++ % 3 == 2)));
   }
@@ -97,6 +99,15 @@ int main(int count, char** arguments) try {
   for (const double time_myr : {0.0, 250.0}) {
     write(folder, fmt::format("frame-{:03.0f}", time_myr), Grid::sphere(60, 30), images, time_myr);
   }
+  // For exports alone: one with overviews, one in a projection.
+  const std::vector<const FieldSpec*> some{&field::elevation, &field::drainage_area,
+                                           &field::crust_age, &field::plate_id,
+                                           &field::lake_id,   &field::biome};
+  std::filesystem::create_directories(folder / "exports");
+  std::vector<std::filesystem::path> others;
+  write(folder / "exports", "large", Grid::sphere(1300, 650), others, {}, some);
+  write(folder / "exports", "projected",
+        Grid::equal_area(64, 48, 700.0, Centre{-38.0, 176.0}, earth), others, {}, some);
   io::write_pvd(folder / "planet.pvd", {images[0]});
   return 0;
 } catch (const geo::Error& error) {

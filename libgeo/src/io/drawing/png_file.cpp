@@ -62,13 +62,37 @@ Bytes compressed(const Bytes& rows) {
   return packed;
 }
 
-/// Width and height, 8 bits, true colour, the one compression and filter method, no interlacing.
-std::array<std::uint8_t, 13> header_of(const PixelView& pixels) {
+/// Rows of grey samples, most significant byte first, filtered in the same way.
+template <class T>
+Bytes filtered(std::span<const T> samples, int width, int height) {
+  const std::size_t row_bytes = 1 + static_cast<std::size_t>(width) * sizeof(T);
+  Bytes rows(row_bytes * height);
+#pragma omp parallel for schedule(static)
+  for (int y = 0; y < height; ++y) {
+    const T* from = samples.data() + static_cast<std::size_t>(y) * width;
+    std::uint8_t* to = rows.data.get() + row_bytes * y;
+    *to++ = PNG_FILTER_VALUE_SUB;
+    T west = 0;
+    for (int x = 0; x < width; ++x) {
+      const T here = from[x];
+      if constexpr (sizeof(T) == 2) {
+        *to++ = static_cast<std::uint8_t>((here >> 8U) - (west >> 8U));
+      }
+      *to++ = static_cast<std::uint8_t>(here - west);
+      west = here;
+    }
+  }
+  return rows;
+}
+
+/// Width and height, bits of a component, what they are, the one compression and filter method, no
+/// interlacing.
+std::array<std::uint8_t, 13> header_of(int width, int height, int bits, int colour_type) {
   std::array<std::uint8_t, 13> header{};
-  png_save_uint_32(header.data(), static_cast<png_uint_32>(pixels.width));
-  png_save_uint_32(header.data() + 4, static_cast<png_uint_32>(pixels.height));
-  header[8] = 8;
-  header[9] = PNG_COLOR_TYPE_RGB;
+  png_save_uint_32(header.data(), static_cast<png_uint_32>(width));
+  png_save_uint_32(header.data() + 4, static_cast<png_uint_32>(height));
+  header[8] = static_cast<std::uint8_t>(bits);
+  header[9] = static_cast<std::uint8_t>(colour_type);
   return header;
 }
 
@@ -94,17 +118,33 @@ bool write_chunks(std::FILE* stream, std::span<const std::uint8_t> header,
   return true;
 }
 
-}  // namespace
-
-void write_png(const std::filesystem::path& path, const PixelView& pixels) {
-  const auto header = header_of(pixels);
-  const auto image = compressed(filtered(pixels));
+void write_whole(const std::filesystem::path& path, std::span<const std::uint8_t> header,
+                 const Bytes& image) {
   AtomicFile file(path);
   std::FILE* stream = std::fopen(file.temporary().c_str(), "wb");
   if (stream == nullptr) file.fail("cannot open");
   const bool written = write_chunks(stream, header, {image.data.get(), image.size});
   if (std::fclose(stream) != 0 || !written) file.fail("the PNG library refused");
   file.commit();
+}
+
+}  // namespace
+
+void write_png(const std::filesystem::path& path, const PixelView& pixels) {
+  write_whole(path, header_of(pixels.width, pixels.height, 8, PNG_COLOR_TYPE_RGB),
+              compressed(filtered(pixels)));
+}
+
+void write_grey_png(const std::filesystem::path& path, std::span<const std::uint16_t> samples,
+                    int width, int height) {
+  write_whole(path, header_of(width, height, 16, PNG_COLOR_TYPE_GRAY),
+              compressed(filtered(samples, width, height)));
+}
+
+void write_grey_png(const std::filesystem::path& path, std::span<const std::uint8_t> samples,
+                    int width, int height) {
+  write_whole(path, header_of(width, height, 8, PNG_COLOR_TYPE_GRAY),
+              compressed(filtered(samples, width, height)));
 }
 
 }  // namespace geo::io

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 
 namespace geo::io {
 
@@ -13,5 +14,11 @@ struct PixelView {
 
 /// Writes a whole PNG file, 8 bits per component, without a time stamp. Throws IoError.
 void write_png(const std::filesystem::path& path, const PixelView& pixels);
+
+/// The same of grey samples, 16 or 8 bits each, row by row from the top.
+void write_grey_png(const std::filesystem::path& path, std::span<const std::uint16_t> samples,
+                    int width, int height);
+void write_grey_png(const std::filesystem::path& path, std::span<const std::uint8_t> samples,
+                    int width, int height);
 
 }  // namespace geo::io

@@ -227,21 +227,6 @@ void draw_continuous(const FieldSpec& spec, const Scene& scene, MapCanvas& canva
 constexpr std::array kDistinct{"#e6e6e6", "#0072b2", "#e69f00", "#009e73", "#cc79a7",
                                "#56b4e9", "#d55e00", "#f0e442", "#4d4d4d", "#999999"};
 
-std::vector<std::pair<Rgb, const Flag*>> category_colours(const FieldSpec& spec) {
-  std::vector<std::pair<Rgb, const Flag*>> items;
-  const bool has_own = spec.name == "boundary_type" || spec.name == "biome" ||
-                       spec.name == "koppen_class" || spec.name == "rock_type";
-  const std::optional<ColourMap> own =
-      has_own ? std::make_optional<ColourMap>(spec.name) : std::nullopt;
-  for (const Flag& flag : spec.flags) {
-    const auto* stop = own ? own->category(flag.value) : nullptr;
-    items.emplace_back(
-        stop != nullptr ? stop->colour : parse_colour(kDistinct[items.size() % kDistinct.size()]),
-        &flag);
-  }
-  return items;
-}
-
 void draw_flags(const FieldSpec& spec, const Scene& scene, MapCanvas& canvas) {
   const auto items = category_colours(spec);
   const auto held = scene.state.values(spec);
@@ -302,6 +287,21 @@ void draw_areas(const FieldSpec& spec, const Scene& scene, MapCanvas& canvas) {
 
 }  // namespace
 
+std::vector<std::pair<Rgb, const Flag*>> category_colours(const FieldSpec& spec) {
+  std::vector<std::pair<Rgb, const Flag*>> items;
+  const bool has_own = spec.name == "boundary_type" || spec.name == "biome" ||
+                       spec.name == "koppen_class" || spec.name == "rock_type";
+  const std::optional<ColourMap> own =
+      has_own ? std::make_optional<ColourMap>(spec.name) : std::nullopt;
+  for (const Flag& flag : spec.flags) {
+    const auto* stop = own ? own->category(flag.value) : nullptr;
+    items.emplace_back(
+        stop != nullptr ? stop->colour : parse_colour(kDistinct[items.size() % kDistinct.size()]),
+        &flag);
+  }
+  return items;
+}
+
 FieldKind kind_of(const FieldSpec& spec) {
   if (spec.name == "elevation" || spec.name == "crust_elevation") return FieldKind::relief;
   if (!spec.flags.empty()) return FieldKind::categories;
@@ -351,6 +351,36 @@ void draw_any_field(const FieldSpec& spec, const Scene& scene, MapCanvas& canvas
         break;
     }
   }
+}
+
+std::function<Rgb(float)> tints_of(const FieldSpec& spec, std::span<const float> some) {
+  if (kind_of(spec) == FieldKind::relief) {
+    return [land = ColourMap("land_elevation"), sea = ColourMap("sea_depth")](float value) {
+      return value < 0.0F ? sea.smooth(value) : land.smooth(value);
+    };
+  }
+  if (kind_of(spec) == FieldKind::categories) {
+    return [items = category_colours(spec)](float value) {
+      const auto at = std::find_if(items.begin(), items.end(), [&](const auto& item) {
+        return static_cast<float>(item.second->value) == value;
+      });
+      return at != items.end() ? at->first : kPaleLand;
+    };
+  }
+  const auto known =
+      std::find_if(field_maps().begin(), field_maps().end(),
+                   [&](const FieldMap& map) { return map.field->name == spec.name; });
+  if (known != field_maps().end()) {
+    return [colours = ColourMap(known->colours), scale = known->scale](float value) {
+      return std::isnan(value) ? kPaleLand : colours.smooth(scale * value);
+    };
+  }
+  Raster raster;
+  raster.values.assign(some.begin(), some.end());
+  return [colouring = colouring_of(raster, kind_of(spec) == FieldKind::steps)](float value) {
+    const bool there = !std::isnan(value) && value >= colouring.none_below;
+    return there ? colouring.colours.smooth(value) : kPaleLand;
+  };
 }
 
 }  // namespace geo::io

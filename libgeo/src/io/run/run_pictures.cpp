@@ -263,6 +263,35 @@ std::vector<std::filesystem::path> draw_view(const RunFolder& folder, const MapV
   return written;
 }
 
+FieldsOfRun read_fields_of_run(const RunFolder& folder, const FieldOfRun& wanted,
+                               const std::function<bool(const FieldSpec&)>& also,
+                               const std::function<bool(const FieldSpec&)>& besides) {
+  const Manifest manifest = read_manifest(folder.manifest());
+  const StageRecord& record = stage_of(manifest, wanted, folder.path().string());
+  FieldsOfRun found{
+      read_recorded(folder.path(), record,
+                    [&](const FieldSpec& spec) { return spec.name == wanted.field || also(spec); }),
+      folder.path() / netcdf_of(record)};
+  auto& fields = found.snapshot.fields;
+  const auto is_lacking = [&](const FieldSpec& spec) {
+    return besides(spec) && std::none_of(fields.begin(), fields.end(),
+                                         [&](const auto& held) { return held.first == &spec; });
+  };
+  if (is_island(record)) return found;
+  for (auto other = manifest.stages.rbegin(); other != manifest.stages.rend(); ++other) {
+    const bool has_some =
+        std::any_of(other->fields.begin(), other->fields.end(), [&](const FieldRecord& held) {
+          const FieldSpec* const spec = field::find(held.name);
+          return spec != nullptr && is_lacking(*spec);
+        });
+    if (is_island(*other) || &*other == &record || !has_some) continue;
+    Snapshot snapshot = read_recorded(folder.path(), *other, is_lacking);
+    if (snapshot.grid->size() != found.snapshot.grid->size()) continue;
+    for (auto& held : snapshot.fields) fields.push_back(std::move(held));
+  }
+  return found;
+}
+
 std::filesystem::path draw_field(const RunFolder& folder, const MapView& view,
                                  const FieldOfRun& wanted, const std::filesystem::path& pictures) {
   const Manifest manifest = read_manifest(folder.manifest());

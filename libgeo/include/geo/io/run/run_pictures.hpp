@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -10,6 +11,7 @@
 
 #include "geo/core/state.hpp"
 #include "geo/io/drawing/map_view.hpp"
+#include "geo/io/netcdf/stage_file.hpp"
 #include "geo/io/run/run_folder.hpp"
 
 namespace geo::io {
@@ -50,6 +52,20 @@ struct FieldOfRun {
   std::string field;
   std::string stage;  ///< "hydrology", "island-2"; empty: the last of the planet that wrote it
 };
+
+/// Fields of one stage of a run, and the file that they are of.
+struct FieldsOfRun {
+  Snapshot snapshot;
+  std::filesystem::path file;
+};
+
+/// Reads the stage that holds a field of a run: of that stage the field and what else `also` says
+/// yes to, of a planet's other stages what of `besides` it lacks (where several have it, the last).
+/// Throws ConfigurationError that names what is near where the run has no such stage or
+/// field, InputError, IoError.
+FieldsOfRun read_fields_of_run(const RunFolder& folder, const FieldOfRun& wanted,
+                               const std::function<bool(const FieldSpec&)>& also,
+                               const std::function<bool(const FieldSpec&)>& besides);
 
 /// Draws one field of a run into `pictures`/FIELD.png, or STAGE-FIELD.png where a stage is named,
 /// over the coast and the shading of the relief. Throws ConfigurationError that names what is near

@@ -1,0 +1,105 @@
+// terrane export: what it writes of a run and of a file, and what it refuses.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "cli/program.hpp"
+#include "cli/relief_file.hpp"
+#include "cli/sample_run.hpp"
+#include "io/temporary_folder.hpp"
+
+namespace geo {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+/// Each has a run with climate and rivers.
+class Export : public testing::Test {
+ protected:
+  void SetUp() override {
+    ReliefFile{}.write(folder / "relief.nc");
+    const Outcome outcome = terrane(quick_run(folder / "relief.nc", folder / "run"));
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    run = (folder / "run").string();
+  }
+  TemporaryFolder folder;
+  std::string run;
+};
+
+TEST_F(Export, WritesEveryFormatOfARunAndNamesItsFiles) {
+  for (const auto& [format, name] :
+       {std::pair{"png16", "a.png"}, std::pair{"r16", "b.r16"}, std::pair{"geotiff", "c.tif"},
+        std::pair{"zarr", "d.zarr"}, std::pair{"healpix", "e.nc"}, std::pair{"glb", "f.glb"}}) {
+    const Outcome outcome =
+        terrane({"export", run, "--format", format, "-o", (folder / name).string()});
+    EXPECT_EQ(outcome.code, 0) << format << outcome.err;
+    const auto lines = lines_of(outcome.out);
+    ASSERT_FALSE(lines.empty()) << format;
+    for (const auto& line : lines) EXPECT_TRUE(fs::exists(line)) << line;
+  }
+  for (const auto& entry : fs::directory_iterator(folder.path())) {
+    EXPECT_NE(entry.path().filename().string().front(), '.') << "left behind: " << entry.path();
+  }
+}
+
+TEST_F(Export, OfAFieldOfAnotherStageTakesItFromThere) {
+  const Outcome outcome = terrane({"export", run, "--format", "r16", "--field", "temperature", "-o",
+                                   (folder / "t.r16").string()});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(text_of(folder / "t.json"));
+  EXPECT_EQ(json.at("stage"), "climate");
+  EXPECT_EQ(json.at("units"), "degC");
+  EXPECT_EQ(fs::file_size(folder / "t.r16"),
+            2 * json.at("width").get<int>() * json.at("height").get<int>());
+}
+
+TEST_F(Export, RefusesInOneLineWhatDoesNotGoTogether) {
+  std::ofstream(folder / "notes.txt") << "no planet\n";
+  fs::create_directory(folder / "other.zarr");
+  struct Case {
+    std::vector<std::string> options;
+    int code;
+    const char* words;
+  };
+  const std::vector<Case> cases{
+      {{run}, 2, "--format"},
+      {{run, "--format", "geotif"}, 2, "geotiff"},
+      {{run, "--format", "png16", "--field", "elevatoin"}, 2, "elevation"},
+      {{run, "--format", "png16", "--stage", "hydrologie"}, 2, "hydrology"},
+      {{run, "--format", "geotiff", "--tiles", "65"}, 2, "--tiles"},
+      {{run, "--format", "zarr", "--layout", "cube"}, 2, "--layout"},
+      {{run, "--format", "glb", "--masks", "rivers"}, 2, "--masks"},
+      {{run, "--format", "png16", "--layout", "ball"}, 2, "cube"},
+      {{run, "--format", "png16", "--masks", "river"}, 2, "rivers"},
+      {{run, "--format", "png16", "--tiles", "2"}, 2, "3"},
+      {{run, "--format", "png16", "--tiles", "many"}, 2, "--tiles"},
+      {{run, "--format", "png16", "--range", "7,-7"}, 2, "less"},
+      {{run, "--format", "png16", "--range", "7"}, 2, "two numbers"},
+      {{run, "--format", "healpix", "--nside", "100"}, 2, "power of two"},
+      {{run, "--format", "png16", "--nside", "64"}, 2, "healpix"},
+      {{run, "--format", "glb", "--exaggeration", "-1"}, 2, "--exaggeration"},
+      {{run, "--format", "png16", "-o", (folder / "a.json").string()}, 2, ".png"},
+      {{run, "--format", "png16", "-o", (folder / "nowhere" / "a.png").string()}, 4, "nowhere"},
+      {{run, "--format", "zarr", "-o", (folder / "other.zarr").string()}, 2, "no Zarr store"},
+      {{folder.path().string(), "--format", "png16"}, 2, "holds no run"},
+      {{(folder / "notes.txt").string(), "--format", "png16"}, 3, "notes.txt"},
+      {{(folder / "absent.nc").string(), "--format", "png16"}, 4, "absent.nc"},
+  };
+  for (const Case& each : cases) {
+    std::vector<std::string> arguments{"export"};
+    arguments.insert(arguments.end(), each.options.begin(), each.options.end());
+    Call call;
+    call.arguments = arguments;
+    call.working_folder = folder.path();
+    const Outcome outcome = terrane(call);
+    EXPECT_EQ(outcome.code, each.code) << outcome.err << testing::PrintToString(each.options);
+    EXPECT_EQ(lines_of(outcome.err).size(), 1U) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(each.words));
+  }
+}
+
+}  // namespace
+}  // namespace geo
