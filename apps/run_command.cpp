@@ -26,8 +26,8 @@ namespace fs = std::filesystem;
 
 /// The command line of `run` as it was typed.
 struct RunOptions {
-  std::string config, folder = "out", preset, seed, grid, topology, dem, exemplars, from, to,
-                      threads;
+  std::string config, folder = "out", preset, seed, grid, topology, dem, dem_range, dem_window,
+                      exemplars, from, to, threads;
   std::vector<std::string> assignments;
   bool resume = false, allow_other_build = false, overwrite = false, dry_run = false;
   bool quiet = false, log_json = false, no_vtk = false, no_maps = false;
@@ -103,6 +103,8 @@ bool configure(Configuration& configuration, const RunOptions& options) {
   anchor_paths(settings, fs::current_path());
   set_option(configuration, "--seed", "run.seed", options.seed);
   set_option(configuration, "--grid", "run.grid", options.grid);
+  set_option(configuration, "--dem-range", "dem.range", options.dem_range);
+  set_option(configuration, "--dem-window", "dem.window", options.dem_window);
   set_option(configuration, "--topology", "run.topology", options.topology);
   check_topology(configuration);
   if (options.no_vtk) settings.vtk = false;
@@ -200,6 +202,15 @@ void add_run_command(CLI::App& program, Action& action) {
                    "A real relief takes the place of plates and isostasy; without --preset, preset "
                    "earth-dem")
       ->type_name("FILE[:VARIABLE]");
+  command
+      ->add_option("--dem-range", o.dem_range,
+                   "Heights of black and white in a grey PNG, m, such as --dem-range=-11000,9000 "
+                   "(default: what the JSON beside it says)")
+      ->type_name("MIN,MAX");
+  command
+      ->add_option("--dem-window", o.dem_window,
+                   "Where the edges of a PNG lie, degrees (default: the whole planet)")
+      ->type_name("W,S,E,N");
   command
       ->add_option("--exemplars", o.exemplars,
                    "Folder of real reliefs (NetCDF, GeoTIFF, m) that the island's terrain is made "
