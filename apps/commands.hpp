@@ -23,5 +23,6 @@ void add_presets_command(CLI::App& program, Action& action);
 void add_calibrate_command(CLI::App& program, Action& action);
 void add_score_command(CLI::App& program, Action& action);
 void add_export_command(CLI::App& program, Action& action);
+void add_diff_command(CLI::App& program, Action& action);
 
 }  // namespace terrane

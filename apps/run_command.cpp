@@ -30,7 +30,7 @@ struct RunOptions {
                       exemplars, from, to, threads;
   std::vector<std::string> assignments;
   bool resume = false, allow_other_build = false, overwrite = false, dry_run = false;
-  bool quiet = false, log_json = false, no_vtk = false, no_maps = false;
+  bool quiet = false, log_json = false, json_progress = false, no_vtk = false, no_maps = false;
 };
 
 /// A path that the configuration gives is relative to where the configuration file lies.
@@ -124,7 +124,7 @@ void print_prediction(const geo::io::RunSession& session, const RunOptions& opti
 }
 
 void run(const RunOptions& options) {
-  set_log_style({.json = options.log_json, .quiet = options.quiet});
+  set_log_style({.json = options.log_json || options.json_progress, .quiet = options.quiet});
   const int threads = use_threads(options.threads);
   Configuration configuration;
   const bool folders_configuration = configure(configuration, options);
@@ -142,14 +142,16 @@ void run(const RunOptions& options) {
   session.prepare();
   if (options.dry_run) return print_prediction(session, options, threads);
 
-  Progress progress(!options.quiet && !options.log_json);
+  Progress progress(options.json_progress               ? ProgressStyle::json
+                    : options.quiet || options.log_json ? ProgressStyle::none
+                                                        : ProgressStyle::bar);
   geo::io::RunEvents events;
   events.stage_begins = [&](std::string_view stage, double cells) {
     progress.begin(stage, cells);
     progress.update(0.0);
   };
   events.stage_ends = [&](std::string_view stage, double seconds) {
-    progress.clear();
+    progress.end(stage, seconds);
     log_info(fmt::format("{:<10} {}", stage, shown_seconds(seconds)));
   };
   events.progress = [&](double fraction) { progress.update(fraction); };
@@ -236,6 +238,9 @@ void add_run_command(CLI::App& program, Action& action) {
                     "nothing");
   command->add_flag("--quiet", o.quiet, "Say nothing but warnings and errors");
   command->add_flag("--log-json", o.log_json, "Log one JSON object a line");
+  command->add_flag(
+      "--json-progress", o.json_progress,
+      "For programs that watch: progress and log as one JSON object a line on stderr");
   command->callback([&action, options] { action = [options] { run(*options); }; });
 }
 
