@@ -146,6 +146,7 @@ TEST(ImageRelief, RefusesInOneLineWhatIsDamagedOrSaysTooLittle) {
   EXPECT_THAT(refusal("ncols 4\nnrows three\n"), HasSubstr("nrows"));
   EXPECT_THAT(refusal("ncols 4\nnrows 3\n1 2 3"), HasSubstr("xllcorner"));
   EXPECT_THAT(refusal("ncols 1\nfloors 2\n"), HasSubstr("floors"));
+  EXPECT_THAT(refusal("ncols 1\nfl\x88ors 2\n"), HasSubstr("fl?ors"));
   EXPECT_THAT(refusal("\x89PNG\r\n\x1a\n and no more", {"0,1", ""}), HasSubstr("PNG"));
   const std::vector<std::uint8_t> grey(16 * 8);
   write_grey_png(folder / "b.png", grey, 16, 8);

@@ -189,6 +189,14 @@ std::optional<double> number_in(std::string_view word) {
   return number;
 }
 
+/// A word of a file as a message quotes it: short, and of letters that every terminal has.
+std::string shown_word(std::string_view word) {
+  constexpr std::size_t kMost = 40;
+  std::string text(word.substr(0, kMost));
+  for (char& letter : text) letter = letter > ' ' && letter <= '~' ? letter : '?';
+  return text;
+}
+
 struct AsciiHeader {
   double columns = 0.0, rows = 0.0, x = 0.0, y = 0.0, dx = 0.0, dy = 0.0;
   bool centre_x = false, centre_y = false;
@@ -204,7 +212,7 @@ AsciiHeader read_header(std::string_view text, std::size_t& at) {
     const std::string key = lower(std::string(next_word(text, ahead)));
     if (key.empty() || number_in(key)) break;
     const auto value = number_in(next_word(text, ahead));
-    if (!value) throw InputError(fmt::format("key {:.40} of its head has no number", key));
+    if (!value) throw InputError(fmt::format("key {} of its head has no number", shown_word(key)));
     if (key == "ncols")
       header.columns = *value;
     else if (key == "nrows")
@@ -222,7 +230,8 @@ AsciiHeader read_header(std::string_view text, std::size_t& at) {
     } else if (key == "yllcorner" || key == "yllcenter") {
       header.y = *value, header.centre_y = key == "yllcenter", has_y = true;
     } else {
-      throw InputError(fmt::format("key {:.40} of its head is none of an ESRI ASCII grid", key));
+      throw InputError(
+          fmt::format("key {} of its head is none of an ESRI ASCII grid", shown_word(key)));
     }
     at = ahead;
   }
@@ -311,7 +320,7 @@ PlainRaster read_ascii_raster(const fs::path& path) {
       if (!value) {
         throw InputError(fmt::format(
             "row {} from the top, column {}: {}", raster.ny - y, x + 1,
-            word.empty() ? "is missing" : fmt::format("\"{:.40}\" is no number", word)));
+            word.empty() ? "is missing" : fmt::format("\"{}\" is no number", shown_word(word))));
       }
       const bool gap = !std::isfinite(*value) || value == header.missing;
       raster.values[static_cast<std::size_t>(y) * raster.nx + x] =
