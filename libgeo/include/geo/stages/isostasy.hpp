@@ -26,7 +26,7 @@ struct IsostasyParameters {
   double deformation_smoothing_km = 30.0;
 
   double continental_km = 36.4;
-  double ocean_depth_m = 3690.0;
+  double ocean_depth_m = 3750.0;
   double oceanic_km = 7.0;
   double thickness_noise_km = 4.5;
   double collision_km = 14.5;
@@ -45,8 +45,8 @@ struct IsostasyParameters {
   double relict_km = 9.2;
   double heat_m = 950.0;
   double thermal_coefficient = 0.02;
-  double shelf_depth_m = 65.0;
-  double shelf_edge = 0.68;
+  double shelf_depth_m = 90.0;
+  double shelf_edge = 0.78;
   double trench_depth_m = 1700.0;
   double seamount_m = 1800.0;
   double seafloor_roughness_m = 130.0;
