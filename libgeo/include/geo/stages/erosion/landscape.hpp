@@ -56,7 +56,7 @@ class Landscape {
         outlets_(std::move(outlets)),
         lowered_(grid.size(), V(0.0F)) {
     if (!deposits()) return;
-    unsettled_m_.assign(grid.size(), V(0.0F));
+    unsettled_m_.assign(grid.size(), Number(0.0));
     if constexpr (kRecords) {
       sediment_.thickness_m.assign(grid.size(), 0.0F);
       sediment_.laid_m.assign(grid.size(), 0.0F);
@@ -124,7 +124,7 @@ class Landscape {
   /// no room for, m3.
   [[nodiscard]] Number unsettled_m3() const {
     if (unsettled_m_.empty()) return Number(0.0);
-    return area_sum<Number>(grid_, [&](Index c) { return Number(unsettled_m_[c]); });
+    return area_sum<Number>(grid_, [&](Index c) { return unsettled_m_[c]; });
   }
   /// By how much each cell was lowered, m.
   [[nodiscard]] std::span<const V> lowered_m() const { return lowered_; }
@@ -196,8 +196,7 @@ class Landscape {
       sea[cell] = outlets_[cell] != 0 && value_of(z_[cell]) < 0.0 ? 1 : 0;
       if (sea[cell] == 0) continue;
       room_m[cell] = greater(Number(-wave_base_m - Number(z_[cell])), Number(0.0));
-      supply_m[cell] =
-          volume_m3[cell] / grid_.area_m2(grid_.row(cell)) + Number(unsettled_m_[cell]);
+      supply_m[cell] = volume_m3[cell] / grid_.area_m2(grid_.row(cell)) + unsettled_m_[cell];
     }
     rock_.over_edges += area_sum<Number>(grid_, [&](Index cell) {
       return outlets_[cell] != 0 && sea[cell] == 0
@@ -214,7 +213,7 @@ class Landscape {
       const V floor = z_[cell];
       z_[cell] = lesser(V(Number(floor) + supply_m[cell]), greater(floor, V(-kShallowest_m)));
       laid_m[cell] = z_[cell] - floor;
-      unsettled_m_[cell] = V(supply_m[cell] - (Number(z_[cell]) - Number(floor)));
+      unsettled_m_[cell] = supply_m[cell] - (Number(z_[cell]) - Number(floor));
     }
     rock_.laid_at_sea += area_sum<Number>(grid_, [&](Index c) {
       return sea[c] != 0 ? Number(z_[c]) - Number(before_[c]) : Number(0.0);
@@ -294,7 +293,8 @@ class Landscape {
   std::span<const V> erodibility_;
   std::vector<V> initial_;
   std::vector<std::uint8_t> outlets_;
-  std::vector<V> lowered_, before_, owed_m_, unsettled_m_;
+  std::vector<V> lowered_, before_, owed_m_;
+  std::vector<Number> unsettled_m_;
   SedimentRecord sediment_;
   RockVolumes<Number> rock_;
 };
