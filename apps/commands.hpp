@@ -25,5 +25,6 @@ void add_manual_command(CLI::App& program, Action& action);
 void add_calibrate_command(CLI::App& program, Action& action);
 void add_score_command(CLI::App& program, Action& action);
 void add_export_command(CLI::App& program, Action& action);
+void add_diff_command(CLI::App& program, Action& action);
 
 }  // namespace terrane

@@ -69,7 +69,7 @@ void make_island(const IslandOptions& options) {
                                  configuration.settings, configuration.planet,
                                  configuration.parameters(), options.folder);
   session.prepare();
-  Progress progress(!options.quiet);
+  Progress progress(options.quiet ? ProgressStyle::none : ProgressStyle::bar);
   geo::io::RunEvents events;
   events.stage_begins = [&](std::string_view stage, double cells) { progress.begin(stage, cells); };
   events.progress = [&](double fraction) { progress.update(fraction); };

@@ -106,6 +106,7 @@ void run_program(int argc, char** argv) {
   terrane::add_calibrate_command(program, action);
   terrane::add_maps_command(program, action);
   terrane::add_export_command(program, action);
+  terrane::add_diff_command(program, action);
   terrane::add_params_command(program, action);
   terrane::add_fields_command(program, action);
   terrane::add_info_command(program, action);

@@ -4,6 +4,7 @@
 #include <CLI/App.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -21,21 +22,51 @@ namespace {
 
 using Rows = std::vector<geo::Parameter>;
 
-/// The parameters of one section and those below it, or all.
-Rows chosen_rows(const Rows& all, const std::string& section) {
-  if (section.empty()) return all;
-  Rows rows;
+std::string lower(std::string_view text) {
+  std::string result(text);
+  for (char& letter : result) {
+    letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  }
+  return result;
+}
+
+/// Whether every word stands in a parameter's name, meaning, unit or choices.
+bool speaks_of(const geo::Parameter& row, const std::vector<std::string>& words) {
+  const std::string text =
+      lower(fmt::format("{} {} {} {}", row.name, row.doc, row.units, row.range_text()));
+  return std::all_of(words.begin(), words.end(), [&](const std::string& word) {
+    return text.find(lower(word)) != std::string::npos;
+  });
+}
+
+/// The parameters of a section and those below it if the first word is its name, of these those
+/// that speak of all other words; all without words.
+Rows chosen_rows(const Rows& all, std::vector<std::string> words) {
   std::vector<std::string_view> sections;
   for (const geo::Parameter& parameter : all) {
-    if (geo::is_section_of(parameter.section(), section)) rows.push_back(parameter);
     if (sections.empty() || sections.back() != parameter.section()) {
       sections.push_back(parameter.section());
     }
   }
+  std::string section;
+  if (!words.empty() && std::find(sections.begin(), sections.end(), words[0]) != sections.end()) {
+    section = words[0];
+    words.erase(words.begin());
+  }
+  Rows rows;
+  for (const geo::Parameter& parameter : all) {
+    if (!section.empty() && !geo::is_section_of(parameter.section(), section)) continue;
+    if (speaks_of(parameter, words)) rows.push_back(parameter);
+  }
   if (rows.empty()) {
-    throw geo::ConfigurationError(fmt::format("unknown stage {}: must be one of {}{}", section,
-                                              fmt::join(sections, ", "),
-                                              geo::io::suggestion(section, sections)));
+    const std::string sought = fmt::format("{}", fmt::join(words, " "));
+    throw geo::ConfigurationError(
+        section.empty()
+            ? fmt::format(
+                  "unknown stage {}, nor does any parameter speak of it: stages and sections "
+                  "are {}{}",
+                  sought, fmt::join(sections, ", "), geo::io::suggestion(words[0], sections))
+            : fmt::format("no parameter of {} speaks of {}", section, sought));
   }
   return rows;
 }
@@ -139,22 +170,23 @@ void check_format(const std::string& format) {
 
 void add_params_command(CLI::App& program, Action& action) {
   struct Options {
-    std::string section;
+    std::vector<std::string> words;
     std::string format = "table";
   };
   CLI::App* command =
       program.add_subcommand("params", "Every parameter: default, unit, range, source");
   const auto options = std::make_shared<Options>();
-  command->add_option("STAGE", options->section,
-                      "A stage or another section, or event; all sections without it");
+  command->add_option("STAGE_OR_WORDS", options->words,
+                      "A stage or another section, or event; further words, or words alone, choose "
+                      "the parameters that speak of all of them; all without any");
   command->add_option("--format", options->format, "table, toml, json or markdown")
       ->type_name("FORMAT");
   command->callback([&action, options] {
     action = [options] {
       check_format(options->format);
-      if (options->section == "event") return print_events(options->format);
+      if (options->words == std::vector<std::string>{"event"}) return print_events(options->format);
       const Configuration configuration;
-      const Rows rows = chosen_rows(configuration.all_parameters(), options->section);
+      const Rows rows = chosen_rows(configuration.all_parameters(), options->words);
       if (options->format == "table") return print_table(rows);
       if (options->format == "json") {
         fmt::print("{}\n", to_json(rows).dump(2));
@@ -165,7 +197,7 @@ void add_params_command(CLI::App& program, Action& action) {
         return;
       }
       print_markdown(rows);
-      if (options->section.empty()) print_events("markdown");
+      if (options->words.empty()) print_events("markdown");
     };
   });
 }

@@ -26,11 +26,11 @@ namespace fs = std::filesystem;
 
 /// The command line of `run` as it was typed.
 struct RunOptions {
-  std::string config, folder = "out", preset, seed, grid, topology, dem, exemplars, from, to,
-                      threads;
+  std::string config, folder = "out", preset, seed, grid, topology, dem, dem_range, dem_window,
+                      exemplars, from, to, threads;
   std::vector<std::string> assignments;
   bool resume = false, allow_other_build = false, overwrite = false, dry_run = false;
-  bool quiet = false, log_json = false, no_vtk = false, no_maps = false;
+  bool quiet = false, log_json = false, json_progress = false, no_vtk = false, no_maps = false;
 };
 
 /// A path that the configuration gives is relative to where the configuration file lies.
@@ -103,6 +103,8 @@ bool configure(Configuration& configuration, const RunOptions& options) {
   anchor_paths(settings, fs::current_path());
   set_option(configuration, "--seed", "run.seed", options.seed);
   set_option(configuration, "--grid", "run.grid", options.grid);
+  set_option(configuration, "--dem-range", "dem.range", options.dem_range);
+  set_option(configuration, "--dem-window", "dem.window", options.dem_window);
   set_option(configuration, "--topology", "run.topology", options.topology);
   check_topology(configuration);
   if (options.no_vtk) settings.vtk = false;
@@ -122,7 +124,7 @@ void print_prediction(const geo::io::RunSession& session, const RunOptions& opti
 }
 
 void run(const RunOptions& options) {
-  set_log_style({.json = options.log_json, .quiet = options.quiet});
+  set_log_style({.json = options.log_json || options.json_progress, .quiet = options.quiet});
   const int threads = use_threads(options.threads);
   Configuration configuration;
   const bool folders_configuration = configure(configuration, options);
@@ -140,14 +142,16 @@ void run(const RunOptions& options) {
   session.prepare();
   if (options.dry_run) return print_prediction(session, options, threads);
 
-  Progress progress(!options.quiet && !options.log_json);
+  Progress progress(options.json_progress               ? ProgressStyle::json
+                    : options.quiet || options.log_json ? ProgressStyle::none
+                                                        : ProgressStyle::bar);
   geo::io::RunEvents events;
   events.stage_begins = [&](std::string_view stage, double cells) {
     progress.begin(stage, cells);
     progress.update(0.0);
   };
   events.stage_ends = [&](std::string_view stage, double seconds) {
-    progress.clear();
+    progress.end(stage, seconds);
     log_info(fmt::format("{:<10} {}", stage, shown_seconds(seconds)));
   };
   events.progress = [&](double fraction) { progress.update(fraction); };
@@ -201,6 +205,15 @@ void add_run_command(CLI::App& program, Action& action) {
                    "earth-dem")
       ->type_name("FILE[:VARIABLE]");
   command
+      ->add_option("--dem-range", o.dem_range,
+                   "Heights of black and white in a grey PNG, m, such as --dem-range=-11000,9000 "
+                   "(default: what the JSON beside it says)")
+      ->type_name("MIN,MAX");
+  command
+      ->add_option("--dem-window", o.dem_window,
+                   "Where the edges of a PNG lie, degrees (default: the whole planet)")
+      ->type_name("W,S,E,N");
+  command
       ->add_option("--exemplars", o.exemplars,
                    "Folder of real reliefs (NetCDF, GeoTIFF, m) that the island's terrain is made "
                    "like")
@@ -225,6 +238,9 @@ void add_run_command(CLI::App& program, Action& action) {
                     "nothing");
   command->add_flag("--quiet", o.quiet, "Say nothing but warnings and errors");
   command->add_flag("--log-json", o.log_json, "Log one JSON object a line");
+  command->add_flag(
+      "--json-progress", o.json_progress,
+      "For programs that watch: progress and log as one JSON object a line on stderr");
   command->callback([&action, options] { action = [options] { run(*options); }; });
 }
 

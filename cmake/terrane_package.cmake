@@ -2,7 +2,7 @@
 # Packs what is built; tests need not be.
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)
 set(package_work ${PROJECT_BINARY_DIR}/package)
-find_program(TERRANE_GZIP gzip)
+find_program(TERRANE_GZIP gzip REQUIRED)
 set(CPACK_PACKAGE_NAME terrane)
 set(CPACK_PACKAGE_VENDOR "The terrane authors")
 set(CPACK_PACKAGE_CONTACT "The terrane authors <terrane@terrane.example>")
@@ -20,25 +20,25 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME terrane)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "fonts-dejavu-core")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "paraview, ferret-datasets")
-set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "whole planet's surface from physics
- Grows plates, floats the crust, wears it down with rivers, gives it a climate,
- rivers and lakes and biomes, and refines islands. Every stage leaves CF-NetCDF
- and VTK files; a fit calibrates parameters against a target hypsometry.")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "whole planet's surface from physics")
+set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "Grows plates, floats the crust, wears it down with rivers, gives it
+a climate, rivers and lakes and biomes, and refines islands. Every stage
+leaves CF-NetCDF and VTK files; a fit calibrates parameters against a
+target hypsometry.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libterrane-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libgeographiclib-dev")
-set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "kernels and stages of terrane as a library
- Grids, fields, kernels and stages of a planet's surface as functions over spans:
- headers, a static library and the package that find_package(terrane) reads.")
-if(TERRANE_GZIP)
-  file(WRITE ${package_work}/changelog "terrane (${PROJECT_VERSION}) unstable; urgency=medium
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Grids, fields, kernels and stages of a planet's surface as functions over
+spans: headers, a static library and the package that find_package(terrane)
+reads.")
+file(WRITE ${package_work}/changelog "terrane (${PROJECT_VERSION}) unstable; urgency=medium
 
   * See https://keepachangelog.com: CHANGELOG.md of the source.
 
  -- The terrane authors <terrane@terrane.example>  Thu, 01 Jan 2026 00:00:00 +0000
 ")
-  execute_process(COMMAND ${TERRANE_GZIP} -9nkf ${package_work}/changelog)
-  file(WRITE ${package_work}/copyright "Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/
+execute_process(COMMAND ${TERRANE_GZIP} -9nkf ${package_work}/changelog)
+file(WRITE ${package_work}/copyright "Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/
 Upstream-Name: terrane
 
 Files: *
@@ -47,13 +47,12 @@ License: Apache-2.0
  On Debian systems the full text of the Apache License, version 2.0, is in
  /usr/share/common-licenses/Apache-2.0.
 ")
-  foreach(package terrane libterrane-dev)
-    set(component program)
-    if(package STREQUAL libterrane-dev)
-      set(component development)
-    endif()
-    install(FILES ${package_work}/changelog.gz ${package_work}/copyright
-      DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package} COMPONENT ${component} EXCLUDE_FROM_ALL)
-  endforeach()
-endif()
+foreach(package terrane libterrane-dev)
+  set(component program)
+  if(package STREQUAL libterrane-dev)
+    set(component development)
+  endif()
+  install(FILES ${package_work}/changelog.gz ${package_work}/copyright
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package} COMPONENT ${component} EXCLUDE_FROM_ALL)
+endforeach()
 include(CPack)

@@ -16,7 +16,7 @@ namespace geo {
 namespace {
 
 struct Outcome {
-  std::vector<float> z, rate;
+  std::vector<float> z, rate, thickness, laid_rate, flux;
   std::vector<double> area;
   std::vector<Index> receiver;
   Budget budget;
@@ -35,9 +35,13 @@ Outcome erode(const Grid& grid, const std::vector<float>& z,
   StageIo io(state, stage->info());
   stage->run(io, context);
   const auto copy = [](auto span) { return std::vector(span.begin(), span.end()); };
-  return {copy(state.read(field::elevation)), copy(state.read(field::erosion_rate)),
-          copy(state.read(field::drainage_area)), copy(state.read(field::flow_receiver)),
-          context.budget};
+  const auto sediment = [&](const Field<float>& spec) {
+    return state.has(spec) ? copy(state.read(spec)) : std::vector<float>();
+  };
+  return {copy(state.read(field::elevation)),     copy(state.read(field::erosion_rate)),
+          sediment(field::sediment_thickness),    sediment(field::deposition_rate),
+          sediment(field::sediment_flux),         copy(state.read(field::drainage_area)),
+          copy(state.read(field::flow_receiver)), context.budget};
 }
 
 TEST(Erosion, RockBudgetCloses) {
@@ -68,14 +72,81 @@ TEST(Erosion, NoStepsLeaveTheReliefAlone) {
 TEST(Erosion, SeaStaysSeaAndLandStaysLand) {
   for (const Grid& grid : test::small_grids()) {
     const auto z = test::random_terrain(grid, 8);
-    const Outcome out = erode(grid, z, {{"erosion.steps", "30"}, {"erosion.uplift_mm_yr", "-0.1"}});
-    for (Index cell = 0; cell < grid.size(); ++cell) {
-      ASSERT_EQ(z[cell] < 0.0F, out.z[cell] < 0.0F);
-      if (z[cell] < 0.0F) {
-        ASSERT_EQ(z[cell], out.z[cell]);
+    for (const std::string model : {"detachment", "sediment"}) {
+      const Outcome out = erode(
+          grid, z,
+          {{"erosion.steps", "30"}, {"erosion.uplift_mm_yr", "-0.1"}, {"erosion.model", model}});
+      for (Index cell = 0; cell < grid.size(); ++cell) {
+        ASSERT_EQ(z[cell] < 0.0F, out.z[cell] < 0.0F);
+        if (z[cell] < 0.0F && model == "detachment") {
+          ASSERT_EQ(z[cell], out.z[cell]);
+        }
       }
     }
   }
+}
+
+TEST(Erosion, SedimentBudgetClosesFromIndependentSums) {
+  for (const Grid& grid : test::small_grids()) {
+    for (const char* depressions : {"fill", "breach"}) {
+      const auto z = test::random_terrain(grid, 5);
+      const Outcome out = erode(grid, z,
+                                {{"erosion.steps", "7"},
+                                 {"erosion.time_step_yr", "1e5"},
+                                 {"erosion.warping_m", "0"},
+                                 {"erosion.model", "sediment"},
+                                 {"erosion.sediment.dispersal_km", "3"},
+                                 {"erosion.depressions", depressions}});
+      const auto sum = [&](const std::vector<float>& field, bool at_sea) {
+        double total = 0.0;
+        for (Index c = 0; c < grid.size(); ++c) {
+          if ((z[c] < 0.0F) == at_sea) total += grid.area_m2(grid.row(c)) * field[c];
+        }
+        return total;
+      };
+      EXPECT_LT(std::abs(out.budget.at("sediment_closing_error")), 1e-12);
+      EXPECT_LT(std::abs(out.budget.at("rock_closing_error")), 1e-12);
+      // What the fields say, rounded to floats.
+      const double at_sea = out.budget.at("sediment_laid_at_sea_m3"), years = 7e5;
+      EXPECT_GT(at_sea, 0.0);
+      EXPECT_NEAR(sum(out.thickness, true) / at_sea, 1.0, 1e-5);
+      EXPECT_NEAR(sum(out.laid_rate, true) * years / at_sea, 1.0, 1e-5);
+      EXPECT_NEAR(sum(out.laid_rate, false) * years /
+                      std::max(out.budget.at("sediment_laid_on_land_m3"), 1.0),
+                  1.0, 1e-5);
+      // Net loss of land is what left it.
+      const double lost = sum(out.rate, false) * years;
+      const double left =
+          at_sea + out.budget.at("sediment_unsettled_m3") + out.budget.at("rock_exported_m3");
+      EXPECT_NEAR(lost / left, 1.0, 1e-5);
+      for (const float thickness : out.thickness) ASSERT_GE(thickness, 0.0F);
+      for (const float flux : out.flux) ASSERT_GE(flux, 0.0F);
+    }
+  }
+}
+
+TEST(Erosion, LoadsOfSedimentBendTheSeaFloor) {
+  // Half of an island's rock lies on the sea floor, which sinks under it by the share of its
+  // weight.
+  const Grid grid = Grid::plane(60, 60, 20e3, 20e3);
+  std::vector<float> z(grid.size(), -3000.0F);
+  for (int j = 20; j < 40; ++j) {
+    for (int i = 20; i < 40; ++i) z[grid.cell(i, j)] = 1500.0F;
+  }
+  const auto settled = [&](const char* rebound) {
+    return erode(grid, z,
+                 {{"erosion.steps", "4"},
+                  {"erosion.model", "sediment"},
+                  {"erosion.rebound_fraction", rebound},
+                  {"erosion.rebound_length_km", "0"},
+                  {"erosion.rebound_time_yr", "1"},
+                  {"erosion.warping_m", "0"}});
+  };
+  const Outcome stiff = settled("0"), bent = settled("0.8");
+  const Index offshore = grid.cell(30, 17);
+  EXPECT_NEAR(stiff.z[offshore] - z[offshore], stiff.thickness[offshore], 0.01);
+  const double share = (0.8 - 1030.0 / 3300.0) / (1.0 - 1030.0 / 3300.0);
+  EXPECT_NEAR((bent.z[offshore] - z[offshore]) / bent.thickness[offshore], 1.0 - share, 1e-3);
 }
 
 TEST(Erosion, ReachesTheBalanceOfUpliftAndIncision) {

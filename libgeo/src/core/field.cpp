@@ -191,6 +191,24 @@ const Field<float> erosion_rate{{.name = "erosion_rate",
                                  .units = "m yr-1",
                                  .doc = "surface lowering by rivers and hillslopes",
                                  .type = Type::float32}};
+const Field<float> sediment_thickness{
+    {.name = "sediment_thickness",
+     .units = "m",
+     .doc = "sediment that rivers have laid on land and at sea, as rock without pores",
+     .type = Type::float32,
+     .least = 0.0}};
+const Field<float> deposition_rate{{.name = "deposition_rate",
+                                    .units = "m yr-1",
+                                    .doc = "rate at which rivers and the sea lay down sediment",
+                                    .type = Type::float32,
+                                    .least = 0.0}};
+const Field<float> sediment_flux{{.name = "sediment_flux",
+                                  .units = "m3 yr-1",
+                                  .doc = "sediment that leaves the cell with its river, as rock "
+                                         "without pores; 0 at sea",
+                                  .type = Type::float32,
+                                  .cell_methods = "area: point",
+                                  .least = 0.0}};
 const Field<float> erodibility{{.name = "erodibility",
                                 .units = "yr-1",
                                 .doc = "stream-power erodibility K, with m = 0.5 and n = 1",
@@ -371,6 +389,9 @@ std::span<const FieldSpec* const> all() {
                                                             &erodibility,
                                                             &uplift_rate,
                                                             &erosion_rate,
+                                                            &sediment_thickness,
+                                                            &deposition_rate,
+                                                            &sediment_flux,
                                                             &drainage_area,
                                                             &inflow_area,
                                                             &inflow_discharge,

@@ -34,10 +34,21 @@ std::vector<Parameter> RunSettings::parameters() {
              "design"),
       text("run.from", from, "first stage to run; empty is the first there is", "design"),
       text("run.to", to, "last stage to run; empty is the last there is", "design"),
-      text("dem.file", dem_file,
-           "NetCDF file of a real relief, which takes the place of plates and isostasy", "design"),
+      text(
+          "dem.file", dem_file,
+          "file of a real relief (NetCDF, GeoTIFF, grey PNG, ESRI ASCII), which takes the place of "
+          "plates and isostasy",
+          "design"),
       text("dem.variable", dem_variable,
            "variable of that file; empty is the one that looks like relief", "design"),
+      text("dem.range", dem_range,
+           "MIN,MAX, heights of black and white in an image, m; empty is what the JSON beside it "
+           "says",
+           "design"),
+      text("dem.window", dem_window,
+           "W,S,E,N, where the edges of an image lie, degrees; empty is the whole planet, or what "
+           "the JSON beside it says",
+           "design"),
       choice("dem.sea_level", dem_sea_level, {"datum", "fraction"},
              "where the sea stands: at the relief's own zero, or where planet.ocean_fraction of "
              "the area lies below it",

@@ -11,6 +11,9 @@
 #include "dem_values.hpp"
 #include "dem_variable.hpp"
 #include "geo/core/error.hpp"
+#include "geo/io/drawing/map_view.hpp"
+#include "geotiff.hpp"
+#include "image_relief.hpp"
 #include "io/drawing/map_projection.hpp"
 #include "io/files/open_input.hpp"
 #include "io/netcdf/classic_size.hpp"
@@ -211,6 +214,17 @@ std::optional<Centre> find_centre(const nc::File& file, int variable, const DemA
   return unproject(*crs, 0.5 * (columns.low() + columns.high()), 0.5 * (rows.low() + rows.high()));
 }
 
+Relief geographic_relief(const std::vector<float>& values, const DemAxis& rows,
+                         const DemAxis& columns, const Planet& planet) {
+  const Longitudes longitudes = arrange_longitudes(columns);
+  const Rows registered = registration(rows);
+  auto ordered = in_order(values, rows, longitudes.axis, columns.size, longitudes.start);
+  if (longitudes.round && registered != Rows::regional) {
+    return global_relief(rows, longitudes, registered, std::move(ordered), planet);
+  }
+  return window_relief(rows, longitudes.axis, std::move(ordered), planet);
+}
+
 Relief read_from(const nc::File& file, const std::string& wanted, const std::string& units,
                  Gaps gaps, const Planet& planet) {
   const int variable = choose_variable(file, wanted);
@@ -231,19 +245,55 @@ Relief read_from(const nc::File& file, const std::string& wanted, const std::str
                    {},
                    {}});
   }
-  const Longitudes longitudes = arrange_longitudes(columns);
-  const Rows registered = registration(rows);
-  auto ordered = in_order(values, rows, longitudes.axis, columns.size, longitudes.start);
-  if (longitudes.round && registered != Rows::regional) {
-    return finish(global_relief(rows, longitudes, registered, std::move(ordered), planet));
+  return finish(geographic_relief(values, rows, columns, planet));
+}
+
+/// The first cell without a value, counted as the files count rows, from the top.
+void refuse_gaps(const PlainRaster& raster) {
+  const auto gap = std::find_if(raster.values.begin(), raster.values.end(),
+                                [](float value) { return std::isnan(value); });
+  if (gap == raster.values.end()) return;
+  const auto cell = static_cast<int>(gap - raster.values.begin());
+  throw InputError(
+      fmt::format("has no value in row {} from the top, column {}: every cell must "
+                  "have one",
+                  raster.ny - cell / raster.nx, cell % raster.nx + 1));
+}
+
+Relief relief_of(const PlainRaster& raster, Gaps gaps, const Planet& planet) {
+  if (gaps == Gaps::refused) refuse_gaps(raster);
+  if (!raster.geographic) {
+    return {raster.values,
+            Grid::plane(raster.nx, raster.ny, raster.step_x, raster.step_y, Edges::open, {},
+                        planet.figure()),
+            {},
+            {},
+            {},
+            {}};
   }
-  return finish(window_relief(rows, longitudes.axis, std::move(ordered), planet));
+  const auto axis = [](const char* name, AxisKind kind, double edge, double step, int size) {
+    return DemAxis{name, kind, edge + 0.5 * step, step, size};
+  };
+  return geographic_relief(
+      raster.values, axis("rows", AxisKind::latitude, raster.south, raster.step_y, raster.ny),
+      axis("columns", AxisKind::longitude, raster.west, raster.step_x, raster.nx), planet);
 }
 
 Relief read_raster(const std::string& file_and_variable, const std::string& otherwise,
-                   const std::string& units, Gaps gaps, const Planet& planet) {
+                   const std::string& units, Gaps gaps, const Planet& planet,
+                   const ImageWords& image = {},
+                   std::pair<double, double> bounds = {-INFINITY, INFINITY}) {
+  if (!image.range.empty()) static_cast<void>(parse_range("--dem-range", image.range));
+  if (!image.window.empty()) static_cast<void>(parse_box("--dem-window", image.window));
   return answer_to(RasterQuestion{file_and_variable, otherwise, units, gaps, planet.radius_km,
-                                  planet.flattening});
+                                  planet.flattening, image.range, image.window, bounds.first,
+                                  bounds.second});
+}
+
+/// What an image that says nothing of its range spans; an order without a unit any.
+std::pair<double, double> bounds_of(const FieldSpec& spec) {
+  if (spec.units.empty() && std::isinf(spec.least) && std::isinf(spec.most)) return {0.0, 1.0};
+  return {spec.least, spec.most};
 }
 
 /// The same values, none of which may be what the quantity cannot be.
@@ -258,11 +308,41 @@ Relief within_bounds(Relief given, const FieldSpec& spec) {
   return given;
 }
 
+/// A file that is no NetCDF.
+Relief read_plain(const RasterQuestion& question, const std::filesystem::path& path,
+                  RasterFormat format) {
+  const std::string shown = path.string();
+  try {
+    ImageMeaning meaning{.least = question.least, .most = question.most};
+    if (!question.range.empty()) meaning.range = parse_range("--dem-range", question.range);
+    if (!question.window.empty()) meaning.window = parse_box("--dem-window", question.window);
+    const PlainRaster raster = format == RasterFormat::png       ? read_png_raster(path, meaning)
+                               : format == RasterFormat::geotiff ? read_geotiff_raster(path)
+                                                                 : read_ascii_raster(path);
+    Relief relief = relief_of(raster, question.gaps,
+                              {.radius_km = question.radius_km, .flattening = question.flattening});
+    relief.source = shown;
+    return relief;
+  } catch (const ConfigurationError& error) {
+    throw InputError(fmt::format("{}: {}", shown, error.what()));
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", shown, error.what()));
+  }
+}
+
 }  // namespace
 
 Relief RasterQuestion::here() const {
   const auto [file_name, variable] = split_dem(file_and_variable);
   const std::string shown = file_name.string();
+  const RasterFormat format = format_of(file_name);
+  if (format != RasterFormat::netcdf) {
+    if (!variable.empty()) {
+      throw InputError(
+          fmt::format("{}: has no variables: give the file without :{}", shown, variable));
+    }
+    return read_plain(*this, file_name, format);
+  }
   const nc::File file = open_input(file_name);
   check_classic_size(file_name);
   try {
@@ -280,8 +360,9 @@ Relief RasterQuestion::here() const {
   }
 }
 
-Relief read_relief(const std::string& file_and_variable, const Planet& planet) {
-  return read_raster(file_and_variable, "", "m", Gaps::refused, planet);
+Relief read_relief(const std::string& file_and_variable, const Planet& planet,
+                   const ImageWords& image) {
+  return read_raster(file_and_variable, "", "m", Gaps::refused, planet, image);
 }
 
 Relief read_relief_with_gaps(const std::string& file_and_variable, const Planet& planet) {
@@ -290,15 +371,16 @@ Relief read_relief_with_gaps(const std::string& file_and_variable, const Planet&
 
 Relief read_field(const std::string& file_and_variable, const FieldSpec& spec,
                   const Planet& planet) {
-  return within_bounds(read_raster(file_and_variable, std::string(spec.name),
-                                   std::string(spec.units), Gaps::refused, planet),
-                       spec);
+  return within_bounds(
+      read_raster(file_and_variable, std::string(spec.name), std::string(spec.units), Gaps::refused,
+                  planet, {}, bounds_of(spec)),
+      spec);
 }
 
 Relief read_field_with_gaps(const std::string& file_and_variable, const FieldSpec& spec,
                             const Planet& planet) {
   return within_bounds(read_raster(file_and_variable, std::string(spec.name),
-                                   std::string(spec.units), Gaps::nan, planet),
+                                   std::string(spec.units), Gaps::nan, planet, {}, bounds_of(spec)),
                        spec);
 }
 

@@ -226,6 +226,21 @@ Relief read_geotiff(const std::filesystem::path& path, const Planet& planet) {
   return answer_to(GeotiffQuestion{path.string(), planet.radius_km, planet.flattening});
 }
 
+PlainRaster read_geotiff_raster(const std::filesystem::path& path) {
+  const Image image(path);
+  const auto nx = static_cast<int>(image.tag<std::uint32_t>(TIFFTAG_IMAGEWIDTH, 0));
+  const auto ny = static_cast<int>(image.tag<std::uint32_t>(TIFFTAG_IMAGELENGTH, 0));
+  const Placement at = placement_of(image);
+  return {nx,
+          ny,
+          read_values(image, nx, ny),
+          at.geographic,
+          at.west,
+          at.north - ny * at.step_y,
+          at.step_x,
+          at.step_y};
+}
+
 Relief GeotiffQuestion::here() const {
   const Planet planet{.radius_km = radius_km, .flattening = flattening};
   if (!std::ifstream(file)) {

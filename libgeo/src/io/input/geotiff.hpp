@@ -4,6 +4,7 @@
 
 #include "geo/core/planet.hpp"
 #include "geo/io/input/dem.hpp"
+#include "image_relief.hpp"
 
 namespace geo::io {
 
@@ -11,5 +12,8 @@ namespace geo::io {
 /// (projected); cells without a value are NaN. Throws InputError (names the file and what is wrong
 /// with it), IoError when it cannot be opened.
 Relief read_geotiff(const std::filesystem::path& path, const Planet& planet);
+
+/// The same as it lies in the file, in this process. Throws InputError without the path.
+PlainRaster read_geotiff_raster(const std::filesystem::path& path);
 
 }  // namespace geo::io

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -22,9 +23,12 @@ struct RasterQuestion {
   std::string file_and_variable, otherwise, units;
   Gaps gaps = Gaps::refused;
   double radius_km = 0.0, flattening = 0.0;
+  std::string range = {}, window = {};        ///< ImageWords
+  double least = -INFINITY, most = INFINITY;  ///< bounds of the quantity
 
   [[nodiscard]] auto parts() {
-    return std::tie(file_and_variable, otherwise, units, gaps, radius_km, flattening);
+    return std::tie(file_and_variable, otherwise, units, gaps, radius_km, flattening, range, window,
+                    least, most);
   }
   [[nodiscard]] std::filesystem::path path() const { return split_dem(file_and_variable).first; }
   [[nodiscard]] Answer here() const;

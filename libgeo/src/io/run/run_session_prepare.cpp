@@ -418,15 +418,16 @@ void RunSession::read_initial_relief() {
                     settings_.topology, name_of(first_), name_of(0)));
   }
   if (settings_.dem_file.empty()) {
-    throw ConfigurationError(fmt::format(
-        "{} needs a relief to start from: give one with --dem FILE[:VARIABLE], a NetCDF file of "
-        "elevations, or start with {}",
-        name_of(first_), name_of(0)));
+    throw ConfigurationError(
+        fmt::format("{} needs a relief to start from: give one with --dem FILE[:VARIABLE], a file "
+                    "of elevations, "
+                    "or start with {}",
+                    name_of(first_), name_of(0)));
   }
   Relief relief = read_relief(settings_.dem_variable.empty()
                                   ? settings_.dem_file
                                   : settings_.dem_file + ":" + settings_.dem_variable,
-                              planet_);
+                              planet_, {settings_.dem_range, settings_.dem_window});
   check_heights(relief);
   auto grid = state_ ? state_->shared_grid()
                      : std::make_shared<const Grid>(grid_for(relief, settings_, planet_));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <vector>
 
 #include "geo/kernels/water/flow_graph.hpp"
@@ -31,6 +32,11 @@ std::vector<Parameter> ErosionParameters::declarations() {
            "harel2016"),
       real("erosion.diffusivity_m2_yr", diffusivity_m2_yr, "m2 yr-1", 0.0, 1e6,
            "hillslope diffusivity kappa", "salles2023"),
+      choice(
+          "erosion.model", model, {"detachment", "sediment"},
+          "what becomes of what rivers take: it leaves the world, or they lay it down where they "
+          "cannot carry it, on plains, in lakes and at sea",
+          "davy2009"),
       choice("erosion.flow_routing", flow_routing, {"d8", "mfd"},
              "whether drainage area follows the steepest descent or spreads over all lower "
              "neighbours; the implicit solve takes the steepest one in both",
@@ -95,6 +101,14 @@ std::vector<Parameter> ErosionParameters::declarations() {
            "length over which the bending is smoothed", "tectonica2026"),
       real("erosion.detail_noise", detail_noise, "1", 0.0, 100.0,
            "factor of the blueprint's terrain noise", "tectonica2026"),
+      real("erosion.sediment.deposition", deposition, "1", 0.0, 1000.0,
+           "deposition G: what rivers lay down, over the mean loss of the land upstream",
+           "guerit2019"),
+      real("erosion.sediment.dispersal_km", dispersal_km, "km", 0.0, 5000.0,
+           "length over which the sea spreads what rivers bring", "design"),
+      real("erosion.sediment.wave_base_m", wave_base_m, "m", 0.0, 1000.0,
+           "depth down to which waves let no sediment lie, at the lowest stands of the sea",
+           "design"),
   };
 }
 
@@ -107,29 +121,33 @@ void report(const ErosionParameters& p, const Landscape<float>& landscape, Budge
       std::max({std::abs(rock.uplifted), std::abs(rock.eroded), std::abs(rock.reshaped), 1.0});
   budget["rock_uplifted_m3"] = rock.uplifted;
   budget["rock_rebound_m3"] = rock.rebound;
-  budget["rock_eroded_m3"] = rock.eroded;
+  budget["rock_eroded_m3"] = rock.eroded + rock.laid_on_land;
   budget["rock_reshaped_m3"] = rock.reshaped;
   budget["rock_stored_m3"] = stored;
-  budget["rock_exported_m3"] = rock.eroded;
   budget["rock_closing_error"] =
-      (rock.uplifted + rock.rebound + rock.reshaped - rock.eroded - stored) / scale;
+      (rock.uplifted + rock.rebound + rock.reshaped + rock.laid_at_sea - rock.eroded - stored) /
+      scale;
+  if (landscape.deposits()) {
+    const double unsettled = landscape.unsettled_m3();
+    budget["sediment_laid_on_land_m3"] = rock.laid_on_land;
+    budget["sediment_laid_at_sea_m3"] = rock.laid_at_sea;
+    budget["sediment_unsettled_m3"] = unsettled;
+    budget["rock_exported_m3"] = rock.over_edges;
+    budget["sediment_closing_error"] =
+        (rock.eroded - rock.laid_at_sea - unsettled - rock.over_edges) / scale;
+  } else {
+    budget["rock_exported_m3"] = rock.eroded;
+  }
   budget["time_yr"] = p.steps * p.time_step_yr;
 }
 
 class ErosionStage final : public Stage {
  public:
   [[nodiscard]] const StageInfo& info() const override {
-    static const StageInfo kInfo{"erosion",
-                                 "rivers and hillslopes wear the land down",
-                                 {&field::elevation},
-                                 {&field::erodibility, &field::uplift_rate, &field::boundary_type,
-                                  &field::boundary_strength, &field::convergent_deformation,
-                                  &field::divergent_deformation, &field::transform_deformation},
-                                 {&field::elevation, &field::uplift_rate, &field::erosion_rate,
-                                  &field::drainage_area, &field::flow_receiver},
-                                 /*own_grid=*/false,
-                                 /*feels_events=*/true};
-    return kInfo;
+    static const StageInfo kWithout = described({});
+    static const StageInfo kWith =
+        described({&field::sediment_thickness, &field::deposition_rate, &field::sediment_flux});
+    return parameters_.deposits() ? kWith : kWithout;
   }
   [[nodiscard]] std::vector<Parameter> parameters() override { return parameters_.declarations(); }
 
@@ -172,11 +190,26 @@ class ErosionStage final : public Stage {
     strike(steps);
     route();
     write_rates(io, landscape, drainage, erodibility);
+    if (parameters_.deposits()) write_sediment(io, landscape.sediment());
     report(parameters_, landscape, context.budget);
     add_uniform_uplift(elevation, uplift);
   }
 
  private:
+  static StageInfo described(std::initializer_list<const FieldSpec*> of_sediment) {
+    StageInfo info{"erosion",
+                   "rivers and hillslopes wear the land down",
+                   {&field::elevation},
+                   {&field::erodibility, &field::uplift_rate, &field::boundary_type,
+                    &field::boundary_strength, &field::convergent_deformation,
+                    &field::divergent_deformation, &field::transform_deformation},
+                   {&field::elevation, &field::uplift_rate, &field::erosion_rate,
+                    &field::drainage_area, &field::flow_receiver},
+                   /*own_grid=*/false,
+                   /*feels_events=*/true};
+    info.writes.insert(info.writes.end(), of_sediment);
+    return info;
+  }
   void write_rates(StageIo& io, const Landscape<float>& landscape, const Drainage& drainage,
                    std::span<const float> erodibility) const {
     const Grid& grid = io.grid();
@@ -195,6 +228,20 @@ class ErosionStage final : public Stage {
     for (Index cell = 0; cell < grid.size(); ++cell) {
       rate_m_yr[cell] = static_cast<float>(lowered_m[cell] / time_yr);
     }
+  }
+  void write_sediment(StageIo& io, const SedimentRecord& sediment) const {
+    const auto copy = [&](const std::vector<float>& from, const Field<float>& to, double factor) {
+      const std::span<float> values = io.write(to);
+      if (from.empty()) return std::fill(values.begin(), values.end(), 0.0F);
+#pragma omp parallel for schedule(static)
+      for (std::size_t cell = 0; cell < values.size(); ++cell) {
+        values[cell] = static_cast<float>(factor * from[cell]);
+      }
+    };
+    const double time_yr = std::max(1.0, parameters_.steps * parameters_.time_step_yr);
+    copy(sediment.thickness_m, field::sediment_thickness, 1.0);
+    copy(sediment.laid_m, field::deposition_rate, 1.0 / time_yr);
+    copy(sediment.carried_m3_yr, field::sediment_flux, 1.0);
   }
   /// Rock uplift by plates (Tectonica blueprint 4.5).
   void add_tectonic_uplift(StageIo& io, double faster, std::span<float> uplift_m_yr) const {

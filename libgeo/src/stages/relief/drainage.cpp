@@ -5,6 +5,7 @@
 
 #include "geo/kernels/water/depressions.hpp"
 #include "geo/kernels/water/multiple_flow.hpp"
+#include "geo/kernels/landscape/river_sediment.hpp"
 
 namespace geo {
 
@@ -28,6 +29,10 @@ void drain(const ErosionParameters& p, const Grid& grid, std::span<const float> 
   } else {
     put_in_order();
     graph.accumulate(area_m2);
+  }
+  drainage.flooded.clear();
+  if (p.deposits() && p.depressions == "fill") {
+    drainage.flooded = flooded_cells(graph, elevation_m);
   }
 }
 

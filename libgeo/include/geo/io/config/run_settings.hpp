@@ -28,6 +28,8 @@ struct RunSettings {
 
   std::string dem_file;
   std::string dem_variable;
+  std::string dem_range;   ///< "MIN,MAX" of an image
+  std::string dem_window;  ///< "W,S,E,N" of an image
   std::string dem_sea_level = "datum";
   std::string erodibility;  ///< FILE[:VARIABLE]
   std::string uplift_rate;  ///< FILE[:VARIABLE]

@@ -22,18 +22,31 @@ struct Relief {
   std::vector<float> raster_m;
 };
 
+/// What the samples of an image mean that does not say so, as options have it; empty: not told.
+struct ImageWords {
+  std::string range;   ///< "MIN,MAX", values of the least and the greatest sample
+  std::string window;  ///< "W,S,E,N", degrees; else the whole planet
+};
+
 /// Reads `FILE[:VARIABLE]`, any NetCDF with a two-dimensional elevation over latitude and longitude
 /// (or projected x and y in metres). Node- and cell-registered, latitudes up or down, longitudes
 /// 0..360 or -180..180, packed integers, repeated end column, any unit of length (none: metres).
 /// Without VARIABLE the one two-dimensional variable that looks like relief, else an error that
 /// lists the candidates. Throws InputError for unusable data (missing or NaN cells with their
 /// index, wrong units, truncated file, irregular axes), IoError when it cannot be opened.
-Relief read_relief(const std::string& file_and_variable, const Planet& planet);
+///
+/// By their first bytes other files are told from NetCDF: GeoTIFF (one band, north up, geographic
+/// or projected), grey PNG of 8 or 16 bits (its meaning from `image`, else from the JSON that
+/// `terrane export` writes beside it), ESRI ASCII grids. ConfigurationError where `image` makes no
+/// sense.
+Relief read_relief(const std::string& file_and_variable, const Planet& planet,
+                   const ImageWords& image = {});
 /// The same where cells may be missing: they are NaN.
 Relief read_relief_with_gaps(const std::string& file_and_variable, const Planet& planet);
 /// The same for any other field that is given as a raster (`elevation_m` then holds its values in
 /// the units of the vocabulary, or of the file where those are empty). Without VARIABLE the one
-/// named as the field, else the only raster.
+/// named as the field, else the only raster. An image without a JSON has the bounds of the
+/// quantity.
 Relief read_field(const std::string& file_and_variable, const FieldSpec& spec,
                   const Planet& planet);
 

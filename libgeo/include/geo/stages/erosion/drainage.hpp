@@ -9,11 +9,12 @@
 
 namespace geo {
 
-/// The ways of the water over a relief: receivers, their order, and the area that drains through
-/// each cell.
+/// The ways of the water over a relief: receivers, their order, the area that drains through each
+/// cell, and what lies under the water of depressions.
 struct Drainage {
   FlowGraph graph;
   std::vector<double> area_m2;
+  std::vector<std::uint8_t> flooded;  ///< lakes that catch sediment; empty where none do
 };
 
 /// Routes the water of a relief as erosion.flow_routing says, over the sills of all depressions.

@@ -17,6 +17,11 @@ struct ErosionParameters {
   double slope_exponent = 1.0;
   double erodibility_yr = 2e-6;
   double diffusivity_m2_yr = 0.02;
+  std::string model = "detachment";
+  // Of the model "sediment".
+  double deposition = 1.0;
+  double dispersal_km = 300.0;
+  double wave_base_m = 120.0;
   std::string flow_routing = "mfd";
   double flow_exponent = 1.1;
   std::string depressions = "fill";
@@ -43,13 +48,17 @@ struct ErosionParameters {
   double detail_noise = 0.0;
 
   [[nodiscard]] std::vector<Parameter> declarations();
+  /// Whether rivers lay down what they cannot carry.
+  [[nodiscard]] bool deposits() const { return model == "sediment" && deposition > 0.0; }
 };
 
-/// Landscape evolution over land, dz/dt = U - K A^m S^n + kappa lap(z) (Braun & Willett 2013;
-/// Salles et al. 2023), with the sea and open edges as base level. Each step: route the water,
-/// raise the ground, let rivers cut (implicit, any m and n), let hillslopes creep (implicit), let
-/// the crust rebound under what was taken from it. With no steps the relief stays as it is and the
-/// present rate of incision is reported.
+/// Landscape evolution, dz/dt = U - K A^m S^n + (G / A) Q + kappa lap(z) on land (Braun & Willett
+/// 2013; Davy & Lague 2009; Hergarten 2020), with the sea and open edges as base level. The model
+/// "detachment" has G = 0: what rivers take leaves the world. Each step: route the water, raise the
+/// ground, let rivers cut and, with "sediment", lay down (implicit, any m and n), let hillslopes
+/// creep (implicit), lay on the floor of the sea what rivers bring there, let the crust rise under
+/// what was taken from it and sink under what was laid on it. With no steps the relief stays as it
+/// is and the present rate of incision is reported.
 std::unique_ptr<Stage> make_erosion_stage();
 
 }  // namespace geo

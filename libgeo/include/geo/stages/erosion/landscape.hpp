@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "geo/core/numeric.hpp"
+#include "geo/kernels/landscape/marine_deposition.hpp"
+#include "geo/kernels/landscape/river_sediment.hpp"
 #include "geo/kernels/landscape/stream_power.hpp"
 #include "geo/kernels/numerics/area_sum.hpp"
 #include "geo/kernels/numerics/diffusion.hpp"
@@ -21,11 +23,20 @@ namespace geo {
 template <class Number>
 struct RockVolumes {
   Number uplifted{0.0}, eroded{0.0}, rebound{0.0}, reshaped{0.0};
+  Number laid_on_land{0.0};  ///< of what was eroded
+  Number laid_at_sea{0.0};
+  Number over_edges{0.0};  ///< by rivers, out of the world
+};
+
+/// What rivers have laid down: thickness now, what was laid in all, and what the last step carried.
+struct SedimentRecord {
+  std::vector<float> thickness_m, laid_m;
+  std::vector<float> carried_m3_yr;
 };
 
 /// One run of the landscape: rivers, hillslopes and rebound work on a relief, step by step, along
 /// the drainage that each step is given. V as in core/numeric.hpp; derivatives are those with the
-/// drainage held fast.
+/// drainage held fast. Without deposition what rivers take is gone, and the sea floor stays.
 template <class V>
 class Landscape {
  public:
@@ -36,14 +47,21 @@ class Landscape {
             std::span<V> elevation_m, std::span<const V> uplift_m_yr,
             std::span<const V> erodibility, std::vector<std::uint8_t> outlets)
       : p_(parameters),
-        lift_(active),
+        active_(active),
         grid_(grid),
         z_(elevation_m),
         uplift_m_yr_(uplift_m_yr),
         erodibility_(erodibility),
         initial_(elevation_m.begin(), elevation_m.end()),
         outlets_(std::move(outlets)),
-        lowered_(grid.size(), V(0.0F)) {}
+        lowered_(grid.size(), V(0.0F)) {
+    if (!deposits()) return;
+    unsettled_m_.assign(grid.size(), Number(0.0));
+    if constexpr (kRecords) {
+      sediment_.thickness_m.assign(grid.size(), 0.0F);
+      sediment_.laid_m.assign(grid.size(), 0.0F);
+    }
+  }
 
   /// Where the water leaves the land.
   [[nodiscard]] const std::vector<std::uint8_t>& outlets() const { return outlets_; }
@@ -54,16 +72,23 @@ class Landscape {
     before_.assign(z_.begin(), z_.end());
     breach_sills(grid_, drainage.graph, z_);
     book_lowering();
+    if (deposits()) carry(drainage.graph);
   }
 
   void step(const Drainage& drainage) {
     raise();
     before_.assign(z_.begin(), z_.end());
-    incise(grid_, drainage.graph, std::span<const double>(drainage.area_m2), erodibility_, law(),
-           z_);
+    const std::span<const double> area_m2(drainage.area_m2);
+    if (deposits()) {
+      incise_and_deposit<V, V>(grid_, drainage.graph, area_m2, erodibility_, law(),
+                               active_(p_.deposition), drainage.flooded, z_);
+    } else {
+      incise(grid_, drainage.graph, area_m2, erodibility_, law(), z_);
+    }
     creep();
     widen_valleys<V>(grid_, before_, outlets_, z_);
     book_lowering();
+    if (deposits()) carry(drainage.graph);
     if (p_.rebound_fraction > 0.0) rebound();
   }
 
@@ -71,7 +96,7 @@ class Landscape {
   void relax() {
     if (p_.relaxation_fraction <= 0.0) return;
     before_.assign(z_.begin(), z_.end());
-    const V share(lift_(p_.relaxation_fraction));
+    const V share(active_(p_.relaxation_fraction));
     on_land([&](Index cell) { z_[cell] += share * (initial_[cell] - z_[cell]); });
     rock_.rebound += volume_since_before();
   }
@@ -88,9 +113,19 @@ class Landscape {
   void set_outlets(std::vector<std::uint8_t> outlets) { outlets_ = std::move(outlets); }
 
   [[nodiscard]] BasicStreamPower<Number> law() const {
-    return {lift_(p_.area_exponent), lift_(p_.slope_exponent), lift_(p_.time_step_yr), 0.0};
+    return {active_(p_.area_exponent), active_(p_.slope_exponent), active_(p_.time_step_yr), 0.0};
   }
   [[nodiscard]] const RockVolumes<Number>& rock() const { return rock_; }
+  /// Whether rivers lay down what they cannot carry.
+  [[nodiscard]] bool deposits() const { return p_.deposits() && p_.steps > 0; }
+  /// Empty where they do not, or where numbers carry derivatives.
+  [[nodiscard]] const SedimentRecord& sediment() const { return sediment_; }
+  /// Volume that has reached the sea but is not laid: what heights round away, and what a sea has
+  /// no room for, m3.
+  [[nodiscard]] Number unsettled_m3() const {
+    if (unsettled_m_.empty()) return Number(0.0);
+    return area_sum<Number>(grid_, [&](Index c) { return unsettled_m_[c]; });
+  }
   /// By how much each cell was lowered, m.
   [[nodiscard]] std::span<const V> lowered_m() const { return lowered_; }
   /// Volume above the initial relief, m3.
@@ -99,6 +134,9 @@ class Landscape {
   }
 
  private:
+  static constexpr bool kRecords = std::is_same_v<V, float>;
+  static constexpr float kShallowest_m = 1e-3F;  // what is sea stays sea
+
   template <class Change>
   void on_land(Change&& change) {
 #pragma omp parallel for schedule(static)
@@ -106,12 +144,19 @@ class Landscape {
       if (outlets_[cell] == 0) change(cell);
     }
   }
+  template <class Change>
+  void at_sea_floor(Change&& change) {
+#pragma omp parallel for schedule(static)
+    for (Index cell = 0; cell < grid_.size(); ++cell) {
+      if (outlets_[cell] != 0 && value_of(z_[cell]) < 0.0) change(cell);
+    }
+  }
   [[nodiscard]] Number volume_since_before() const {
     return area_sum<Number>(grid_, [&](Index c) { return Number(z_[c]) - Number(before_[c]); });
   }
   void raise() {
     before_.assign(z_.begin(), z_.end());
-    const Number dt = lift_(p_.time_step_yr), everywhere = 1e-3 * lift_(p_.uplift_mm_yr);
+    const Number dt = active_(p_.time_step_yr), everywhere = 1e-3 * active_(p_.uplift_mm_yr);
     on_land([&](Index cell) {
       const Number field = uplift_m_yr_.empty() ? Number(0.0) : Number(uplift_m_yr_[cell]);
       // Subsidence ends at the sea: a step that drowned land would move the coast without a
@@ -128,7 +173,7 @@ class Landscape {
     for (Index cell = 0; cell < grid_.size(); ++cell) {
       surface[cell] = greater(z_[cell], V(0.0F));
     }
-    apply_linear<V, 2>(surface, {lift_(p_.diffusivity_m2_yr), lift_(p_.time_step_yr)},
+    apply_linear<V, 2>(surface, {active_(p_.diffusivity_m2_yr), active_(p_.time_step_yr)},
                        [&](auto values, const std::array<double, 2>& at) {
                          diffuse(grid_, values, at[0], at[1],
                                  {.fixed = outlets_, .scheme = DiffusionScheme::positive});
@@ -139,16 +184,88 @@ class Landscape {
     rock_.eroded -= volume_since_before();
     on_land([&](Index cell) { lowered_[cell] += before_[cell] - z_[cell]; });
   }
-  /// Airy rebound of the eroded load, spread by the plate and delayed by the mantle:
-  /// the part 1 - exp(-dt / tau) of what is still owed comes back in each step.
+  /// Takes what this step lowered down the rivers and lays it at sea.
+  void carry(const FlowGraph& graph) {
+    std::vector<Number> volume_m3 =
+        sediment_outflow<V>(grid_, graph, std::span<const V>(before_), std::span<const V>(z_));
+    std::vector<std::uint8_t> sea(grid_.size());
+    std::vector<Number> room_m(grid_.size(), Number(0.0)), supply_m(grid_.size(), Number(0.0));
+    const Number wave_base_m = active_(p_.wave_base_m);
+#pragma omp parallel for schedule(static)
+    for (Index cell = 0; cell < grid_.size(); ++cell) {
+      sea[cell] = outlets_[cell] != 0 && value_of(z_[cell]) < 0.0 ? 1 : 0;
+      if (sea[cell] == 0) continue;
+      room_m[cell] = greater(Number(-wave_base_m - Number(z_[cell])), Number(0.0));
+      supply_m[cell] = volume_m3[cell] / grid_.area_m2(grid_.row(cell)) + unsettled_m_[cell];
+    }
+    rock_.over_edges += area_sum<Number>(grid_, [&](Index cell) {
+      return outlets_[cell] != 0 && sea[cell] == 0
+                 ? volume_m3[cell] / grid_.area_m2(grid_.row(cell))
+                 : Number(0.0);
+    });
+    record_on_land(volume_m3);
+    volume_m3 = {};
+    lay_at_sea<Number>(grid_, sea, 1e3 * active_(p_.dispersal_km), room_m, supply_m);
+    std::vector<V> laid_m(grid_.size(), V(0.0F));
+#pragma omp parallel for schedule(static)
+    for (Index cell = 0; cell < grid_.size(); ++cell) {
+      if (sea[cell] == 0) continue;
+      const V floor = z_[cell];
+      z_[cell] = lesser(V(Number(floor) + supply_m[cell]), greater(floor, V(-kShallowest_m)));
+      laid_m[cell] = z_[cell] - floor;
+      unsettled_m_[cell] = supply_m[cell] - (Number(z_[cell]) - Number(floor));
+    }
+    rock_.laid_at_sea += area_sum<Number>(grid_, [&](Index c) {
+      return sea[c] != 0 ? Number(z_[c]) - Number(before_[c]) : Number(0.0);
+    });
+    record_at_sea(laid_m);
+  }
+  void record_on_land(const std::vector<Number>& volume_m3) {
+    if constexpr (kRecords) {
+      sediment_.carried_m3_yr.resize(grid_.size());
+      on_land([&](Index cell) {
+        const float rise_m = z_[cell] - before_[cell];
+        float& thickness_m = sediment_.thickness_m[cell];
+        thickness_m = std::max(0.0F, thickness_m + rise_m);
+        sediment_.laid_m[cell] += std::max(0.0F, rise_m);
+        sediment_.carried_m3_yr[cell] =
+            static_cast<float>(std::max(0.0, volume_m3[cell]) / p_.time_step_yr);
+      });
+    }
+    rock_.laid_on_land += area_sum<Number>(grid_, [&](Index c) {
+      return outlets_[c] == 0 ? greater(Number(Number(z_[c]) - Number(before_[c])), Number(0.0))
+                              : Number(0.0);
+    });
+  }
+  void record_at_sea(const std::vector<V>& laid_m) {
+    if constexpr (kRecords) {
+#pragma omp parallel for schedule(static)
+      for (Index cell = 0; cell < grid_.size(); ++cell) {
+        // What heights round away may be taken off again.
+        float& thickness_m = sediment_.thickness_m[cell];
+        thickness_m = std::max(0.0F, thickness_m + laid_m[cell]);
+        sediment_.laid_m[cell] += std::max(0.0F, laid_m[cell]);
+      }
+    }
+  }
+  /// Airy rebound of the eroded load, and subsidence under what is laid, spread by the plate and
+  /// delayed by the mantle: the part 1 - exp(-dt / tau) of what is still owed comes in each step.
+  /// At sea rock takes the place of water.
   void rebound() {
     owed_m_.resize(grid_.size(), V(0.0F));
-    const V share(lift_(p_.rebound_fraction));
+    const V share(active_(p_.rebound_fraction));
     on_land([&](Index cell) { owed_m_[cell] += share * (before_[cell] - z_[cell]); });
-    const Number part = -expm1_of(Number(-lift_(p_.time_step_yr) / lift_(p_.rebound_time_yr)));
+    if (deposits()) {
+      constexpr double kWaterOverMantle = 1030.0 / 3300.0;
+      const V at_sea(greater(
+          Number((active_(p_.rebound_fraction) - kWaterOverMantle) / (1.0 - kWaterOverMantle)),
+          Number(0.0)));
+      at_sea_floor([&](Index cell) { owed_m_[cell] += at_sea * (before_[cell] - z_[cell]); });
+    }
+    const Number part = -expm1_of(Number(-active_(p_.time_step_yr) / active_(p_.rebound_time_yr)));
     std::vector<V> response(owed_m_);
     if (p_.rebound_length_km > 0.0) {
-      apply_linear<V, 1>(response, {1000.0 * lift_(p_.rebound_length_km)},
+      apply_linear<V, 1>(response, {1000.0 * active_(p_.rebound_length_km)},
                          [&](auto values, const std::array<double, 1>& length_m) {
                            smooth_broadly(grid_, values, length_m[0]);
                          });
@@ -158,11 +275,18 @@ class Landscape {
       z_[cell] = greater(V(0.0F), V(z_[cell] + V(part * Number(response[cell]))));
       owed_m_[cell] -= V(part) * owed_m_[cell];
     });
+    if (deposits()) {
+      at_sea_floor([&](Index cell) {
+        z_[cell] = lesser(V(z_[cell] + V(part * Number(response[cell]))),
+                          greater(z_[cell], V(-kShallowest_m)));
+        owed_m_[cell] -= V(part) * owed_m_[cell];
+      });
+    }
     rock_.rebound += volume_since_before();
   }
 
   const ErosionParameters& p_;
-  ActiveVariables<V> lift_;
+  ActiveVariables<V> active_;
   const Grid& grid_;
   std::span<V> z_;
   std::span<const V> uplift_m_yr_;
@@ -170,6 +294,8 @@ class Landscape {
   std::vector<V> initial_;
   std::vector<std::uint8_t> outlets_;
   std::vector<V> lowered_, before_, owed_m_;
+  std::vector<Number> unsettled_m_;
+  SedimentRecord sediment_;
   RockVolumes<Number> rock_;
 };
 
