@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "geo/kernels/landscape/river_sediment.hpp"
 #include "geo/kernels/water/depressions.hpp"
 #include "geo/kernels/water/multiple_flow.hpp"
-#include "geo/kernels/landscape/river_sediment.hpp"
 
 namespace geo {
 

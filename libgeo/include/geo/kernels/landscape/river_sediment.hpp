@@ -8,8 +8,8 @@
 
 #include "geo/core/grid.hpp"
 #include "geo/core/numeric.hpp"
-#include "geo/kernels/water/flow_graph.hpp"
 #include "geo/kernels/landscape/stream_power.hpp"
+#include "geo/kernels/water/flow_graph.hpp"
 
 namespace geo {
 
