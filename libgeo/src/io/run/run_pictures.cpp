@@ -20,6 +20,7 @@
 #include "io/config/event_words.hpp"
 #include "io/drawing/map_canvas.hpp"
 #include "io/maps/map_set.hpp"
+#include "io/report/report_globe.hpp"
 #include "io/report/side_by_side.hpp"
 
 namespace geo::io {
@@ -162,6 +163,32 @@ State state_for(const RunFolder& folder, const Manifest& manifest, const StageRe
   return state;
 }
 
+/// The relief of some frames of a run through time, the first and the last among them.
+std::vector<GlobeFrame> frames_of(const RunFolder& folder) {
+  constexpr std::size_t kMost = 12;
+  std::vector<std::filesystem::path> files;
+  const auto place = folder.path() / "frames";
+  if (!std::filesystem::is_directory(place)) return {};
+  for (const auto& entry : std::filesystem::directory_iterator(place)) {
+    if (entry.path().extension() == ".nc") files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  std::vector<GlobeFrame> frames;
+  const std::size_t count = std::min(kMost, files.size());
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto& file = files[count < 2 ? 0 : k * (files.size() - 1) / (count - 1)];
+    const Snapshot snapshot = read_netcdf(file, [](const FieldSpec& spec) {
+      return spec.name == field::crust_elevation.name || spec.name == field::elevation.name;
+    });
+    State state(snapshot.grid);
+    for (const auto& [spec, values] : snapshot.fields) state.share(*spec, values);
+    // "plates-0050": the time is in the name.
+    const std::string name = file.stem().string();
+    frames.push_back({std::stod(name.substr(name.find_last_of('-') + 1)), std::move(state)});
+  }
+  return frames;
+}
+
 /// What a report says besides what is measured and drawn.
 Report report_of(const RunFolder& folder, const Manifest& manifest, const Grid& grid) {
   Report report;
@@ -214,6 +241,7 @@ std::vector<std::filesystem::path> draw_run(const RunFolder& folder, const MapVi
   // Scorecard and islands take longest, each on one thread, and are begun first.
   std::vector<std::function<void()>> pieces;
   pieces.emplace_back([&] { report.scorecard = scorecard_of(state); });
+  if (all) pieces.emplace_back([&] { report.globe = globe_markup(state, frames_of(folder)); });
   std::vector<const StageRecord*> islands;
   for (const StageRecord& record : manifest.stages) {
     if (is_island(record)) islands.push_back(&record);

@@ -14,8 +14,6 @@
 #include "geo/io/files/background_writer.hpp"
 #include "geo/io/files/build_info.hpp"
 #include "geo/io/files/source_date.hpp"
-#include "geo/io/input/exemplar_files.hpp"
-#include "geo/io/input/hypsography.hpp"
 #include "geo/io/run/island_session.hpp"
 #include "geo/io/run/recorded_file.hpp"
 #include "io/netcdf/frame_files.hpp"
@@ -96,21 +94,21 @@ void RunSession::clear_for_this_run() {
   manifest_.compiler = build.compiler;
   manifest_.build = build.id;
   manifest_.libraries = library_versions();
-  manifest_.seed = static_cast<std::uint64_t>(settings_.seed);
+  manifest_.seed = static_cast<std::uint64_t>(run_.settings.seed);
   manifest_.threads = request_.threads;
   manifest_.config_digest = digest_of(config_);
   manifest_.complete = false;
   manifest_.files.clear();
   // From here on no stage that is about to be replaced counts as complete.
-  const bool planet_stays = pipeline_.stages()[first_]->info().own_grid;
+  const bool planet_stays = run_.pipeline.stages()[plan_.first]->info().own_grid;
   std::erase_if(manifest_.stages, [&](const StageRecord& record) {
-    const int at = pipeline_.find(record.name);
+    const int at = run_.pipeline.find(record.name);
     if (at < 0 && is_island(record)) return !planet_stays;
-    return at < begin_ || at >= first_;
+    return at < plan_.begin || at >= plan_.first;
   });
   write_manifest(folder_.manifest(), manifest_);
-  for (int at = 0; at < static_cast<int>(pipeline_.stages().size()); ++at) {
-    if (at < begin_ || at >= first_) folder_.remove_stage(numbers_[at], name_of(at));
+  for (int at = 0; at < static_cast<int>(run_.pipeline.stages().size()); ++at) {
+    if (at < plan_.begin || at >= plan_.first) folder_.remove_stage(numbers_[at], run_.name_of(at));
   }
   if (!planet_stays) folder_.remove_further_islands();
   folder_.remove_summaries();
@@ -119,20 +117,20 @@ void RunSession::clear_for_this_run() {
 
 Provenance RunSession::provenance_of(int position) const {
   const auto& build = build_info();
-  return {.title = fmt::format("terrane: {}", name_of(position)),
+  return {.title = fmt::format("terrane: {}", run_.name_of(position)),
           .config_toml = config_,
-          .seed = static_cast<std::uint64_t>(settings_.seed),
+          .seed = static_cast<std::uint64_t>(run_.settings.seed),
           .version = build.version,
           .history = fmt::format("{:%Y-%m-%dT%H:%M:%SZ} terrane {} ({}): stage {}",
                                  fmt::gmtime(now_or_given()), build.version, build.commit,
-                                 name_of(position)),
+                                 run_.name_of(position)),
           .references = references_of(position)};
 }
 
 std::string RunSession::references_of(int position) const {
   std::vector<std::string_view> sources;
-  for (const Parameter& parameter : parameters_) {
-    const std::string prefix = fmt::format("{}.", name_of(position));
+  for (const Parameter& parameter : run_.parameters) {
+    const std::string prefix = fmt::format("{}.", run_.name_of(position));
     if (!parameter.name.starts_with(prefix) || parameter.source == "design") continue;
     if (std::find(sources.begin(), sources.end(), parameter.source) == sources.end()) {
       sources.push_back(parameter.source);
@@ -145,9 +143,9 @@ std::string RunSession::references_of(int position) const {
 void RunSession::write_stage(BackgroundWriter& writer, FrameFiles& frames, int position,
                              const State& state, const Context& context, double seconds) {
   auto job = std::make_shared<StageJob>();
-  job->snapshot.stage = name_of(position);
+  job->snapshot.stage = run_.name_of(position);
   job->snapshot.grid = state.shared_grid();
-  const auto& written = pipeline_.stages()[position]->info().writes;
+  const auto& written = run_.stage(position).info().writes;
   for (const FieldSpec* spec : written) {
     job->snapshot.fields.emplace_back(spec, state.values(*spec));
   }
@@ -157,14 +155,14 @@ void RunSession::write_stage(BackgroundWriter& writer, FrameFiles& frames, int p
   job->csv = file_of(position, ".csv");
   job->steps = context.steps;
   job->tables = context.tables;
-  job->record.name = name_of(position);
+  job->record.name = run_.name_of(position);
   job->record.builder = this_builder();
   job->record.seconds = time_is_given() ? 0.0 : seconds;
   job->record.budget = context.budget;
   job->record.events = context.event_records;
   job->record.warnings = context.warnings;
   writer.submit([this, job, &frames] {
-    job->write(settings_.vtk, static_cast<int>(settings_.compression));
+    job->write(run_.settings.vtk, static_cast<int>(run_.settings.compression));
     for (const std::string& name : frames.take_written()) job->record.list(folder_.path(), name);
     manifest_.stages.push_back(job->record);
     write_manifest(folder_.manifest(), manifest_);
@@ -175,7 +173,7 @@ void RunSession::write_stage(BackgroundWriter& writer, FrameFiles& frames, int p
 /// Of the planet, fields that no later stage writes again and that cost no memory while stages
 /// still shape the relief, which is when runs are largest: later stages read them too.
 void RunSession::keep_for_pictures(int position, const State& state) {
-  const StageInfo& info = pipeline_.stages()[position]->info();
+  const StageInfo& info = run_.stage(position).info();
   if (info.own_grid) return at_hand_.keep_island(std::string(info.name), state);
   const auto lists = [](const std::vector<const FieldSpec*>& specs, const FieldSpec* spec) {
     return std::find(specs.begin(), specs.end(), spec) != specs.end();
@@ -183,8 +181,8 @@ void RunSession::keep_for_pictures(int position, const State& state) {
   std::vector<const FieldSpec*> fields;
   for (const FieldSpec* spec : info.writes) {
     bool is_last = true, relief_changes = false, stays = false;
-    for (int at = position + 1; at <= last_; ++at) {
-      const StageInfo& later = pipeline_.stages()[at]->info();
+    for (int at = position + 1; at <= plan_.last; ++at) {
+      const StageInfo& later = run_.stage(at).info();
       stays = stays || lists(later.reads, spec) || lists(later.optional, spec);
       if (later.own_grid) continue;
       is_last = is_last && !lists(later.writes, spec);
@@ -196,7 +194,7 @@ void RunSession::keep_for_pictures(int position, const State& state) {
 }
 
 void RunSession::execute(const RunEvents& events) {
-  if (first_ <= last_) {
+  if (plan_.first <= plan_.last) {
     clear_for_this_run();
     compute(events);
   } else {
@@ -205,43 +203,31 @@ void RunSession::execute(const RunEvents& events) {
     write_text_file(folder_.config(), config_);
     tell(events.info, "all stages are complete: only the pictures are drawn again");
   }
-  state_.reset();
-  if (!note_.empty()) tell(events.info, note_);
-  if (!events_are_felt()) {
+  inputs_.state.reset();
+  if (!plan_.note.empty()) tell(events.info, plan_.note);
+  if (!events_are_felt(run_, plan_)) {
     tell(events.warning, "events change the relief in stage erosion, which this run leaves out");
   }
   write_summaries(events);
 }
 
 void RunSession::compute(const RunEvents& events) {
-  Context context;
-  context.planet = planet_with_sea();
-  context.seed = static_cast<std::uint64_t>(settings_.seed);
-  context.hypsography = hypsography();
-  context.plates = plates_;
-  context.initial_elevation = initial_elevation_;
-  find_exemplars();
-  for (const std::string& warning : warnings_) tell(events.warning, warning);
-  context.exemplars = exemplars_;
-  context.planet_exemplars = planet_exemplars_;
-  context.events = settings_.events;
+  find_exemplars(inputs_, run_, plan_);
+  for (const std::string& warning : inputs_.warnings) tell(events.warning, warning);
+  Context context = context_of(inputs_, run_, plan_);
   context.on_progress = events.progress;
   context.stop = events.stop;
 
-  if (!settings_.start_frame.empty()) {
-    context.checkpoint = std::make_shared<const Checkpoint>(read_checkpoint(settings_.start_frame));
-  }
-
-  FrameFiles frames(folder_.path(), settings_);
+  FrameFiles frames(folder_.path(), run_.settings);
   BackgroundWriter writer;
-  int running = first_;
+  int running = plan_.first;
   context.on_frame = [&](Frame frame) {
     frames.write(writer, std::move(frame), provenance_of(running));
   };
   Clock::time_point start;
   Pipeline::Observer observer;
   observer.before = [&](int position) {
-    tell(events.stage_begins, name_of(position), static_cast<double>(grid().size()));
+    tell(events.stage_begins, run_.name_of(position), static_cast<double>(grid().size()));
     context.warnings.clear();
     running = position;
     start = Clock::now();
@@ -250,11 +236,11 @@ void RunSession::compute(const RunEvents& events) {
     const double seconds = seconds_since(start);
     for (const std::string& warning : told.warnings) tell(events.warning, warning);
     write_stage(writer, frames, position, state, told, seconds);
-    if (settings_.maps) keep_for_pictures(position, state);
-    tell(events.stage_ends, name_of(position), seconds);
+    if (run_.settings.maps) keep_for_pictures(position, state);
+    tell(events.stage_ends, run_.name_of(position), seconds);
   };
   try {
-    pipeline_.run(*state_, context, first_, last_, observer);
+    run_.pipeline.run(*inputs_.state, context, plan_.first, plan_.last, observer);
   } catch (const Interrupted&) {
     writer.wait();  // what was computed is kept
     throw;
@@ -282,14 +268,15 @@ void RunSession::write_summaries(const RunEvents& events) {
     if (events.stop != nullptr && events.stop->load()) throw Interrupted();
   };
   check_stop();
-  if (settings_.vtk) write_collections();
-  if (settings_.globe && !write_globe_files(folder_, manifest_, settings_.globe_exaggeration)) {
+  if (run_.settings.vtk) write_collections();
+  if (run_.settings.globe &&
+      !write_globe_files(folder_, manifest_, run_.settings.globe_exaggeration)) {
     tell(events.warning, "output.globe: the run covers a part of a planet, there is no globe");
   }
-  if (settings_.maps) {
-    tell(events.stage_begins, "maps", static_cast<double>(settings_.map_width_px));
+  if (run_.settings.maps) {
+    tell(events.stage_begins, "maps", static_cast<double>(run_.settings.map_width_px));
     const auto start = Clock::now();
-    draw_run(folder_, settings_.map_view(), {}, at_hand_);
+    draw_run(folder_, run_.settings.map_view(), {}, at_hand_);
     tell(events.stage_ends, "maps", seconds_since(start));
   }
   check_stop();

@@ -1,11 +1,7 @@
 #pragma once
 
-#include <atomic>
 #include <filesystem>
-#include <functional>
-#include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,8 +11,11 @@
 #include "geo/io/files/background_writer.hpp"
 #include "geo/io/netcdf/stage_file.hpp"
 #include "geo/io/run/manifest.hpp"
+#include "geo/io/run/run_events.hpp"
 #include "geo/io/run/run_folder.hpp"
+#include "geo/io/run/run_inputs.hpp"
 #include "geo/io/run/run_pictures.hpp"
+#include "geo/io/run/run_plan.hpp"
 #include "geo/io/run/run_prediction.hpp"
 
 namespace geo::io {
@@ -39,15 +38,6 @@ struct RunRequest {
   int threads = 1;
 };
 
-/// How a run is heard. Any may be empty.
-struct RunEvents {
-  std::function<void(std::string_view stage, double cells)> stage_begins;
-  std::function<void(std::string_view stage, double seconds)> stage_ends;
-  std::function<void(double fraction)> progress;
-  std::function<void(std::string_view)> info, warning;
-  const std::atomic<bool>* stop = nullptr;
-};
-
 /// One run of a pipeline into a folder: configuration, relief, stages, files.
 ///
 /// A stage is complete when its files are there whole and the manifest has its entry; the manifest
@@ -55,55 +45,37 @@ struct RunEvents {
 /// nothing that only looks like one, and `resume` goes on behind them with the same bits.
 class RunSession {
  public:
-  /// `numbers` are the places of the pipeline's stages in the full order. `parameters` are all
-  /// declarations, bound to `settings`, `planet` and the stages; the session resolves run.grid,
-  /// run.from and run.to in `settings`. All must outlive the session.
-  RunSession(const Pipeline& pipeline, std::vector<int> numbers, RunSettings& settings,
-             const Planet& planet, std::span<const Parameter> parameters, RunRequest request);
+  /// `numbers` are the places of the pipeline's stages in the full order.
+  RunSession(RunConfiguration run, std::vector<int> numbers, RunRequest request);
 
   /// Checks everything that can be checked before a cell is computed, and reads the input: names of
   /// stages, the folder, the relief, the wiring, room on the disk. Writes nothing. Throws
   /// ConfigurationError, InputError, IoError.
   void prepare();
   /// What the prepared run will take on a machine of some speed.
-  [[nodiscard]] Prediction prediction(const MachineSpeed& speed) const;
+  [[nodiscard]] Prediction prediction(const MachineSpeed& speed) const {
+    return prediction_on(grid(), speed);
+  }
   /// Names of the stages that are still to be computed.
   [[nodiscard]] std::vector<std::string_view> stages_to_run() const;
-  [[nodiscard]] const Grid& grid() const { return state_->grid(); }
+  [[nodiscard]] const Grid& grid() const { return inputs_.state->grid(); }
 
   /// Computes and writes. Throws Interrupted when `events.stop` was set: the files of finished
   /// stages are whole then.
   void execute(const RunEvents& events);
 
  private:
-  void choose_stages();
   void look_at_folder();
   void take_open_settings(const std::string& before);
   void check_builders(std::string_view asked_by);
   void go_on_from(const std::string& before);
   void keep_earlier_stages(const std::string& before, int old_begin);
-  void load_complete_stages();
-  void leave_out_island();
-  [[nodiscard]] bool events_are_felt() const;
-  [[nodiscard]] int first_stage_of_input() const;
-  [[nodiscard]] bool needs_relief() const;
-  void begin_with_bare_planet();
-  void read_initial_relief();
-  void read_given_fields();
-  void read_initial_conditions();
-  void read_given_exemplars();
-  void find_exemplars();
-  void refuse_initial_conditions() const;
-  [[nodiscard]] Hypsography hypsography() const;
-  [[nodiscard]] bool follows_hypsography() const;
-  [[nodiscard]] Planet planet_with_sea() const;
+  [[nodiscard]] std::optional<State> load_complete_stages() const;
   [[nodiscard]] int count_complete_stages() const;
   [[nodiscard]] bool is_complete(int position) const;
-  [[nodiscard]] bool is_still_read(const FieldSpec& spec) const;
+  [[nodiscard]] Prediction prediction_on(const Grid& grid, const MachineSpeed& speed) const;
   [[nodiscard]] std::string resolved_config() const;
   [[nodiscard]] std::filesystem::path file_of(int position, std::string_view extension) const;
-  [[nodiscard]] std::string_view name_of(int position) const;
-  [[nodiscard]] int position_of(const std::string& stage, std::string_view asked_by) const;
 
   void clear_for_this_run();
   void compute(const RunEvents& events);
@@ -115,26 +87,16 @@ class RunSession {
   [[nodiscard]] Provenance provenance_of(int position) const;
   [[nodiscard]] std::string references_of(int position) const;
 
-  const Pipeline& pipeline_;
+  RunConfiguration run_;
   std::vector<int> numbers_;
-  RunSettings& settings_;
-  const Planet& planet_;
-  std::span<const Parameter> parameters_;
   RunRequest request_;
   RunFolder folder_;
   Manifest manifest_;
 
-  int begin_ = 0;  // where the run as a whole starts from the relief
-  int first_ = 0;  // where this session starts to compute
-  int last_ = 0;   // where it ends
+  RunPlan plan_;
+  RunInputs inputs_;
   std::string config_;
-  std::string note_;  // why a stage of the pipeline is left out
-  std::optional<State> state_;
   FieldsAtHand at_hand_;
-  std::vector<PlateOutline> plates_;
-  std::shared_ptr<const GivenRelief> initial_elevation_;
-  std::shared_ptr<const ExemplarLibrary> exemplars_, planet_exemplars_;
-  std::vector<std::string> warnings_;  ///< of what was given
 };
 
 }  // namespace geo::io
