@@ -120,11 +120,8 @@ constexpr double kLinePx = 3.0, kCasingPx = 5.4;
 /// other.
 using ShownTypes = std::set<int>;
 
-ShownTypes draw_boundaries(MapCanvas& canvas, const MapFrame& frame, const Raster& plates,
-                           std::span<const std::int8_t> types) {
+ShownTypes draw_boundaries(MapCanvas& canvas, const std::vector<BoundaryLine>& lines) {
   const ColourMap colours("boundary_type");
-  // Where cells are larger than pixels their steps are, too.
-  const auto lines = trace_outlines(plates, 1.2 * std::max(1.5, frame.pixels_per_row()));
   cairo_t* pen = canvas.pen();
   ShownTypes shown;
   canvas.inside([&] {
@@ -132,21 +129,14 @@ ShownTypes draw_boundaries(MapCanvas& canvas, const MapFrame& frame, const Raste
     cairo_set_line_cap(pen, CAIRO_LINE_CAP_ROUND);
     canvas.colour(kWhite, 0.75);
     cairo_set_line_width(pen, kCasingPx * canvas.unit());
-    for (const Outline& line : lines) stroke(canvas, line, 0, line.size() - 1);
+    for (const auto& line : lines) stroke(canvas, line.points, 0, line.points.size() - 1);
     cairo_set_line_cap(pen, CAIRO_LINE_CAP_BUTT);
     cairo_set_line_width(pen, kLinePx * canvas.unit());
-    const std::optional<BoundaryTypes> known =
-        types.empty() ? std::nullopt : std::make_optional<BoundaryTypes>(frame, types);
-    for (const Outline& line : lines) {
-      std::vector<int> type(line.size(), 0);
-      for (std::size_t i = 0; known && i < line.size(); ++i) type[i] = known->at(line[i]);
-      for (std::size_t begin = 0; begin + 1 < line.size();) {
-        std::size_t end = begin + 1;
-        while (end + 1 < line.size() && type[end] == type[begin]) ++end;
-        canvas.colour(colours.category(type[begin])->colour);
-        stroke(canvas, line, begin, end);
-        shown.insert(type[begin]);
-        begin = end;
+    for (const auto& line : lines) {
+      for (const auto& piece : line.pieces) {
+        canvas.colour(colours.category(piece.type)->colour);
+        stroke(canvas, line.points, piece.begin, piece.end);
+        shown.insert(piece.type);
       }
     }
   });
@@ -216,6 +206,16 @@ void draw_velocities(MapCanvas& canvas, const MapFrame& frame, std::span<const f
   });
 }
 
+std::map<int, Rgb> colours_of(const Raster& plates) {
+  const ColourMap colours("plates");
+  std::map<int, Rgb> chosen;
+  for (const auto& [plate, number] :
+       colour_numbers(plates, static_cast<int>(colours.stops().size()))) {
+    chosen[plate] = colours.stops()[number].colour;
+  }
+  return chosen;
+}
+
 /// What a line of this type says. Where no types are known all lines are of type 0.
 std::string words_of_line(const ColourMap::Stop& stop, bool types_are_known) {
   if (stop.value != 0.0F) return stop.name;
@@ -255,13 +255,34 @@ void draw_legend(MapCanvas& canvas, const ShownTypes& shown, bool types_are_know
 
 }  // namespace
 
+std::map<int, Rgb> plate_colours(const MapFrame& frame, const State& state) {
+  return colours_of(sample_plates(frame, state.read(field::plate_id)));
+}
+
+std::vector<BoundaryLine> boundary_lines(const MapFrame& frame, const State& state) {
+  const Raster plates = sample_plates(frame, state.read(field::plate_id));
+  std::optional<BoundaryTypes> known;
+  if (state.has(field::boundary_type)) known.emplace(frame, state.read(field::boundary_type));
+  std::vector<BoundaryLine> lines;
+  // Where cells are larger than pixels their steps are, too.
+  for (Outline& outline : trace_outlines(plates, 1.2 * std::max(1.5, frame.pixels_per_row()))) {
+    BoundaryLine line{std::move(outline), {}};
+    const auto type_at = [&](std::size_t i) { return known ? known->at(line.points[i]) : 0; };
+    for (std::size_t begin = 0; begin + 1 < line.points.size();) {
+      std::size_t end = begin + 1;
+      while (end + 1 < line.points.size() && type_at(end) == type_at(begin)) ++end;
+      line.pieces.push_back({begin, end, type_at(begin)});
+      begin = end;
+    }
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
 void draw_plates(MapCanvas& canvas, const MapFrame& frame, const State& state,
                  const MapBase& base) {
-  const ColourMap colours("plates");
   const Raster plates = sample_plates(frame, state.read(field::plate_id));
-  const auto numbers = colour_numbers(plates, static_cast<int>(colours.stops().size()));
-  std::map<int, Rgb> colour_of;
-  for (const auto& [plate, number] : numbers) colour_of[plate] = colours.stops()[number].colour;
+  auto colour_of = colours_of(plates);
   const bool has_relief = state.has(field::elevation);
   canvas.paint_rows([&](int y, ColourRow& row) {
     int seen = -1;
@@ -283,9 +304,7 @@ void draw_plates(MapCanvas& canvas, const MapFrame& frame, const State& state,
     draw_coast(row, base, y, 0.35F);
   });
   const bool typed = state.has(field::boundary_type);
-  const ShownTypes shown =
-      draw_boundaries(canvas, frame, plates,
-                      typed ? state.read(field::boundary_type) : std::span<const std::int8_t>{});
+  const ShownTypes shown = draw_boundaries(canvas, boundary_lines(frame, state));
   double px_per_mm_yr = 0.0;
   if (state.has(field::plate_velocity_east) && state.has(field::plate_velocity_north)) {
     const auto east = state.read(field::plate_velocity_east);

@@ -13,6 +13,9 @@
 namespace geo::io {
 namespace {
 
+/// A comment of this name stands where the globe, which is markup already, goes.
+constexpr const char* kGlobesName = "globe";
+
 void add_head(pugi::xml_node html, const std::string& title) {
   auto head = add_element(html, "head");
   add_element(head, "meta").append_attribute("charset") = "utf-8";
@@ -119,6 +122,7 @@ std::filesystem::path write_report(const std::filesystem::path& folder, const Re
   auto main = add_element(add_element(html, "body"), "main");
   add_element(main, "h1", report.title);
   if (!report.introduction.empty()) add_element(main, "p", report.introduction);
+  if (!report.globe.empty()) main.append_child(pugi::node_comment).set_value(kGlobesName);
   add_pictures(main, folder, report.maps);
   if (report.scorecard && !report.scorecard->lines.empty()) {
     add_scorecard(main, *report.scorecard);
@@ -135,8 +139,13 @@ std::filesystem::path write_report(const std::filesystem::path& folder, const Re
   std::ostringstream text;
   // As HTML wants it: no XML declaration, and no indentation that `pre` would show.
   document.save(text, "", pugi::format_raw | pugi::format_no_declaration, pugi::encoding_utf8);
+  std::string page = text.str() + "\n";
+  const std::string place = fmt::format("<!--{}-->", kGlobesName);
+  if (const auto at = page.find(place); at != std::string::npos) {
+    page.replace(at, place.size(), report.globe);
+  }
   const auto path = folder / "report.html";
-  write_text_file(path, text.str() + "\n");
+  write_text_file(path, page);
   return path;
 }
 

@@ -28,6 +28,7 @@ std::vector<FieldFigures> field_figures(const Manifest& manifest);
 struct Report {
   std::string title;  ///< "terrane: planet of seed 1"
   std::string introduction;
+  std::string globe;  ///< markup of a globe, with its script; empty: none
   std::vector<MapFile> maps;
   std::optional<Scorecard> scorecard;  ///< whole planets have one
   std::vector<std::string> events;     ///< what struck the planet, a line each
@@ -36,8 +37,8 @@ struct Report {
   std::vector<std::pair<std::string, std::string>> provenance;  ///< ("seed", "1") …
 };
 
-/// Writes `folder`/report.html: one page without scripts that opens without a network. Pictures are
-/// referenced relative to the folder. Throws IoError. Returns its path.
+/// Writes `folder`/report.html: one page that opens without a network; it has a script where it
+/// has a globe. Pictures are referenced relative to the folder. Throws IoError. Returns its path.
 std::filesystem::path write_report(const std::filesystem::path& folder, const Report& report);
 
 }  // namespace geo::io

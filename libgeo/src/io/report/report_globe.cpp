@@ -1,0 +1,424 @@
+#include "report_globe.hpp"
+
+#include <fmt/format.h>
+#include <libdeflate.h>
+#include <vtkBase64Utilities.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <new>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+
+#include "geo/io/files/embedded_data.hpp"
+#include "io/drawing/map_page.hpp"
+#include "io/drawing/map_raster.hpp"
+#include "io/maps/map_field.hpp"
+#include "io/maps/map_plates.hpp"
+#include "io/maps/map_rivers.hpp"
+#include "io/maps/map_themes.hpp"
+
+namespace geo::io {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr int kMostColumns = 1024;
+constexpr std::uint16_t kNothing = 65535;
+
+/// Which cells of a grid the page has: every `step`th, from the middle of the first step.
+struct Thinning {
+  explicit Thinning(const Grid& grid)
+      : step(std::max(1, (grid.nx() + kMostColumns - 1) / kMostColumns)),
+        nx(grid.nx() / step),
+        ny(std::max(1, grid.ny() / step)) {}
+  [[nodiscard]] int column(int i) const { return i * step + step / 2; }
+  [[nodiscard]] int row(int j) const { return j * step + step / 2; }
+
+  int step, nx, ny;
+};
+
+/// Values of the page's cells as double, NaN where there is none.
+std::vector<double> thinned(const State& state, const FieldSpec& spec, const Thinning& thinning) {
+  const Grid& grid = state.grid();
+  std::vector<double> out;
+  out.reserve(static_cast<std::size_t>(thinning.nx) * thinning.ny);
+  std::visit(
+      [&]<class T>(const std::vector<T>& values) {
+        for (int j = 0; j < thinning.ny; ++j) {
+          for (int i = 0; i < thinning.nx; ++i) {
+            const T value = values[grid.cell(thinning.column(i), thinning.row(j))];
+            const bool is_missing = std::is_integral_v<T> && value == static_cast<T>(spec.missing);
+            out.push_back(is_missing ? std::numeric_limits<double>::quiet_NaN()
+                                     : static_cast<double>(value));
+          }
+        }
+      },
+      *state.values(spec));
+  return out;
+}
+
+std::string hex(Rgb colour) {
+  const auto byte = [](float part) {
+    return static_cast<int>(std::lround(255.0F * std::clamp(part, 0.0F, 1.0F)));
+  };
+  return fmt::format("#{:02x}{:02x}{:02x}", byte(colour.r), byte(colour.g), byte(colour.b));
+}
+
+/// Deflated and in base64.
+std::string packed(const std::vector<std::uint8_t>& bytes) {
+  constexpr int kLevel = 6;
+  const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> compressor(
+      libdeflate_alloc_compressor(kLevel), &libdeflate_free_compressor);
+  if (!compressor) throw std::bad_alloc();
+  std::vector<std::uint8_t> small(libdeflate_zlib_compress_bound(compressor.get(), bytes.size()));
+  small.resize(libdeflate_zlib_compress(compressor.get(), bytes.data(), bytes.size(), small.data(),
+                                        small.size()));
+  std::string text(small.size() / 3 * 4 + 8, '\0');
+  const auto length = vtkBase64Utilities::Encode(small.data(), small.size(),
+                                                 reinterpret_cast<unsigned char*>(text.data()));
+  text.resize(length);
+  return text;
+}
+
+/// Values as codes of 16 bits between the least and the most.
+struct Codes {
+  double offset = 0.0, scale = 1.0;
+  std::vector<std::uint16_t> codes;
+};
+
+Codes coded(const std::vector<double>& values, bool whole_numbers) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  Codes out;
+  if (low > high) low = high = 0.0;
+  out.offset = low;
+  out.scale = whole_numbers ? 1.0 : std::max((high - low) / (kNothing - 1), 1e-30);
+  out.codes.reserve(values.size());
+  for (const double value : values) {
+    out.codes.push_back(std::isfinite(value)
+                            ? static_cast<std::uint16_t>(std::lround((value - low) / out.scale))
+                            : kNothing);
+  }
+  return out;
+}
+
+/// Differences along rows, low bytes before high ones, and which cells are shown where only some
+/// are.
+std::vector<std::uint8_t> bytes_of(const std::vector<std::uint16_t>& codes, int width,
+                                   const std::vector<std::uint8_t>& shown) {
+  const std::size_t count = codes.size();
+  std::vector<std::uint8_t> bytes(2 * count);
+  for (std::size_t at = 0; at < count; ++at) {
+    const bool begins = at % static_cast<std::size_t>(width) == 0;
+    const auto difference = static_cast<std::uint16_t>(codes[at] - (begins ? 0 : codes[at - 1]));
+    bytes[at] = static_cast<std::uint8_t>(difference & 255U);
+    bytes[count + at] = static_cast<std::uint8_t>(difference >> 8U);
+  }
+  bytes.insert(bytes.end(), shown.begin(), shown.end());
+  return bytes;
+}
+
+/// The layers as they are gathered: their description and their elements.
+class Layers {
+ public:
+  Layers(const State& state, const Thinning& thinning) : state_(state), thinning_(thinning) {}
+
+  void add(const FieldSpec& spec, ordered_json entry, const std::vector<std::uint8_t>& shown = {}) {
+    add_values(spec.name, thinned(state_, spec, thinning_), spec.type != Type::float32,
+               std::move(entry), shown);
+  }
+  void add_values(std::string_view name, const std::vector<double>& values, bool whole_numbers,
+                  ordered_json entry, const std::vector<std::uint8_t>& shown = {}) {
+    entry["name"] = name;
+    index.push_back(
+        described(fmt::format("globe-{}", name), values, whole_numbers, std::move(entry), shown));
+  }
+  ordered_json described(const std::string& id, const std::vector<double>& values,
+                         bool whole_numbers, ordered_json entry,
+                         const std::vector<std::uint8_t>& shown = {}) {
+    const Codes codes = coded(values, whole_numbers);
+    entry["id"] = id;
+    entry["offset"] = codes.offset;
+    entry["scale"] = codes.scale;
+    entry["masked"] = !shown.empty();
+    elements += fmt::format("<script type=\"text/plain\" id=\"{}\">{}</script>\n", id,
+                            packed(bytes_of(codes.codes, thinning_.nx, shown)));
+    return entry;
+  }
+
+  ordered_json index = ordered_json::array();
+  std::string elements;
+
+ private:
+  const State& state_;
+  const Thinning& thinning_;
+};
+
+ordered_json entry_of(const std::string& title, std::string_view units, const char* kind) {
+  return {{"title", title},
+          {"units", units},
+          {"kind", kind},
+          {"factor", 1.0},
+          {"paper", hex(kPaleLand)}};
+}
+
+void put_stops(ordered_json& entry, const std::vector<ColourMap::Stop>& stops, double factor) {
+  for (const auto& stop : stops) {
+    entry["stops"].push_back(stop.value / factor);
+    entry["colours"].push_back(hex(stop.colour));
+  }
+}
+
+/// Colours of the sea's floor up to the shore, then those of land.
+ordered_json relief_entry() {
+  auto entry = entry_of("Elevation", "m", "smooth");
+  const ColourMap sea("sea_depth"), land("land_elevation");
+  put_stops(entry, sea.stops(), 1.0);
+  // The coast is a step: both stops at the shore are wanted, one a hair below the other.
+  constexpr double kBelow_m = 1e-3;
+  entry["stops"].back() = entry["stops"].back().get<double>() - kBelow_m;
+  put_stops(entry, land.stops(), 1.0);
+  entry["shown_units"] = "m";
+  return entry;
+}
+
+/// Classes between stops, as the map of the field has them.
+ordered_json classes_entry(const FieldMap& map) {
+  auto entry = entry_of(map.title, map.field->units, "classes");
+  const ColourMap colours(map.colours);
+  const auto& stops = colours.stops();
+  for (std::size_t k = 0; k < stops.size(); ++k) {
+    entry["stops"].push_back(stops[k].value / map.scale);
+    if (k + 1 < stops.size())
+      entry["colours"].push_back(hex(colours.class_colour(static_cast<int>(k))));
+  }
+  entry["factor"] = map.scale;
+  entry["shown_units"] = map.units;
+  return entry;
+}
+
+ordered_json categories_entry(const FieldSpec& spec, const std::string& title) {
+  auto entry = entry_of(title, "", "categories");
+  for (const auto& [colour, flag] : category_colours(spec)) {
+    entry["stops"].push_back(flag->value);
+    entry["colours"].push_back(hex(colour));
+    entry["names"].push_back(flag->meaning);
+  }
+  return entry;
+}
+
+ordered_json plates_entry(const State& state, const MapFrame& frame) {
+  auto entry = entry_of("Plates", "", "areas");
+  for (const auto& [plate, colour] : plate_colours(frame, state)) {
+    entry["stops"].push_back(plate);
+    entry["colours"].push_back(hex(colour));
+  }
+  return entry;
+}
+
+/// Where the map of a field shows it: 1 a cell, empty where everywhere.
+std::vector<std::uint8_t> shown_cells(const FieldMap& map, const State& state,
+                                      const Thinning& thinning) {
+  if (map.extent == Extent::everywhere) return {};
+  const auto elevation = thinned(state, field::elevation, thinning);
+  std::vector<std::uint8_t> shown(elevation.size());
+  if (map.extent == Extent::land) {
+    for (std::size_t k = 0; k < shown.size(); ++k) shown[k] = elevation[k] >= 0.0 ? 1 : 0;
+    return shown;
+  }
+  const bool knows = state.has(field::continental_fraction);
+  const auto continent =
+      knows ? thinned(state, field::continental_fraction, thinning) : std::vector<double>();
+  const auto age = thinned(state, *map.field, thinning);
+  constexpr double kOldestFloor_myr = 250.0;  // older crust at sea is stretched continent
+  for (std::size_t k = 0; k < shown.size(); ++k) {
+    const bool floor = knows ? continent[k] < 0.5 : elevation[k] < 0.0;
+    shown[k] = floor && age[k] <= kOldestFloor_myr ? 1 : 0;
+  }
+  return shown;
+}
+
+double rounded(double value) { return std::round(value * 100.0) / 100.0; }
+
+/// Longitude and latitude of a point of an equirectangular map.
+std::array<double, 2> place_of(const MapFrame& frame, double x, double y) {
+  return {rounded(x * 360.0 / frame.width() - 180.0), rounded(90.0 - y * 180.0 / frame.height())};
+}
+
+/// The rivers of the maps as lines of longitude, latitude and width.
+ordered_json rivers_of(const State& state, const MapFrame& frame) {
+  if (!has_rivers(state)) return nullptr;
+  const RiverNetwork rivers = trace_rivers(frame, state);
+  auto lines = ordered_json::array();
+  for (const auto& river : rivers.lines) {
+    auto line = ordered_json::array();
+    for (const RiverPoint& point : river) {
+      const auto [longitude, latitude] = place_of(frame, point.x, point.y);
+      line.push_back({longitude, latitude, rounded(river_width_px(rivers, point.flow))});
+    }
+    if (line.size() > 1) lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+/// Winds every few degrees, fewer towards the poles: longitude, latitude, east, north, m/s.
+ordered_json winds_of(const State& state) {
+  if (!state.has(field::wind_east) || !state.has(field::wind_north)) return nullptr;
+  const Grid& grid = state.grid();
+  const auto east = state.read(field::wind_east), north = state.read(field::wind_north);
+  constexpr int kRows = 30;
+  auto arrows = ordered_json::array();
+  for (int k = 0; k < kRows; ++k) {
+    const int row = (2 * k + 1) * grid.ny() / (2 * kRows);
+    const double latitude = grid.latitude_deg(row);
+    const int count =
+        std::max(4, static_cast<int>(2.0 * kRows * std::cos(latitude * M_PI / 180.0)));
+    for (int n = 0; n < count; ++n) {
+      const int column = (2 * n + 1) * grid.nx() / (2 * count);
+      const Index cell = grid.cell(column, row);
+      arrows.push_back({rounded(grid.longitude_deg(column)), rounded(latitude), rounded(east[cell]),
+                        rounded(north[cell])});
+    }
+  }
+  return arrows;
+}
+
+/// Boundaries of plates by the colour of what happens there.
+ordered_json boundaries_of(const State& state, const MapFrame& frame) {
+  if (!state.has(field::plate_id) || !state.has(field::boundary_type)) return nullptr;
+  const ColourMap colours("boundary_type");
+  auto lines = ordered_json::object();
+  for (const BoundaryLine& boundary : boundary_lines(frame, state)) {
+    for (const auto& piece : boundary.pieces) {
+      auto line = ordered_json::array();
+      for (std::size_t k = piece.begin; k <= piece.end; ++k) {
+        line.push_back(place_of(frame, boundary.points[k].x, boundary.points[k].y));
+      }
+      lines[hex(colours.category(piece.type)->colour)].push_back(std::move(line));
+    }
+  }
+  return lines;
+}
+
+/// The longitude with most land, to be seen first.
+double centre_of(const State& state) {
+  const Grid& grid = state.grid();
+  const auto elevation = state.read(field::elevation);
+  double east = 0.0, north = 0.0;
+  for (int j = 0; j < grid.ny(); ++j) {
+    for (int i = 0; i < grid.nx(); ++i) {
+      if (elevation[grid.cell(i, j)] < 0.0F) continue;
+      const double longitude = grid.longitude_deg(i) * M_PI / 180.0;
+      east += grid.area_m2(j) * std::sin(longitude);
+      north += grid.area_m2(j) * std::cos(longitude);
+    }
+  }
+  return rounded(std::atan2(east, north) * 180.0 / M_PI);
+}
+
+void add_layers(const State& state, const Thinning& thinning, const MapFrame& frame,
+                Layers& layers) {
+  layers.add(field::elevation, relief_entry());
+  for (const FieldMap& map : field_maps()) {
+    if (!state.has(*map.field)) continue;
+    layers.add(*map.field, classes_entry(map), shown_cells(map, state, thinning));
+  }
+  for (const CategoryMap& map : category_maps()) {
+    if (state.has(*map.field)) layers.add(*map.field, categories_entry(*map.field, map.title));
+  }
+  if (state.has(field::plate_id)) layers.add(field::plate_id, plates_entry(state, frame));
+  if (state.has(field::wind_east) && state.has(field::wind_north)) {
+    auto speed = thinned(state, field::wind_east, thinning);
+    const auto north = thinned(state, field::wind_north, thinning);
+    for (std::size_t k = 0; k < speed.size(); ++k) speed[k] = std::hypot(speed[k], north[k]);
+    auto entry = entry_of("Wind", "m s-1", "smooth");
+    put_stops(entry, ColourMap("wind_speed").stops(), 1.0);
+    entry["shown_units"] = "m/s";
+    layers.add_values("wind_speed", speed, false, std::move(entry));
+  }
+}
+
+/// Frames on the cells of the page, where they have as many.
+ordered_json add_frames(const std::vector<GlobeFrame>& frames, const Thinning& thinning,
+                        Layers& layers) {
+  auto index = ordered_json::array();
+  for (const GlobeFrame& frame : frames) {
+    const Thinning own(frame.state.grid());
+    const FieldSpec& relief = frame.state.has(field::crust_elevation)
+                                  ? static_cast<const FieldSpec&>(field::crust_elevation)
+                                  : field::elevation;
+    if (own.nx != thinning.nx || own.ny != thinning.ny || !frame.state.has(relief)) continue;
+    auto entry = entry_of("Elevation", "m", "smooth");
+    entry["time_myr"] = frame.time_myr;
+    index.push_back(layers.described(fmt::format("globe-frame-{}", index.size()),
+                                     thinned(frame.state, relief, own), false, std::move(entry)));
+  }
+  return index;
+}
+
+std::string without_tags(std::string json) {
+  for (std::size_t at = 0; (at = json.find('<', at)) != std::string::npos;) {
+    json.replace(at, 1, "\\u003c");
+  }
+  return json;
+}
+
+constexpr const char* kSection = R"(<section id="globe" hidden>
+<canvas tabindex="0" aria-label="The planet as a globe: drag or use the arrow keys to turn it, the wheel or + and - to come nearer"></canvas>
+<p class="globe-value" data-part="value" aria-live="polite"></p>
+<div class="globe-hands">
+<label>Layer <select data-part="layer"></select></label>
+<label>Exaggeration <input data-part="exaggeration" type="range" min="0" max="60" value="15"></label>
+<label><input data-part="floor" type="checkbox"> sea floor</label>
+<label><input data-part="rivers" type="checkbox" checked> rivers</label>
+<label><input data-part="plates" type="checkbox"> plates</label>
+<label><input data-part="wind" type="checkbox"> winds</label>
+<label><input data-part="graticule" type="checkbox"> graticule</label>
+<label>Time <input data-part="frame" type="range" min="0" value="0"> <output data-part="time">today</output></label>
+</div>
+<div class="globe-legend" data-part="legend"></div>
+</section>
+)";
+
+}  // namespace
+
+std::string globe_markup(const State& state, const std::vector<GlobeFrame>& frames) {
+  const Grid& grid = state.grid();
+  if (grid.topology() != Topology::sphere || !state.has(field::elevation)) return {};
+  const Thinning thinning(grid);
+  Layers layers(state, thinning);
+  const MapPage page(grid, MapView());
+  const MapFrame frame(page);
+  add_layers(state, thinning, frame, layers);
+  ordered_json index{
+      {"nx", thinning.nx},          {"ny", thinning.ny},    {"radius_m", grid.figure().radius_m},
+      {"centre", centre_of(state)}, {"sea", hex(kPaleSea)}, {"land", hex(kPaleLand)}};
+  for (int j = 0; j < thinning.ny; ++j) {
+    index["latitude"].push_back(grid.latitude_deg(thinning.row(j)));
+  }
+  for (int i = 0; i < thinning.nx; ++i) {
+    index["longitude"].push_back(grid.longitude_deg(thinning.column(i)));
+  }
+  index["rivers"] = rivers_of(state, frame);
+  index["wind"] = winds_of(state);
+  index["boundaries"] = boundaries_of(state, frame);
+  index["frames"] = add_frames(frames, thinning, layers);
+  index["layers"] = layers.index;
+  return fmt::format(
+      "{}{}<script type=\"application/json\" "
+      "id=\"globe-index\">{}</script>\n<script>\n{}</script>\n",
+      kSection, layers.elements, without_tags(index.dump()), embedded_file("report/globe.js"));
+}
+
+}  // namespace geo::io
