@@ -26,5 +26,7 @@ void add_calibrate_command(CLI::App& program, Action& action);
 void add_score_command(CLI::App& program, Action& action);
 void add_export_command(CLI::App& program, Action& action);
 void add_diff_command(CLI::App& program, Action& action);
+void add_sweep_command(CLI::App& program, Action& action);
+void add_view_command(CLI::App& program, Action& action);
 
 }  // namespace terrane

@@ -102,9 +102,11 @@ void run_program(int argc, char** argv) {
   terrane::Action action;
   terrane::add_run_command(program, action);
   terrane::add_island_command(program, action);
+  terrane::add_sweep_command(program, action);
   terrane::add_score_command(program, action);
   terrane::add_calibrate_command(program, action);
   terrane::add_maps_command(program, action);
+  terrane::add_view_command(program, action);
   terrane::add_export_command(program, action);
   terrane::add_diff_command(program, action);
   terrane::add_params_command(program, action);

@@ -111,6 +111,70 @@ nlohmann::ordered_json to_json(const Rows& rows) {
   return list;
 }
 
+/// The values that one key may have, as JSON Schema tells editors.
+nlohmann::ordered_json schema_of(const geo::Parameter& row) {
+  nlohmann::ordered_json schema;
+  schema["description"] = row.units.empty() || row.units == "1"
+                              ? std::string(row.doc)
+                              : fmt::format("{}, {}", row.doc, row.units);
+  const bool is_real = std::holds_alternative<double>(row.default_value);
+  if (row.takes_list) {
+    schema["type"] = {"string", "array"};
+  } else {
+    schema["type"] = is_real ? "number" : std::string(row.type_name());
+  }
+  std::visit([&](const auto& value) { schema["default"] = value; }, row.default_value);
+  if (std::isfinite(row.min)) schema["minimum"] = row.min;
+  if (std::isfinite(row.max)) schema["maximum"] = row.max;
+  if (!row.choices.empty()) schema["enum"] = row.choices;
+  return schema;
+}
+
+nlohmann::ordered_json table_schema() {
+  return {{"type", "object"},
+          {"additionalProperties", false},
+          {"properties", nlohmann::ordered_json::object()}};
+}
+
+/// The table of a section; sections below it are tables in it.
+nlohmann::ordered_json& table_of(nlohmann::ordered_json& root, std::string_view section) {
+  nlohmann::ordered_json* table = &root;
+  while (!section.empty()) {
+    const auto dot = section.find('.');
+    const std::string word(section.substr(0, dot));
+    section.remove_prefix(dot == std::string_view::npos ? section.size() : dot + 1);
+    auto& properties = (*table)["properties"];
+    if (!properties.contains(word)) properties[word] = table_schema();
+    table = &properties[word];
+  }
+  return *table;
+}
+
+/// The configuration file as a JSON Schema, by which editors complete and check it.
+nlohmann::ordered_json schema_of(const Rows& rows, std::vector<geo::Event> events) {
+  nlohmann::ordered_json schema = table_schema();
+  schema["$schema"] = "http://json-schema.org/draft-07/schema#";
+  schema["title"] = "Configuration of terrane";
+  for (const geo::Parameter& row : rows) {
+    table_of(schema, row.section())["properties"][std::string(row.key())] = schema_of(row);
+  }
+  auto kinds = nlohmann::ordered_json::array();
+  for (geo::Event& event : events) {
+    auto table = table_schema();
+    for (const geo::Parameter& row : event.declarations()) {
+      table["properties"][std::string(row.key())] = schema_of(row);
+    }
+    const nlohmann::ordered_json place{{"type", "array"}, {"items", {{"type", "number"}}}};
+    table["properties"]["name"] = {{"type", "string"}};
+    table["properties"]["path_deg"] = {{"type", "array"}, {"items", place}};
+    table["properties"]["kind"] = {{"const", event.kind()}};
+    table["required"] = {"kind"};
+    kinds.push_back(std::move(table));
+  }
+  schema["properties"]["event"] = {{"type", "array"}, {"items", {{"anyOf", kinds}}}};
+  return schema;
+}
+
 void print_markdown(const Rows& rows, std::string_view heading = {}) {
   std::string_view section;
   for (const geo::Parameter& row : rows) {
@@ -137,6 +201,10 @@ std::vector<geo::Event> events_of_all_kinds() {
 }
 
 void print_events(const std::string& format) {
+  if (format == "schema") {
+    throw geo::ConfigurationError(
+        "--format schema: describes whole configurations: give no word, or a section");
+  }
   auto events = events_of_all_kinds();
   if (format == "toml") {
     fmt::print("# every kind of event with the defaults of its keys\n{}",
@@ -159,7 +227,7 @@ void print_events(const std::string& format) {
 }
 
 void check_format(const std::string& format) {
-  constexpr std::string_view kFormats[] = {"table", "toml", "json", "markdown"};
+  constexpr std::string_view kFormats[] = {"table", "toml", "json", "markdown", "schema"};
   if (std::find(std::begin(kFormats), std::end(kFormats), format) != std::end(kFormats)) return;
   throw geo::ConfigurationError(fmt::format("--format {}: must be one of {}{}", format,
                                             fmt::join(kFormats, ", "),
@@ -179,7 +247,9 @@ void add_params_command(CLI::App& program, Action& action) {
   command->add_option("STAGE_OR_WORDS", options->words,
                       "A stage or another section, or event; further words, or words alone, choose "
                       "the parameters that speak of all of them; all without any");
-  command->add_option("--format", options->format, "table, toml, json or markdown")
+  command
+      ->add_option("--format", options->format,
+                   "table, toml, json, markdown, or schema: a JSON Schema for editors")
       ->type_name("FORMAT");
   command->callback([&action, options] {
     action = [options] {
@@ -190,6 +260,12 @@ void add_params_command(CLI::App& program, Action& action) {
       if (options->format == "table") return print_table(rows);
       if (options->format == "json") {
         fmt::print("{}\n", to_json(rows).dump(2));
+        return;
+      }
+      if (options->format == "schema") {
+        const auto events =
+            options->words.empty() ? events_of_all_kinds() : std::vector<geo::Event>();
+        fmt::print("{}\n", schema_of(rows, events).dump(2));
         return;
       }
       if (options->format == "toml") {
