@@ -1,4 +1,4 @@
-# `cpack -G DEB` makes two packages: the program, and the library to build against.
+# `cpack -G DEB` makes the program, the library to build against, and the Python module where it is built.
 # Packs what is built; tests need not be.
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)
 set(package_work ${PROJECT_BINARY_DIR}/package)
@@ -9,6 +9,9 @@ set(CPACK_PACKAGE_CONTACT "The terrane authors <terrane@terrane.example>")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_COMPONENTS_ALL program development)
+if(TARGET terrane_python)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+endif()
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
@@ -31,6 +34,13 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libgeographiclib-dev")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Grids, fields, kernels and stages of a planet's surface as functions over
 spans: headers, a static library and the package that find_package(terrane)
 reads.")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-terrane)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.11), python3 (<< 3.12), python3-numpy, python3-xarray, python3-netcdf4")
+set(CPACK_COMPONENT_PYTHON_DESCRIPTION "Runs planets in memory and hands their stages over as xarray Datasets; reads
+runs back, scores, refines islands, fits parameters; single kernels on
+numpy arrays.")
 file(WRITE ${package_work}/changelog "terrane (${PROJECT_VERSION}) unstable; urgency=medium
 
   * See https://keepachangelog.com: CHANGELOG.md of the source.
@@ -47,8 +57,15 @@ License: Apache-2.0
  On Debian systems the full text of the Apache License, version 2.0, is in
  /usr/share/common-licenses/Apache-2.0.
 ")
-foreach(package terrane libterrane-dev)
+set(packages terrane libterrane-dev)
+if(TARGET terrane_python)
+  list(APPEND packages python3-terrane)
+endif()
+foreach(package ${packages})
   set(component program)
+  if(package STREQUAL python3-terrane)
+    set(component python)
+  endif()
   if(package STREQUAL libterrane-dev)
     set(component development)
   endif()
