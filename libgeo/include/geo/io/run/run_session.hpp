@@ -79,7 +79,6 @@ class RunSession {
   void choose_stages();
   void look_at_folder();
   void take_open_settings(const std::string& before);
-  void check_builders(std::string_view asked_by);
   void go_on_from(const std::string& before);
   void keep_earlier_stages(const std::string& before, int old_begin);
   void load_complete_stages();
