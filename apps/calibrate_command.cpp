@@ -25,7 +25,8 @@ namespace fs = std::filesystem;
 struct CalibrateOptions {
   std::string config, preset, target, folder = "calibration", threads;
   std::vector<std::string> assignments;
-  bool resume = false, overwrite = false, quiet = false, log_json = false;
+  bool resume = false, overwrite = false, allow_other_build = false, quiet = false,
+       log_json = false;
 };
 
 /// Defaults, then preset, then file, then the command line. Returns what it is called.
@@ -105,7 +106,8 @@ void run(const CalibrateOptions& options) {
                                           .events = configuration.settings.events,
                                           .settings = configuration.calibration,
                                           .resume = options.resume,
-                                          .overwrite = options.overwrite},
+                                          .overwrite = options.overwrite,
+                                          .allow_other_build = options.allow_other_build},
                                          {.info = [](std::string_view text) { log_info(text); },
                                           .iteration = [&](const auto& step) { log(step); },
                                           .stop = &stop_requested()});
@@ -152,6 +154,9 @@ void add_calibrate_command(CLI::App& program, Action& action) {
       ->take_all()
       ->allow_extra_args(false);  // a configuration may follow
   command->add_flag("--resume", o.resume, "Go on after the last complete iteration of the folder");
+  command->add_flag("--allow-other-build", o.allow_other_build,
+                    "With --resume: go on with what another build of terrane began; "
+                    "calibration.json keeps which ones");
   command->add_flag("--overwrite", o.overwrite, "Replace the calibration that the folder holds");
   command->add_option("--threads", o.threads, "Threads (default: as many as there are cores)")
       ->type_name("N");

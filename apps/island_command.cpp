@@ -22,7 +22,7 @@ namespace {
 
 struct IslandOptions {
   std::string folder, center, size, cell, detail, exemplars;
-  bool no_maps = false;
+  bool no_maps = false, allow_other_build = false;
   bool quiet = false;
 };
 
@@ -68,7 +68,7 @@ void make_island(const IslandOptions& options) {
   geo::io::IslandSession session(configuration.pipeline, configuration.stage_numbers().back(),
                                  configuration.settings, configuration.planet,
                                  configuration.parameters(), options.folder);
-  session.prepare();
+  session.prepare(options.allow_other_build);
   Progress progress(options.quiet ? ProgressStyle::none : ProgressStyle::bar);
   geo::io::RunEvents events;
   events.stage_begins = [&](std::string_view stage, double cells) { progress.begin(stage, cells); };
@@ -106,6 +106,9 @@ void add_island_command(CLI::App& program, Action& action) {
       ->add_option("--exemplars", options->exemplars,
                    "Folder of real reliefs (NetCDF, GeoTIFF, m) that its terrain is made like")
       ->type_name("DIR");
+  command->add_flag("--allow-other-build", options->allow_other_build,
+                    "Cut it from a planet that another build of terrane made; the manifest keeps "
+                    "that it was allowed");
   command->add_flag("--no-maps", options->no_maps, "Draw no maps");
   command->add_flag("--quiet", options->quiet, "Say nothing but warnings and errors");
   command->callback([&action, options] { action = [options] { make_island(*options); }; });

@@ -117,6 +117,7 @@ class Calibration {
           shown));
     }
     checkpoint_.question = question();
+    checkpoint_.builders = {io::this_builder()};
     if (!request_.resume) return;
     if (!fs::exists(state_file())) {
       throw ConfigurationError(
@@ -129,6 +130,7 @@ class Calibration {
                       "{} again",
                       shown));
     }
+    take_over(before.builders, shown);
     checkpoint_ = std::move(before);
     // One that ran out of iterations may have been given more.
     FitState& state = checkpoint_.state;
@@ -136,6 +138,21 @@ class Calibration {
       state.ended = false;
       if (!checkpoint_.starts.empty()) checkpoint_.starts.pop_back();
     }
+  }
+
+  /// Another build may compute other planets: it goes on where that is asked for, and is listed.
+  void take_over(std::vector<io::Builder>& builders, const std::string& shown) const {
+    const io::Builder here = io::this_builder();
+    const io::Builder last = builders.empty() ? io::Builder{} : builders.back();
+    if (last == here) return;
+    if (!request_.allow_other_build) {
+      throw ConfigurationError(fmt::format(
+          "--resume: {} was made by terrane {}, this is {}; --allow-other-build goes on "
+          "nevertheless, --overwrite calibrates again",
+          shown, builders.empty() ? "of an earlier version" : last.words_beside(here),
+          here.words_beside(last)));
+    }
+    builders.push_back(here);
   }
 
   /// The configuration itself, then places within the bounds or within a factor 2.
@@ -405,6 +422,7 @@ class Calibration {
     result_.iterations = checkpoint_.iterations;
     result_.starts = checkpoint_.starts;
     result_.seconds = checkpoint_.seconds;
+    result_.builders = checkpoint_.builders;
     if (!request_.events.empty()) {
       result_.warnings.push_back("events were left out of the fit; fitted.toml holds them");
     }

@@ -23,6 +23,7 @@ struct Request {
   std::span<const Event> events;
   Settings settings;
   bool resume = false, overwrite = false;
+  bool allow_other_build = false;  ///< go on with what another build of terrane began
 };
 
 /// Who watches; any may be empty.

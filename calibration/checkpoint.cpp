@@ -28,6 +28,10 @@ Iteration iteration_from(const json& j) {
   return {j.at("start"), j.at("number"),   j.at("cost"),    j.at("wasserstein_m"),
           j.at("step"),  j.at("accepted"), j.at("seconds"), j.at("values")};
 }
+json to_json(const io::Builder& builder) {
+  return {{"version", builder.version}, {"commit", builder.commit}, {"build", builder.id}};
+}
+io::Builder builder_from(const json& j) { return {j.at("version"), j.at("commit"), j.at("build")}; }
 json to_json(const Start& s) {
   return {{"from", s.from},
           {"to", s.to},
@@ -45,6 +49,8 @@ Start start_from(const json& j) {
 
 void write_checkpoint(const Checkpoint& c, const std::filesystem::path& file) {
   json all{{"question", c.question}, {"seconds", c.seconds}};
+  all["written_by"] = json::array();
+  for (const io::Builder& builder : c.builders) all["written_by"].push_back(to_json(builder));
   all["starts"] = json::array();
   for (const Start& start : c.starts) all["starts"].push_back(to_json(start));
   all["iterations"] = json::array();
@@ -66,6 +72,9 @@ Checkpoint read_checkpoint(const std::filesystem::path& file) {
     Checkpoint c;
     c.question = all.at("question");
     c.seconds = all.at("seconds");
+    for (const json& builder : all.value("written_by", json::array())) {
+      c.builders.push_back(builder_from(builder));
+    }
     for (const json& start : all.at("starts")) c.starts.push_back(start_from(start));
     for (const json& j : all.at("iterations")) c.iterations.push_back(iteration_from(j));
     const json& s = all.at("state");

@@ -6,6 +6,7 @@
 
 #include "calibration/fit.hpp"
 #include "calibration/result.hpp"
+#include "geo/io/run/manifest.hpp"
 
 namespace geo::calibration {
 
@@ -16,6 +17,7 @@ struct Checkpoint {
   std::vector<Iteration> iterations;
   FitState state;  ///< of the one under way
   double seconds = 0.0;
+  std::vector<io::Builder> builders;  ///< of terrane, that have worked on it, the last one last
 };
 
 /// Throws IoError.

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "geo/io/run/manifest.hpp"
+
 namespace geo::calibration {
 
 /// A hypsometric curve by its K equal-area bins: `elevation_m[k]` is the mean elevation of the
@@ -111,6 +113,7 @@ struct Result {
   double cost_before = 0.0, cost_after = 0.0;
   double noise_m = 0.0;  ///< deviation of one quantile as the residuals show it
   double seconds = 0.0;
+  std::vector<io::Builder> builders;  ///< of terrane, that made it, the last one last
   int forward_runs = 0, jacobians = 0;
   double seconds_per_forward = 0.0, seconds_per_jacobian = 0.0, profile_seconds = 0.0;
 };

@@ -131,6 +131,9 @@ std::string json_text(const Result& result) {
   json["starts"] = list_of(result.starts, start_json);
   json["effort"] = effort_json(result);
   json["program"] = program_json();
+  json["written_by"] = list_of(result.builders, [](const io::Builder& builder) {
+    return Json{{"version", builder.version}, {"commit", builder.commit}, {"build", builder.id}};
+  });
   // Bytes that are no UTF-8 (in a path, say) are replaced: no reason to lose a finished fit.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

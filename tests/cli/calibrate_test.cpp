@@ -170,6 +170,25 @@ TEST_F(Calibrate, RefusesWhatCannotBeFitted) {
   EXPECT_EQ(terrane({"calibrate", "-o", out_.string()}).code, 2);
 }
 
+TEST_F(Calibrate, OfAnotherBuildGoesOnOnlyByAWordThatIsKept) {
+  (void)calibrate({});
+  fs::remove(out_ / "calibration.json");
+  const auto state_file = out_ / "calibration.state.json";
+  const json state = json::parse(text_of(state_file));
+  for (const std::string key : {"version", "commit", "build"}) {
+    SCOPED_TRACE(key);
+    auto other = state;
+    other["written_by"][0][key] = "0.0.1";
+    std::ofstream(state_file) << other.dump();
+    expect_refusal({"--resume"}, 2, {"was made by terrane ", "0.0.1", "--allow-other-build"});
+  }
+  EXPECT_THAT(calibrate({"--resume", "--allow-other-build"}).code, testing::AnyOf(0, 5));
+  const auto found = json::parse(text_of(out_ / "calibration.json"));
+  ASSERT_EQ(found.at("written_by").size(), 2U);
+  EXPECT_EQ(found.at("written_by")[0].at("build"), "0.0.1");
+  EXPECT_EQ(found.at("written_by")[1], state.at("written_by")[0]);
+}
+
 TEST_F(Calibrate, DoesNotTouchAnEarlierOne) {
   (void)calibrate({});
   const auto before = contents_of(out_);

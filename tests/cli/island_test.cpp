@@ -224,12 +224,32 @@ TEST_F(Island, NeedsTheFilesThatTheManifestNames) {
   EXPECT_TRUE(contents_of(out_) == before);
 }
 
-TEST_F(Island, NeedsAPlanetOfTheSameVersion) {
+TEST_F(Island, NeedsAPlanetOfTheSameBuildOrAWordThatIsKept) {
+  run({"--no-vtk"});
+  const auto whole = manifest_of(out_);
+  for (const std::string key : {"version", "commit", "build"}) {
+    SCOPED_TRACE(key);
+    auto manifest = whole;
+    manifest[key] = "0.0.1";
+    for (auto& stage : manifest["stages"]) stage["written_by"][key] = "0.0.1";
+    std::ofstream(out_ / "manifest.json") << manifest.dump();
+    expect_refusal({}, 2, {"was made by terrane ", "0.0.1", "--allow-other-build"});
+  }
+  const Outcome outcome = island({"--allow-other-build"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const auto manifest = manifest_of(out_);
+  EXPECT_EQ(manifest.at("allowed"), nlohmann::json::array({"other-build"}));
+  EXPECT_EQ(manifest.at("stages").front().at("written_by").at("build"), "0.0.1");
+  EXPECT_EQ(manifest.at("stages").back().at("written_by").at("build"), whole.at("build"));
+  EXPECT_EQ(manifest.at("build"), "0.0.1");
+}
+
+TEST_F(Island, NeedsThatAllStagesAreOfOneBuild) {
   run({"--no-vtk"});
   auto manifest = manifest_of(out_);
-  manifest["version"] = "0.0.1";
+  manifest["stages"][2]["written_by"]["build"] = "0.0.1";
   std::ofstream(out_ / "manifest.json") << manifest.dump();
-  expect_refusal({}, 2, {"made by terrane 0.0.1", "same version"});
+  expect_refusal({}, 2, {"build 0.0.1", "--allow-other-build"});
 }
 
 }  // namespace

@@ -13,8 +13,10 @@
 #include <cstdlib>
 #include <fstream>
 #include <limits>
+#include <set>
 
 #include "geo/core/error.hpp"
+#include "io/input/exemplar_cache.hpp"
 #include "io/temporary_folder.hpp"
 
 namespace geo::io {
@@ -276,6 +278,18 @@ TEST_F(ExemplarFiles, OnesTooSmallForAPlanetAreLeftOutInOneLine) {
   EXPECT_EQ(shorter->exemplars[0].nx, kColumns);
   // Each size has a cache of its own.
   EXPECT_EQ(exemplars_of({}, Planet{})->exemplars[0].cell_m, kGrownForIslands.cell_m);
+}
+
+TEST_F(ExemplarFiles, EachBuildHasACacheOfItsOwn) {
+  setenv("XDG_CACHE_HOME", folder_.path().c_str(), 1);
+  std::set<std::filesystem::path> caches{exemplar_cache({})};
+  for (auto part :
+       {&BuildInfo::version, &BuildInfo::commit, &BuildInfo::compiler, &BuildInfo::id}) {
+    BuildInfo other = build_info();
+    other.*part += "x";
+    caches.insert(exemplar_cache({}, other));
+  }
+  EXPECT_EQ(caches.size(), 5U);
 }
 
 TEST_F(ExemplarFiles, TheCacheGivesTheSameBitsAndHeals) {

@@ -113,16 +113,20 @@ void MapFrame::locate_pixels() {
   constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
   const std::size_t pixels = static_cast<std::size_t>(width_) * height_;
   std::vector<Centre> places(pixels, Centre{kNaN, kNaN});
+  ParallelErrors errors;
 #pragma omp parallel
   {
-    const MapPage::Projector projector(*page_);
+    const auto projector = errors.make<MapPage::Projector>(*page_);
 #pragma omp for schedule(dynamic, 8)
     for (int y = 0; y < height_; ++y) {
-      for (int x = 0; x < width_; ++x) {
-        if (const auto place = projector.place_of({x + 0.5, y + 0.5})) places[at(x, y)] = *place;
-      }
+      errors.guard([&] {
+        for (int x = 0; x < width_; ++x) {
+          if (const auto place = projector->place_of({x + 0.5, y + 0.5})) places[at(x, y)] = *place;
+        }
+      });
     }
   }
+  errors.rethrow();
   latitude_deg_.resize(pixels);
   longitude_deg_.resize(pixels);
   const Window& window = grid().window();

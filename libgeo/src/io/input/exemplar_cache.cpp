@@ -9,7 +9,6 @@
 
 #include "geo/core/error.hpp"
 #include "geo/io/files/atomic_file.hpp"
-#include "geo/io/files/build_info.hpp"
 #include "geo/io/files/digest.hpp"
 #include "io/netcdf/netcdf_file.hpp"
 #include "questions.hpp"
@@ -25,7 +24,7 @@ std::string digest_of_elevation(const std::vector<float>& elevation_m) {
 
 }  // namespace
 
-fs::path exemplar_cache(const GrownSize& size) {
+fs::path exemplar_cache(const GrownSize& size, const BuildInfo& build) {
   const auto folder = [](const char* variable) {
     const char* const value = std::getenv(variable);
     return fs::path(value == nullptr ? "" : value);
@@ -36,8 +35,8 @@ fs::path exemplar_cache(const GrownSize& size) {
     if (!home.is_absolute()) return {};
     cache = home / ".cache";
   }
-  const BuildInfo& build = build_info();
-  const std::string key = digest_of(build.version + build.commit + build.compiler);
+  const std::string key =
+      digest_of(fmt::format("{} {} {} {}", build.version, build.commit, build.compiler, build.id));
   return cache / "terrane" / fmt::format("exemplars-{:.0f}m-{}.nc", size.cell_m, key.substr(0, 16));
 }
 

@@ -46,18 +46,13 @@ IslandSession::IslandSession(const Pipeline& pipeline, int stage_number,
       parameters_(parameters),
       folder_(std::move(folder)) {}
 
-void IslandSession::prepare() {
+void IslandSession::prepare(bool allow_other_build) {
   now_or_given();
   stage_ = pipeline_.find("island");
   folder_.open();  // nobody else adds to its manifest now
   manifest_ = read_manifest(folder_.manifest());
-  const auto& version = build_info().version;
-  if (manifest_.version != version) {
-    throw ConfigurationError(
-        fmt::format("{} was made by terrane {}, this is {}: an island needs a planet of the same "
-                    "version",
-                    folder_.path().string(), manifest_.version, version));
-  }
+  manifest_.check_builders("island", folder_.path(), allow_other_build,
+                           "terrane run --overwrite computes the planet again");
   for (const FieldSpec* spec : pipeline_.stages()[stage_]->info().reads) {
     const bool there = std::any_of(
         manifest_.stages.begin(), manifest_.stages.end(), [&](const StageRecord& record) {

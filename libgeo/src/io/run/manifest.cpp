@@ -207,6 +207,37 @@ Builder Manifest::builder_of(const StageRecord& record) const {
   return is_told ? record.builder : Builder{version, commit, build};
 }
 
+namespace {
+/// The word by which the manifest keeps that stages are of several builds.
+constexpr std::string_view kOtherBuild = "other-build";
+}  // namespace
+
+std::optional<Builder> Manifest::other_builder() const {
+  const Builder here = this_builder(), last{version, commit, build};
+  if (last != here) return last;
+  for (const StageRecord& record : stages) {
+    if (const Builder builder = builder_of(record); builder != here) return builder;
+  }
+  return {};
+}
+
+void Manifest::check_builders(std::string_view asked_by, const std::filesystem::path& folder,
+                              bool allow, std::string_view otherwise) {
+  if (version.empty()) return;
+  const auto other = other_builder();
+  const Builder here = this_builder();
+  const bool was_allowed = std::find(allowed.begin(), allowed.end(), kOtherBuild) != allowed.end();
+  if (!other || (was_allowed && Builder{version, commit, build} == here)) return;
+  if (!allow) {
+    throw ConfigurationError(
+        fmt::format("{}: {} was made by terrane {}, this is {}; --allow-other-build goes on "
+                    "nevertheless, {}",
+                    asked_by, folder.string(), other->words_beside(here), here.words_beside(*other),
+                    otherwise));
+  }
+  if (!was_allowed) allowed.emplace_back(kOtherBuild);
+}
+
 void StageRecord::list(const std::filesystem::path& folder, const std::string& file) {
   if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
   file_digests[file] = digest_of_file(folder / file);

@@ -27,13 +27,6 @@ constexpr std::string_view kFreeOnResume[] = {"run.to",
 // The same where stages are computed again behind others that stay.
 constexpr std::string_view kFreeOnPartialOverwrite[] = {"run.from", "run.to"};
 
-bool lists(const std::vector<std::string>& words, std::string_view word) {
-  return std::find(words.begin(), words.end(), word) != words.end();
-}
-
-// The word by which the manifest keeps that stages are of several builds.
-constexpr std::string_view kOtherBuild = "other-build";
-
 }  // namespace
 
 RunSession::RunSession(RunConfiguration run, std::vector<int> numbers, RunRequest request)
@@ -104,31 +97,9 @@ void RunSession::take_open_settings(const std::string& before) {
   }
 }
 
-/// Another build may compute other values: stages of several make a planet only where that was
-/// asked for, and the manifest keeps it. What was allowed before holds for the build that did it.
-void RunSession::check_builders(std::string_view asked_by) {
-  if (manifest_.version.empty()) return;
-  const Builder here = this_builder();
-  const Builder last{manifest_.version, manifest_.commit, manifest_.build};
-  std::vector<Builder> builders{last};
-  for (const StageRecord& record : manifest_.stages) {
-    builders.push_back(manifest_.builder_of(record));
-  }
-  const auto other = std::find_if(builders.begin(), builders.end(),
-                                  [&](const Builder& builder) { return builder != here; });
-  const bool was_allowed = lists(manifest_.allowed, kOtherBuild);
-  if (other == builders.end() || (was_allowed && last == here)) return;
-  if (!request_.allow_other_build) {
-    throw ConfigurationError(fmt::format(
-        "{}: {} was made by terrane {}, this is {}; --allow-other-build goes on "
-        "nevertheless, --overwrite computes all again",
-        asked_by, folder_.path().string(), other->words_beside(here), here.words_beside(*other)));
-  }
-  if (!was_allowed) manifest_.allowed.emplace_back(kOtherBuild);
-}
-
 void RunSession::go_on_from(const std::string& before) {
-  check_builders("--resume");
+  manifest_.check_builders("--resume", folder_.path(), request_.allow_other_build,
+                           "--overwrite computes all again");
   take_open_settings(before);
   const std::string old_to = configured_text(before, "run.to");
   const bool as_far_as_before = request_.to.empty() && run_.settings.to == old_to;
@@ -148,7 +119,8 @@ void RunSession::go_on_from(const std::string& before) {
 }
 
 void RunSession::keep_earlier_stages(const std::string& before, int old_begin) {
-  check_builders("--from " + std::string(run_.name_of(plan_.first)));
+  manifest_.check_builders("--from " + std::string(run_.name_of(plan_.first)), folder_.path(),
+                           request_.allow_other_build, "--overwrite computes all again");
   plan_.begin = old_begin;
   run_.settings.from = configured_text(before, "run.from");
   take_open_settings(before);

@@ -6,6 +6,7 @@
 
 #include "exemplar_primitives.hpp"
 #include "geo/core/error.hpp"
+#include "geo/core/parallel_errors.hpp"
 #include "geo/core/projection.hpp"
 #include "kernels/remapping/sphere_rows.hpp"
 
@@ -122,11 +123,14 @@ void exemplar_detail(const Grid& planet, const TerrainGuide& guide, const Grid& 
   // The map stretches lengths a little.
   constexpr double kStretch = 1.02;
   const double reach_m = kStretch * size.radius_m;
+  ParallelErrors errors;
 #pragma omp parallel
   {
-    BlendedRow row(fine.nx());
+    auto made = errors.make<BlendedRow>(fine.nx());
 #pragma omp for schedule(dynamic, 4)
     for (int j = 0; j < fine.ny(); ++j) {
+      if (errors.any()) continue;
+      BlendedRow& row = *made;
       const std::span<Vector3> unit = row.begin();
       for (int i = 0; i < fine.nx(); ++i) {
         const Centre at = fine.position(i, j);
@@ -146,6 +150,7 @@ void exemplar_detail(const Grid& planet, const TerrainGuide& guide, const Grid& 
       for (int i = 0; i < fine.nx(); ++i) detail[fine.cell(i, j)] = row[i];
     }
   }
+  errors.rethrow();
 }
 
 double least_side_m(double longest_m) { return longest_m / kDiscShare; }
@@ -173,11 +178,15 @@ void exemplar_detail_on_sphere(const Grid& grid, std::span<const std::uint8_t> w
   const double cell_m = grid.spacing_north_m(grid.ny() / 2 - 1);
   // Unit variance is that of waves which cells of this share of the longest show.
   constexpr double kReference = 1.0 / 16.0;
+  ParallelErrors errors;
 #pragma omp parallel for schedule(dynamic, 1)
   for (std::size_t k = 0; k < textures.size(); ++k) {
-    rescale(kReference * band.longest_m, textures[k]);
-    blur_for(cell_m, textures[k]);
+    errors.guard([&] {
+      rescale(kReference * band.longest_m, textures[k]);
+      blur_for(cell_m, textures[k]);
+    });
   }
+  errors.rethrow();
 
   const double planet_m = grid.figure().radius_m;
   constexpr double kElongation = 2.0;
@@ -198,15 +207,18 @@ void exemplar_detail_on_sphere(const Grid& grid, std::span<const std::uint8_t> w
   });
 #pragma omp parallel
   {
-    BlendedRow row(grid.nx());
+    auto made = errors.make<BlendedRow>(grid.nx());
 #pragma omp for schedule(dynamic, 1)
     for (std::size_t b = 0; b < bands.size(); ++b) {
+      if (errors.any()) continue;
+      BlendedRow& row = *made;
       for (int j = bands.begin(b); j < bands.end(b); ++j) {
         blend(grid, j, wanted, primitives, bands[b], reach, row);
         for (int i = 0; i < grid.nx(); ++i) detail[grid.cell(i, j)] = row[i];
       }
     }
   }
+  errors.rethrow();
 }
 
 }  // namespace geo

@@ -3,6 +3,7 @@
 #include <numbers>
 #include <string>
 
+#include "geo/core/parallel_errors.hpp"
 #include "geo/core/random.hpp"
 #include "geo/kernels/exemplars/exemplar.hpp"
 #include "geo/kernels/landscape/stream_power.hpp"
@@ -169,10 +170,12 @@ ExemplarLibrary grow_exemplars(const GrownSize& size) {
   // One thread each: their grids are too small to share.
   ExemplarLibrary library;
   library.exemplars.resize(kTerrains);
+  ParallelErrors errors;
 #pragma omp parallel for schedule(dynamic, 1)
   for (int t = 0; t < kTerrains; ++t) {
-    library.exemplars[t] = grow_exemplar(static_cast<Terrain>(t), size);
+    errors.guard([&] { library.exemplars[t] = grow_exemplar(static_cast<Terrain>(t), size); });
   }
+  errors.rethrow();
   return library;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/noise/noise_row.hpp"
 
 namespace geo {
@@ -57,17 +58,21 @@ void unit_detail(const Grid& fine, const DetailLaw& law, std::uint64_t seed,
   constexpr double kDeviation = 0.29;  // of gradient noise
   const double scale = squares > 0.0 ? sum / (kDeviation * std::sqrt(squares)) : 0.0;
   const double frequency = fine.figure().radius_m / law.wavelength_m;
+  ParallelErrors errors;
 #pragma omp parallel
   {
     NoiseRow row(fine);
 #pragma omp for schedule(static)
     for (int j = 0; j < fine.ny(); ++j) {
-      const auto line = detail.subspan(fine.cell(0, j), fine.nx());
-      row.choose_all(j);
-      row.fbm(noise, frequency, law.octaves, law.gain, line);
-      for (float& value : line) value = static_cast<float>(scale * value);
+      errors.guard([&] {
+        const auto line = detail.subspan(fine.cell(0, j), fine.nx());
+        row.choose_all(j);
+        row.fbm(noise, frequency, law.octaves, law.gain, line);
+        for (float& value : line) value = static_cast<float>(scale * value);
+      });
     }
   }
+  errors.rethrow();
 }
 
 double with_detail(double height_m, double detail_m, double inland) {

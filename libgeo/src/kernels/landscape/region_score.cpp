@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "geo/core/error.hpp"
+#include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/noise/noise.hpp"
 
 namespace geo {
@@ -148,23 +149,27 @@ Index best_region(const Grid& planet, std::span<const float> elevation_m,
     }
   };
   std::vector<Best> best_of_row(rows.size());
+  ParallelErrors errors;
 #pragma omp parallel for schedule(dynamic, 1)
   for (std::size_t at = 0; at < rows.size(); ++at) {
-    const int j = rows[at];
-    const Reach reach = with_surroundings(reach_at(planet, j, width_m, height_m));
-    ColumnSums sums(planet.nx());
-    add_rows(planet, elevation_m, boundary_type, std::max(0, j - reach.rows),
-             std::min(ny - 1, j + reach.rows), 0, planet.nx(), sums);
-    const int count = 2 * reach.columns + 1;
-    for (int i = 0; i < planet.nx(); i += std::max(1, count / 8)) {
-      const Index cell = planet.cell(i, j);
-      const RegionFigures figures = figures_of(sums, i - reach.columns, count);
-      const bool is_small = reach.columns == 1 || reach.rows == 1;
-      const Best here{is_small ? elevation_m[cell] >= 0.0F : figures.land_fraction > 0.0,
-                      figures.score(region_noise(planet, cell, width_m, seed)), cell};
-      if (best_of_row[at] < here) best_of_row[at] = here;
-    }
+    errors.guard([&] {
+      const int j = rows[at];
+      const Reach reach = with_surroundings(reach_at(planet, j, width_m, height_m));
+      ColumnSums sums(planet.nx());
+      add_rows(planet, elevation_m, boundary_type, std::max(0, j - reach.rows),
+               std::min(ny - 1, j + reach.rows), 0, planet.nx(), sums);
+      const int count = 2 * reach.columns + 1;
+      for (int i = 0; i < planet.nx(); i += std::max(1, count / 8)) {
+        const Index cell = planet.cell(i, j);
+        const RegionFigures figures = figures_of(sums, i - reach.columns, count);
+        const bool is_small = reach.columns == 1 || reach.rows == 1;
+        const Best here{is_small ? elevation_m[cell] >= 0.0F : figures.land_fraction > 0.0,
+                        figures.score(region_noise(planet, cell, width_m, seed)), cell};
+        if (best_of_row[at] < here) best_of_row[at] = here;
+      }
+    });
   }
+  errors.rethrow();
   return std::max_element(best_of_row.begin(), best_of_row.end())->cell;
 }
 

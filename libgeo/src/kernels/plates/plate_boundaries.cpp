@@ -7,6 +7,7 @@
 #include <queue>
 #include <tuple>
 
+#include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/plates/plate_motion.hpp"
 
 namespace geo {
@@ -111,49 +112,56 @@ std::vector<BoundaryPoint> find_boundaries(const CubedSphere& mesh,
   }
   const double smoothing_rad = std::min(smoothing_km / radius_km, kWidestSmoothing_rad);
   const int rings = std::max(1, static_cast<int>(std::lround(smoothing_rad / mesh.spacing())));
-  std::vector<BoundaryPoint> raw;
+  std::vector<BoundaryPoint> raw(points.size());
+  ParallelErrors errors;
 #pragma omp parallel
   {
-    Surroundings surroundings(mesh, rings);
+    auto made = errors.make<Surroundings>(mesh, rings);
 #pragma omp for schedule(dynamic, 64)
     for (std::size_t k = 0; k < points.size(); ++k) {
-      BoundaryPoint& point = points[k];
-      const Vector3& here = mesh.position(point.cell);
-      Vector3 towards{};
-      for (const std::int32_t cell : surroundings.of(point.cell)) {
-        const double side = plate[cell] == point.other   ? 1.0
-                            : plate[cell] == point.plate ? -1.0
-                                                         : 0.0;
-        towards = add(towards, add(mesh.position(cell), here, -1.0), side);
-      }
-      point.towards = normalised(tangent(towards, here));
-      point.motion = relative_motion(velocity_mm_yr(rotation_rad_myr[point.plate], here, radius_km),
-                                     velocity_mm_yr(rotation_rad_myr[point.other], here, radius_km),
-                                     point.towards, here);
+      errors.guard([&] {
+        Surroundings& surroundings = *made;
+        BoundaryPoint& point = points[k];
+        const Vector3& here = mesh.position(point.cell);
+        Vector3 towards{};
+        for (const std::int32_t cell : surroundings.of(point.cell)) {
+          const double side = plate[cell] == point.other   ? 1.0
+                              : plate[cell] == point.plate ? -1.0
+                                                           : 0.0;
+          towards = add(towards, add(mesh.position(cell), here, -1.0), side);
+        }
+        point.towards = normalised(tangent(towards, here));
+        point.motion = relative_motion(
+            velocity_mm_yr(rotation_rad_myr[point.plate], here, radius_km),
+            velocity_mm_yr(rotation_rad_myr[point.other], here, radius_km), point.towards, here);
+        raw[k] = point;
+      });
     }
-#pragma omp single
-    raw = points;
 #pragma omp for schedule(dynamic, 64)
     for (std::size_t k = 0; k < points.size(); ++k) {
-      BoundaryPoint& point = points[k];
-      double away = 0.0, shear = 0.0;
-      int count = 0;
-      for (const std::int32_t cell : surroundings.of(point.cell)) {
-        if (point_of[cell] < 0) continue;
-        const BoundaryPoint& near = raw[point_of[cell]];
-        const bool same = (near.plate == point.plate && near.other == point.other) ||
-                          (near.plate == point.other && near.other == point.plate);
-        if (!same) continue;
-        away += near.motion.opening - near.motion.closing;
-        shear += near.motion.shear;
-        ++count;
-      }
-      away /= count;
-      point.motion = {std::max(0.0, -away), std::max(0.0, away), shear / count};
-      point.type = classify(point.motion, plate_speed_cm_yr);
-      point.strength = dominant(point.motion, point.type);
+      errors.guard([&] {
+        Surroundings& surroundings = *made;
+        BoundaryPoint& point = points[k];
+        double away = 0.0, shear = 0.0;
+        int count = 0;
+        for (const std::int32_t cell : surroundings.of(point.cell)) {
+          if (point_of[cell] < 0) continue;
+          const BoundaryPoint& near = raw[point_of[cell]];
+          const bool same = (near.plate == point.plate && near.other == point.other) ||
+                            (near.plate == point.other && near.other == point.plate);
+          if (!same) continue;
+          away += near.motion.opening - near.motion.closing;
+          shear += near.motion.shear;
+          ++count;
+        }
+        away /= count;
+        point.motion = {std::max(0.0, -away), std::max(0.0, away), shear / count};
+        point.type = classify(point.motion, plate_speed_cm_yr);
+        point.strength = dominant(point.motion, point.type);
+      });
     }
   }
+  errors.rethrow();
   double strongest = 0.0;
   for (const BoundaryPoint& point : points) strongest = std::max(strongest, point.strength);
   for (BoundaryPoint& point : points) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "geo/core/parallel_errors.hpp"
 #include "geo/core/random.hpp"
 #include "geo/kernels/noise/noise_row.hpp"
 #include "geo/kernels/plates/plate_motion.hpp"
@@ -128,24 +129,29 @@ SphereOnGrid::SphereOnGrid(const PlatesParameters& parameters, const SphereTecto
 
 void SphereOnGrid::draw(StageIo& io) const {
   const Outputs out(io);
+  ParallelErrors errors;
 #pragma omp parallel
   {
-    Bends bends(*this);
+    auto made = errors.make<Bends>(*this);
 #pragma omp for schedule(dynamic, 4)
     for (int j = 0; j < grid_.ny(); ++j) {
-      bends.read(j);
-      for (int i = 0; i < grid_.nx(); ++i) {
-        const Index cell = grid_.cell(i, j);
-        const Vector3 unit = grid_.unit_vector(i, j);
-        const Vector3 place = bends.is_bent(i) ? bends.bent(i, unit) : unit;
-        const std::int32_t nearest =
-            bends.is_bent(i) ? mesh_.samples().nearest(place) : bends.sample(i);
-        const Cell at{mesh_.locate(place, nearest), nearest};
-        draw_crust(at, cell, unit, out);
-        draw_boundary(at, cell, place, out);
-      }
+      errors.guard([&] {
+        Bends& bends = *made;
+        bends.read(j);
+        for (int i = 0; i < grid_.nx(); ++i) {
+          const Index cell = grid_.cell(i, j);
+          const Vector3 unit = grid_.unit_vector(i, j);
+          const Vector3 place = bends.is_bent(i) ? bends.bent(i, unit) : unit;
+          const std::int32_t nearest =
+              bends.is_bent(i) ? mesh_.samples().nearest(place) : bends.sample(i);
+          const Cell at{mesh_.locate(place, nearest), nearest};
+          draw_crust(at, cell, unit, out);
+          draw_boundary(at, cell, place, out);
+        }
+      });
     }
   }
+  errors.rethrow();
 }
 
 void SphereOnGrid::draw_crust(const Cell& at, Index cell, const Vector3& unit,

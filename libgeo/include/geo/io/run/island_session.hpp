@@ -29,9 +29,10 @@ class IslandSession {
                 const Planet& planet, std::span<const Parameter> parameters,
                 std::filesystem::path folder);
 
-  /// Checks that the folder holds all that an island is made from. Throws ConfigurationError,
-  /// InputError, IoError.
-  void prepare();
+  /// Checks that the folder holds all that an island is made from, and that this build made it
+  /// unless that need not be (Manifest::check_builders). Throws ConfigurationError, InputError,
+  /// IoError.
+  void prepare(bool allow_other_build = false);
   /// Computes and writes; returns the name of the island ("island-2").
   std::string execute(const RunEvents& events);
 

@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "geo/core/event.hpp"
@@ -54,6 +56,14 @@ struct Manifest {
 
   /// The build that wrote a stage: what its record says, else that of the run.
   [[nodiscard]] Builder builder_of(const StageRecord& record) const;
+  /// The first of those that wrote the stages or the run itself and is not this one.
+  [[nodiscard]] std::optional<Builder> other_builder() const;
+  /// Another build may compute other values: what several have made makes a planet only where that
+  /// is asked for, and `allowed` keeps it. What was allowed before holds for the build that did it.
+  /// `asked_by` and `folder` begin the message, `otherwise` ends it with what helps without that
+  /// word. Throws ConfigurationError.
+  void check_builders(std::string_view asked_by, const std::filesystem::path& folder, bool allow,
+                      std::string_view otherwise);
 };
 
 /// Writes manifest.json whole or not at all. Throws IoError.

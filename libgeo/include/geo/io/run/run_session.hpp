@@ -67,7 +67,6 @@ class RunSession {
  private:
   void look_at_folder();
   void take_open_settings(const std::string& before);
-  void check_builders(std::string_view asked_by);
   void go_on_from(const std::string& before);
   void keep_earlier_stages(const std::string& before, int old_begin);
   [[nodiscard]] std::optional<State> load_complete_stages() const;

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
+#include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/numerics/shapes.hpp"
 #include "geo/stages/isostasy/deformation.hpp"
 #include "geo/stages/isostasy/unit_noise.hpp"
@@ -75,36 +77,49 @@ void cut_sections(const Crust<V>& crust, const CoarseGrid& coarse, const Tectoni
   const Arithmetic<V> thickness_noise_km = crust.active(p.thickness_noise_km);
   const Arithmetic<V> swell_m = crust.active(p.swell_m);
   const Arithmetic<V> trenches = crust.active(p.trench_depth_m) / kDeepestTrench_m;
+  struct Lines {
+    NoiseRow row;
+    UnitNoise::Line alongs, shifts, noises, swells, floors, sutures, worns;
+  };
+  const auto line_of = [&](const UnitNoise& values) { return UnitNoise::Line(values, grid.nx()); };
+  ParallelErrors errors;
 #pragma omp parallel
   {
-    NoiseRow row(grid);
-    UnitNoise::Line alongs(along, grid.nx()), shifts(shift, grid.nx()), noises(noise, grid.nx()),
-        swells(mantle_swell, grid.nx()), floors(floor, grid.nx()), sutures(suture, grid.nx()),
-        worns(worn, grid.nx());
+    std::optional<Lines> made;
+    errors.guard([&] {
+      made.emplace(Lines{NoiseRow(grid), line_of(along), line_of(shift), line_of(noise),
+                         line_of(mantle_swell), line_of(floor), line_of(suture), line_of(worn)});
+    });
 #pragma omp for schedule(dynamic, 8)
     for (int j = 0; j < grid.ny(); ++j) {
-      row.choose_all(j);
-      for (auto* line : {&noises, &swells, &floors, &sutures, &worns}) line->read(row);
-      for (int i = 0; i < grid.nx(); ++i) {
-        const Index cell = grid.cell(i, j);
-        t.ocean_swell[cell] = static_cast<float>(floors[i]);
-        t.thickness_noise_km[cell] = V(thickness_noise_km * noises[i]);
-        // Plateaus stand further above the middle of continents than basins lie below it.
-        const double up = std::exp(0.6 * swells[i]) - std::exp(0.18);
-        t.swell_m[cell] = V(swell_m * up / 0.8);
-        const double age = smooth_step(-0.4, 1.2, worns[i]);
-        t.relict[cell] = static_cast<float>(age * bell(sutures[i], 0.0, 0.16));
-      }
-      const auto far_km = [&](int i) { return std::abs(frame.margins.across_km[grid.cell(i, j)]); };
-      const auto is_near = [&](int i) { return far_km(i) <= 2500.0F; };
-      row.choose(j, is_near);
-      for (auto* line : {&alongs, &shifts}) line->read(row);
-      for (int i = 0; i < grid.nx(); ++i) {
-        if (is_near(i))
-          cut_section(frame.margins, grid.cell(i, j), alongs[i], shifts[i], trenches, t);
-      }
+      errors.guard([&] {
+        auto& [row, alongs, shifts, noises, swells, floors, sutures, worns] = *made;
+        row.choose_all(j);
+        for (auto* line : {&noises, &swells, &floors, &sutures, &worns}) line->read(row);
+        for (int i = 0; i < grid.nx(); ++i) {
+          const Index cell = grid.cell(i, j);
+          t.ocean_swell[cell] = static_cast<float>(floors[i]);
+          t.thickness_noise_km[cell] = V(thickness_noise_km * noises[i]);
+          // Plateaus stand further above the middle of continents than basins lie below it.
+          const double up = std::exp(0.6 * swells[i]) - std::exp(0.18);
+          t.swell_m[cell] = V(swell_m * up / 0.8);
+          const double age = smooth_step(-0.4, 1.2, worns[i]);
+          t.relict[cell] = static_cast<float>(age * bell(sutures[i], 0.0, 0.16));
+        }
+        const auto far_km = [&](int i) {
+          return std::abs(frame.margins.across_km[grid.cell(i, j)]);
+        };
+        const auto is_near = [&](int i) { return far_km(i) <= 2500.0F; };
+        row.choose(j, is_near);
+        for (auto* line : {&alongs, &shifts}) line->read(row);
+        for (int i = 0; i < grid.nx(); ++i) {
+          if (is_near(i))
+            cut_section(frame.margins, grid.cell(i, j), alongs[i], shifts[i], trenches, t);
+        }
+      });
     }
   }
+  errors.rethrow();
   const Arithmetic<V> smoothing_km = crust.active(p.deformation_smoothing_km);
   soften_far_edges<V>(grid, frame.margins, 2e3 * smoothing_km, t.thickening);
   blur(grid, t.arc, 0.7e3 * smoothing_km);

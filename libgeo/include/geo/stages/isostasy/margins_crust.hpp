@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/crust/ocean_depth.hpp"
 #include "geo/kernels/numerics/shapes.hpp"
 #include "geo/kernels/remapping/cubic_rows.hpp"
@@ -265,15 +266,19 @@ void draw_margins_crust(const Crust<V>& crust, const CoarseGrid& coarse, const T
                         const Tectonics<V>& tectonics) {
   const CubicRows rows(coarse.grid(), crust.grid);
   const Columns<V> columns(crust);
+  ParallelErrors errors;
 #pragma omp parallel
   {
-    typename Columns<V>::Row row(columns);
+    auto row = errors.make<typename Columns<V>::Row>(columns);
 #pragma omp for schedule(dynamic, 4)
     for (int j = 0; j < crust.grid.ny(); ++j) {
-      row.read(crust, rows, frame, tectonics, j);
-      columns.draw(j, row);
+      errors.guard([&] {
+        row->read(crust, rows, frame, tectonics, j);
+        columns.draw(j, *row);
+      });
     }
   }
+  errors.rethrow();
 }
 
 }  // namespace geo

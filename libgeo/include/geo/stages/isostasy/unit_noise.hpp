@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/noise/noise_row.hpp"
 
 namespace geo {
@@ -24,16 +25,20 @@ inline const std::vector<float>* stored_fbm(const Grid& grid, const Noise& noise
   std::vector<float>& values = (*store)[key];
   if (!values.empty()) return &values;
   values.resize(grid.size());
+  ParallelErrors errors;
 #pragma omp parallel
   {
     NoiseRow row(grid);
 #pragma omp for schedule(dynamic, 4)
     for (int j = 0; j < grid.ny(); ++j) {
-      row.choose_all(j);
-      row.fbm(noise, frequency, octaves, gain,
-              std::span<float>(values).subspan(grid.cell(0, j), grid.nx()));
+      errors.guard([&] {
+        row.choose_all(j);
+        row.fbm(noise, frequency, octaves, gain,
+                std::span<float>(values).subspan(grid.cell(0, j), grid.nx()));
+      });
     }
   }
+  errors.rethrow();
   return &values;
 }
 

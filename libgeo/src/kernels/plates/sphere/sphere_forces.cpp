@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/plates/sphere/sphere_tectonics.hpp"
 
 namespace geo {
@@ -145,18 +146,23 @@ std::vector<SphereTectonics::Torques> SphereTectonics::torques() const {
   const auto& blocks = partition_.blocks();
   const auto block_count = static_cast<std::int32_t>(blocks.size());
   std::vector<Part> part(blocks.size());
+  ParallelErrors errors;
 #pragma omp parallel for schedule(dynamic, 16)
   for (std::int32_t b = 0; b < block_count; ++b) {
-    const EdgeForces edges(*this, blocks[b].plate);
-    for (const std::int32_t i : partition_.samples(blocks[b])) {
-      edges.add_edges_at(i, part[b]);
-      if (state_.crust.continental[i] == 0) continue;
-      const Vector3& r = mesh_->samples().position(i);
-      for (int c = 0; c < 3; ++c) {
-        for (int d = 0; d < 3; ++d) part[b].continental[c][d] += (c == d ? 1.0 : 0.0) - r[c] * r[d];
+    errors.guard([&] {
+      const EdgeForces edges(*this, blocks[b].plate);
+      for (const std::int32_t i : partition_.samples(blocks[b])) {
+        edges.add_edges_at(i, part[b]);
+        if (state_.crust.continental[i] == 0) continue;
+        const Vector3& r = mesh_->samples().position(i);
+        for (int c = 0; c < 3; ++c) {
+          for (int d = 0; d < 3; ++d)
+            part[b].continental[c][d] += (c == d ? 1.0 : 0.0) - r[c] * r[d];
+        }
       }
-    }
+    });
   }
+  errors.rethrow();
   const double radius_m = 1e3 * settings_.radius_km;
   const double base_m2 = 1e6 * sample_km2() * radius_m * radius_m;
   const double drag = basal_drag_pa_s_m(settings_.force) * base_m2;

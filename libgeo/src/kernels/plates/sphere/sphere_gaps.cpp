@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/crust/ocean_depth.hpp"
 #include "geo/kernels/plates/sphere/sphere_tectonics.hpp"
 
@@ -124,36 +125,42 @@ void SphereTectonics::fill_gaps(SphereCrust& now, std::vector<std::int16_t>& own
   const GapHistory history(state_);
   const auto gap_count = static_cast<std::int32_t>(gaps.size());
   std::vector<std::int16_t> nearest_plate(gaps.size());
+  ParallelErrors errors;
 #pragma omp parallel for schedule(static)
   for (std::int32_t k = 0; k < gap_count; ++k) {
-    const std::int32_t i = gaps[k];
-    const auto [first, second] = sides[k].source;
-    const double near_km = distance_km(i, first);
-    const double far_km = second >= 0 ? distance_km(i, second) : near_km;
-    const double ridge_km = 0.5 * (far_km - near_km);
-    const double share = ridge_share(ridge_km, near_km);
-    const double mean_km =
-        1e-3 *
-        (now.elevation_m[first] * far_km +
-         (second >= 0 ? now.elevation_m[second] : now.elevation_m[first]) * near_km) /
-        std::max(1e-9, near_km + far_km);
-    const double profile_km = ridge_profile_km(ridge_km, s.ridge_falloff * s.radius_km, s.law);
-    nearest_plate[k] = owner[first];
-    const double age_myr =
-        second >= 0 ? history.age_myr(samples.position(i),
-                                      add(samples.position(second), samples.position(first), -1.0),
-                                      body[first], body[second], share)
-                    : 0.0;
-    now.age_myr[i] = static_cast<float>(age_myr);
-    now.elevation_m[i] = static_cast<float>(
-        s.floor_by_age ? -ocean_depth_m(age_myr) : 1e3 * new_floor_km(share, mean_km, profile_km));
-    now.thickness_m[i] = static_cast<float>(1e3 * s.oceanic_km);
-    if (second < 0) continue;
-    const Vector3& p = samples.position(i);
-    const Vector3 from_ridge = add(samples.position(first), samples.position(second), -1.0);
-    const Vector3 ridge = normalised(cross(from_ridge, p));
-    for (int c = 0; c < 3; ++c) now.ridge[i][c] = static_cast<float>(ridge[c]);
+    errors.guard([&] {
+      const std::int32_t i = gaps[k];
+      const auto [first, second] = sides[k].source;
+      const double near_km = distance_km(i, first);
+      const double far_km = second >= 0 ? distance_km(i, second) : near_km;
+      const double ridge_km = 0.5 * (far_km - near_km);
+      const double share = ridge_share(ridge_km, near_km);
+      const double mean_km =
+          1e-3 *
+          (now.elevation_m[first] * far_km +
+           (second >= 0 ? now.elevation_m[second] : now.elevation_m[first]) * near_km) /
+          std::max(1e-9, near_km + far_km);
+      const double profile_km = ridge_profile_km(ridge_km, s.ridge_falloff * s.radius_km, s.law);
+      nearest_plate[k] = owner[first];
+      const double age_myr =
+          second >= 0
+              ? history.age_myr(samples.position(i),
+                                add(samples.position(second), samples.position(first), -1.0),
+                                body[first], body[second], share)
+              : 0.0;
+      now.age_myr[i] = static_cast<float>(age_myr);
+      now.elevation_m[i] =
+          static_cast<float>(s.floor_by_age ? -ocean_depth_m(age_myr)
+                                            : 1e3 * new_floor_km(share, mean_km, profile_km));
+      now.thickness_m[i] = static_cast<float>(1e3 * s.oceanic_km);
+      if (second < 0) return;
+      const Vector3& p = samples.position(i);
+      const Vector3 from_ridge = add(samples.position(first), samples.position(second), -1.0);
+      const Vector3 ridge = normalised(cross(from_ridge, p));
+      for (int c = 0; c < 3; ++c) now.ridge[i][c] = static_cast<float>(ridge[c]);
+    });
   }
+  errors.rethrow();
   std::vector<std::int32_t> nearest(gaps.size());
   for (std::int32_t k = 0; k < gap_count; ++k) nearest[k] = sides[k].source[0];
   stretch_margins(gaps, nearest, now, owner);
