@@ -131,7 +131,7 @@ Relief<V> SeedPlanet::evaluate(const Model& model, const ActiveVariables<V>& act
   relief.elevation_m.resize(cells);
   relief.thickness_m.resize(cells);
   std::vector<V> convergent(cells), divergent(cells), transform(cells), weakness(cells),
-      density(cells);
+      density(cells), thickening(cells, V(0.0));
   std::vector<float> fraction(continental_fraction().begin(), continental_fraction().end());
   const CrustInputs in{.plate = state_.read(field::plate_id),
                        .boundary_type = state_.read(field::boundary_type),
@@ -155,6 +155,8 @@ Relief<V> SeedPlanet::evaluate(const Model& model, const ActiveVariables<V>& act
                        .rock = {},
                        .erodibility = {},
                        .elevation_m = relief.elevation_m,
+                       .thickening_m_yr = thickening,
+                       .run_myr = p.growth_of_belts_myr(),
                        .active = active,
                        .noise = &noise_};
   if (routes) hold_frame(model.isostasy, in);
@@ -197,19 +199,26 @@ Relief<V> SeedPlanet::evaluate(const Model& model, const ActiveVariables<V>& act
                    .density = none,
                    .rock = rock,
                    .erodibility = held_.erodibility,
-                   .elevation_m = none});
+                   .elevation_m = none,
+                   .thickening_m_yr = {}});
     held_.outlets = find_outlets(grid, as_floats(z));
     held_.drainage.resize((p.steps + p.route_every - 1) / p.route_every);
   }
   std::vector<V> uplift(cells, V(0.0));
-  if (p.uplift_from == "deformation") {
+  if (p.uplift_from == "deformation" || p.uplift_from == "shortening") {
     add_belt_uplift<V>(p, active, convergent, divergent, transform, model.uplift_factor, uplift);
   } else if (p.uplift_from == "boundaries") {
     add_boundary_uplift<V>(p, active, in.boundary_type, in.boundary_strength, model.uplift_factor,
                            uplift);
   }
-  const std::vector<V> erodibility = resolved_erodibility<V>(p, active, grid, held_.erodibility);
-  Landscape<V> landscape(p, active, grid, z, uplift, erodibility, held_.outlets);
+  std::vector<V> erodibility = resolved_erodibility<V>(p, active, grid, held_.erodibility);
+  if (p.growth_of_belts_myr() > 0.0) {
+    add_thickening_uplift<V>(p, active, grid, thickening, uplift);
+    break_rock<V>(p, active, thickening, erodibility);
+  } else {
+    thickening.clear();
+  }
+  Landscape<V> landscape(p, active, grid, z, uplift, thickening, erodibility, held_.outlets);
   for (std::int64_t step = 0; step < p.steps; ++step) {
     Drainage& drainage = held_.drainage[step / p.route_every];
     if (step % p.route_every == 0) {

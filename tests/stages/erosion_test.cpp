@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "geo/core/pipeline.hpp"
+#include "geo/kernels/numerics/area_sum.hpp"
 #include "geo/kernels/water/flow_graph.hpp"
 #include "support/terrain.hpp"
 
@@ -16,7 +17,7 @@ namespace geo {
 namespace {
 
 struct Outcome {
-  std::vector<float> z, rate, thickness, laid_rate, flux;
+  std::vector<float> z, rate, thickness, laid_rate, flux, uplift, crust_change;
   std::vector<double> area;
   std::vector<Index> receiver;
   Budget budget;
@@ -24,13 +25,14 @@ struct Outcome {
 
 Outcome erode(const Grid& grid, const std::vector<float>& z,
               const std::vector<std::pair<std::string, std::string>>& settings,
-              const std::vector<float>& uplift = {}) {
+              const std::vector<float>& uplift = {}, const std::vector<float>& thickening = {}) {
   auto stage = make_erosion_stage();
   const auto parameters = stage->parameters();
   for (const auto& [key, text] : settings) find_parameter(parameters, key)->set_text(text);
   State state(std::make_shared<const Grid>(grid));
   state.set(field::elevation, z);
   if (!uplift.empty()) state.set(field::uplift_rate, uplift);
+  if (!thickening.empty()) state.set(field::thickening_rate, thickening);
   Context context;
   StageIo io(state, stage->info());
   stage->run(io, context);
@@ -38,10 +40,11 @@ Outcome erode(const Grid& grid, const std::vector<float>& z,
   const auto sediment = [&](const Field<float>& spec) {
     return state.has(spec) ? copy(state.read(spec)) : std::vector<float>();
   };
-  return {copy(state.read(field::elevation)),     copy(state.read(field::erosion_rate)),
-          sediment(field::sediment_thickness),    sediment(field::deposition_rate),
-          sediment(field::sediment_flux),         copy(state.read(field::drainage_area)),
-          copy(state.read(field::flow_receiver)), context.budget};
+  return {copy(state.read(field::elevation)),      copy(state.read(field::erosion_rate)),
+          sediment(field::sediment_thickness),     sediment(field::deposition_rate),
+          sediment(field::sediment_flux),          copy(state.read(field::uplift_rate)),
+          sediment(field::crust_thickness_change), copy(state.read(field::drainage_area)),
+          copy(state.read(field::flow_receiver)),  context.budget};
 }
 
 TEST(Erosion, RockBudgetCloses) {
@@ -178,6 +181,93 @@ TEST(Erosion, ReachesTheBalanceOfUpliftAndIncision) {
     }
   }
   EXPECT_NEAR(rate / cells, 1e-3, 5e-5);
+}
+
+TEST(Erosion, CrustIsWhatShorteningAddsAndErosionLeaves) {
+  for (const Grid& grid : test::small_grids()) {
+    for (const std::string model : {"detachment", "sediment"}) {
+      const auto z = test::random_terrain(grid, 5);
+      auto thickening = test::random_terrain(grid, 6);
+      for (float& rate : thickening) rate = 1e-6F * std::max(0.0F, rate);
+      const Outcome out = erode(grid, z,
+                                {{"erosion.steps", "7"},
+                                 {"erosion.time_step_yr", "1e5"},
+                                 {"erosion.warping_m", "0"},
+                                 {"erosion.model", model},
+                                 {"erosion.sediment.dispersal_km", "3"},
+                                 {"erosion.uplift_from", "shortening"}},
+                                {}, thickening);
+      const auto sum = [&](const std::vector<float>& field) {
+        return area_sum<double>(grid, [&](Index c) { return static_cast<double>(field[c]); });
+      };
+      EXPECT_LT(std::abs(out.budget.at("crust_closing_error")), 1e-12);
+      EXPECT_LT(std::abs(out.budget.at("rock_closing_error")), 1e-12);
+      EXPECT_GT(out.budget.at("crust_shortened_m3"), 0.0);
+      EXPECT_NEAR(out.budget.at("crust_shortened_m3") / (7e5 * sum(thickening)), 1.0, 1e-6);
+      EXPECT_NEAR(sum(out.crust_change) / out.budget.at("crust_stored_m3"), 1.0, 1e-5);
+    }
+  }
+}
+
+/// A plain that belts of one rate raise, in steps so short that an implicit one is exact.
+std::vector<std::pair<std::string, std::string>> shortened(const char* steps, const char* rebound) {
+  return {{"erosion.steps", steps},
+          {"erosion.time_step_yr", "1e5"},
+          {"erosion.erodibility_yr", "1e-5"},
+          {"erosion.rebound_fraction", rebound},
+          {"erosion.rebound_length_km", "0"},
+          {"erosion.rebound_time_yr", "1"},
+          {"erosion.warping_m", "0"},
+          {"erosion.diffusivity_m2_yr", "0"},
+          {"erosion.damage", "0"},
+          {"erosion.subgrid_exponent", "0"},
+          {"erosion.flow_routing", "d8"},
+          {"erosion.uplift_from", "shortening"}};
+}
+
+TEST(Erosion, BeltsLastWhereRiversTakeAllThatShorteningAdds) {
+  // dz/dt = (1 - c) (dh/dt - E): the balance is that of thickening and erosion, whatever part of
+  // either isostasy gives back, and rivers stand at S = dh/dt / (K A^m).
+  const Grid grid = Grid::plane(32, 24, 2000.0, 2000.0);
+  auto z = test::random_terrain(grid, 4);
+  for (float& height : z) height = 0.1F * std::abs(height) + 1.0F;
+  constexpr float kRate = 1e-3F;
+  const std::vector<float> thickening(grid.size(), kRate);
+  Outcome out = erode(grid, z, shortened("600", "0.8"), {}, thickening);
+  out = erode(grid, out.z, shortened("10", "0.8"), {}, thickening);
+  for (int j = 1; j < grid.ny() - 1; ++j) {
+    for (int i = 1; i < grid.nx() - 1; ++i) {
+      const Index cell = grid.cell(i, j), to = out.receiver[cell];
+      ASSERT_NEAR(out.rate[cell] / kRate, 1.0, 0.01);
+      ASSERT_NEAR(out.uplift[cell] / kRate, 1.0, 0.01);
+      // Outlets stay where they are while a step's rebound lifts the land beside them.
+      if (grid.is_open_edge(grid.column(to), grid.row(to))) continue;
+      const double run_m =
+          grid.column(to) != i && grid.row(to) != j ? std::sqrt(2.0) * 2000.0 : 2000.0;
+      const double slope = (out.z[cell] - out.z[to]) / run_m;
+      EXPECT_NEAR(slope * 1e-5 * std::pow(out.area[cell], 0.5) / kRate, 1.0, 0.02);
+    }
+  }
+}
+
+TEST(Erosion, ReboundStretchesTheTimeInWhichBeltsWearDown) {
+  // Without uplift dz/dt = -(1 - c) E: with c = 0.8 relief lives five times as long.
+  const Grid grid = Grid::plane(32, 24, 2000.0, 2000.0);
+  auto z = test::random_terrain(grid, 4);
+  for (float& height : z) height = 0.1F * std::abs(height) + 1.0F;
+  const std::vector<float> thickening(grid.size(), 1e-3F), none(grid.size(), 0.0F);
+  const Outcome belt = erode(grid, z, shortened("600", "0"), {}, thickening);
+  const auto mean_after = [&](const char* steps, const char* step_yr, const char* rebound) {
+    auto settings = shortened(steps, rebound);
+    settings[1].second = step_yr;
+    const Outcome out = erode(grid, belt.z, settings, {}, none);
+    return area_sum<double>(grid, [&](Index c) { return static_cast<double>(out.z[c]); }) /
+           grid.total_area_m2();
+  };
+  const double start = mean_after("1", "1", "0"), alone = mean_after("80", "5e3", "0"),
+               with_rebound = mean_after("400", "5e3", "0.8");
+  EXPECT_LT(alone, 0.7 * start);
+  EXPECT_NEAR(with_rebound / alone, 1.0, 0.03);
 }
 
 #ifdef _OPENMP

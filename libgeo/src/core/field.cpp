@@ -180,6 +180,11 @@ const Field<std::int8_t> rock_type{{.name = "rock_type",
                                     .type = Type::int8,
                                     .flags = kRockFlags,
                                     .cell_methods = "area: point"}};
+const Field<float> thickening_rate{{.name = "thickening_rate",
+                                    .units = "m yr-1",
+                                    .doc = "crust that the shortening of belts adds",
+                                    .type = Type::float32,
+                                    .least = 0.0}};
 const Field<float> elevation{{.name = "elevation",
                               .units = "m",
                               .standard_name = "height_above_mean_sea_level",
@@ -197,6 +202,12 @@ const Field<float> sediment_thickness{
      .doc = "sediment that rivers have laid on land and at sea, as rock without pores",
      .type = Type::float32,
      .least = 0.0}};
+const Field<float> crust_thickness_change{
+    {.name = "crust_thickness_change",
+     .units = "m",
+     .doc = "what shortening and deposition have added to the crust and erosion has taken from it "
+            "since isostasy gave its thickness",
+     .type = Type::float32}};
 const Field<float> deposition_rate{{.name = "deposition_rate",
                                     .units = "m yr-1",
                                     .doc = "rate at which rivers and the sea lay down sediment",
@@ -387,11 +398,13 @@ std::span<const FieldSpec* const> all() {
                                                             &rock_type,
                                                             &elevation,
                                                             &erodibility,
+                                                            &thickening_rate,
                                                             &uplift_rate,
                                                             &erosion_rate,
                                                             &sediment_thickness,
                                                             &deposition_rate,
                                                             &sediment_flux,
+                                                            &crust_thickness_change,
                                                             &drainage_area,
                                                             &inflow_area,
                                                             &inflow_discharge,

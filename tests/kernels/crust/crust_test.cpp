@@ -173,7 +173,7 @@ TEST(ConvergentMargins, SmallPlatesAndPolesKeepTheirSides) {
     std::vector<std::int16_t> plate(grid.size());
     std::vector<std::int8_t> type(grid.size());
     std::vector<float> strength(grid.size()), fraction(grid.size()), age(grid.size(), 50.0F),
-        speed(grid.size(), 30.0F), angle_km(grid.size());
+        still(grid.size(), 0.0F), angle_km(grid.size());
     for (Index cell = 0; cell < grid.size(); ++cell) {
       const auto p = grid.unit_vector(grid.column(cell), grid.row(cell));
       const double cosine = p[0] * axis[0] + p[1] * axis[1] + p[2] * axis[2];
@@ -185,7 +185,8 @@ TEST(ConvergentMargins, SmallPlatesAndPolesKeepTheirSides) {
         strength[cell] = 0.5F;
       }
     }
-    const auto margins = convergent_margins(grid, plate, type, strength, fraction, age, speed);
+    const auto margins =
+        convergent_margins(grid, plate, type, strength, fraction, age, still, still);
     for (Index cell = 0; cell < grid.size(); ++cell) {
       ASSERT_EQ(margins.kind[cell], Convergence::ocean_continent);
       ASSERT_EQ(margins.strength[cell], 0.5F);

@@ -39,7 +39,7 @@ struct EquatorialTrench {
   Grid grid = Grid::sphere(512, 256);
   std::vector<std::int16_t> plate;
   std::vector<std::int8_t> type;
-  std::vector<float> strength, fraction, age, speed;
+  std::vector<float> strength, fraction, age, east, north;
   EquatorialTrench() {
     for (Index cell = 0; cell < grid.size(); ++cell) {
       const bool north = grid.row(cell) >= 128;
@@ -49,7 +49,9 @@ struct EquatorialTrench {
       strength.push_back(near ? 0.8F : 0.0F);
       fraction.push_back(north ? 1.0F : 0.0F);
       age.push_back(80.0F);
-      speed.push_back(30.0F);
+      // 50 mm/yr across the boundary, 30 along it.
+      east.push_back(north ? 0.0F : 30.0F);
+      this->north.push_back(north ? -20.0F : 30.0F);
     }
   }
 };
@@ -57,7 +59,7 @@ struct EquatorialTrench {
 TEST(ConvergentMargins, TheOceanGoesDownAndDistancesAreTrueOnes) {
   const EquatorialTrench t;
   const auto margins =
-      convergent_margins(t.grid, t.plate, t.type, t.strength, t.fraction, t.age, t.speed);
+      convergent_margins(t.grid, t.plate, t.type, t.strength, t.fraction, t.age, t.east, t.north);
   for (Index cell = 0; cell < t.grid.size(); ++cell) {
     const double latitude_deg = t.grid.latitude_deg(t.grid.row(cell));
     ASSERT_EQ(margins.kind[cell], Convergence::ocean_continent);
@@ -68,6 +70,33 @@ TEST(ConvergentMargins, TheOceanGoesDownAndDistancesAreTrueOnes) {
   }
 }
 
+TEST(ConvergentMargins, ClosingIsTheConvergenceAcrossTheBoundary) {
+  EquatorialTrench t;
+  const auto closing = [&] {
+    return convergent_margins(t.grid, t.plate, t.type, t.strength, t.fraction, t.age, t.east,
+                              t.north)
+        .closing_mm_yr;
+  };
+  for (const float mm_yr : closing()) ASSERT_NEAR(mm_yr, 50.0, 0.05);
+  std::swap_ranges(t.north.begin(), t.north.begin() + 128 * 512, t.north.begin() + 128 * 512);
+  for (const float mm_yr : closing()) ASSERT_EQ(mm_yr, 0.0F);  // they part
+}
+
+TEST(ConvergentMargins, ShorteningIsWhatArrivesOverTheWholeSection) {
+  for (const double strength : {0.05, 0.4, 1.0, 1.3}) {
+    for (const double front : {0.0, 0.4, 1.0}) {
+      double andes = 0.0, himalaya = 0.0;
+      constexpr double kStep_km = 0.5;
+      for (double x = -600.0; x < 3000.0; x += kStep_km) {
+        andes += kStep_km * andean_shortening(x, strength, front);
+        himalaya += kStep_km * himalayan_shortening(x, strength, front);
+      }
+      EXPECT_NEAR(andes, 1.0, 1e-9);
+      EXPECT_NEAR(himalaya, 1.0, 1e-9);
+    }
+  }
+}
+
 TEST(ConvergentMargins, OfTwoOceansTheOlderGoesDown) {
   EquatorialTrench t;
   for (Index cell = 0; cell < t.grid.size(); ++cell) {
@@ -75,7 +104,7 @@ TEST(ConvergentMargins, OfTwoOceansTheOlderGoesDown) {
     t.age[cell] = t.plate[cell] == 1 ? 120.0F : 30.0F;
   }
   const auto margins =
-      convergent_margins(t.grid, t.plate, t.type, t.strength, t.fraction, t.age, t.speed);
+      convergent_margins(t.grid, t.plate, t.type, t.strength, t.fraction, t.age, t.east, t.north);
   EXPECT_EQ(margins.kind[0], Convergence::oceans);
   EXPECT_LT(margins.across_km[t.grid.cell(7, 200)], 0.0F);
   EXPECT_GT(margins.across_km[t.grid.cell(7, 60)], 0.0F);
@@ -90,7 +119,7 @@ TEST(ConvergentMargins, ContinentsInAnOceanDoNotMakeItsFloorOlder) {
     t.age[cell] = continent ? 2000.0F : t.plate[cell] == 1 ? 120.0F : 30.0F;
   }
   const auto margins =
-      convergent_margins(t.grid, t.plate, t.type, t.strength, t.fraction, t.age, t.speed);
+      convergent_margins(t.grid, t.plate, t.type, t.strength, t.fraction, t.age, t.east, t.north);
   for (Index cell = 0; cell < t.grid.size(); ++cell) {
     ASSERT_EQ(margins.kind[cell], Convergence::oceans);
     if (t.type[cell] != 0) continue;  // on the boundary itself

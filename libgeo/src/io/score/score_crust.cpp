@@ -1,8 +1,10 @@
 // Figures of continental crust and of the sea floor.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <span>
 #include <vector>
@@ -113,7 +115,12 @@ void measure_depths(const State& state, std::span<const float> age_myr, Figures&
 
 void measure_crust(const State& state, Figures& figures) {
   if (state.has(field::crust_thickness)) {
-    const CoarseField crust = coarsen(state, field::crust_thickness, kCrustStepDeg);
+    CoarseField crust = coarsen(state, field::crust_thickness, kCrustStepDeg);
+    if (state.has(field::crust_thickness_change)) {
+      const CoarseField change = coarsen(state, field::crust_thickness_change, kCrustStepDeg);
+      std::transform(crust.values.begin(), crust.values.end(), change.values.begin(),
+                     crust.values.begin(), std::plus<>());
+    }
     measure_continents(crust, figures);
     if (state.has(field::elevation)) {
       measure_crust_and_relief(crust, coarsen(state, field::elevation, kCrustStepDeg), figures);

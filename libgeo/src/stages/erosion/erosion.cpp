@@ -48,9 +48,10 @@ std::vector<Parameter> ErosionParameters::declarations() {
              "cordonnier2019"),
       real("erosion.uplift_mm_yr", uplift_mm_yr, "mm yr-1", -100.0, 100.0,
            "rock uplift of all land, on top of a field of uplift", "design"),
-      choice("erosion.uplift_from", uplift_from, {"deformation", "boundaries", "none"},
-             "where plates raise the ground: over the belts of deformation, on the cells of their "
-             "boundaries, or nowhere",
+      choice("erosion.uplift_from", uplift_from,
+             {"shortening", "deformation", "boundaries", "none"},
+             "what raises the ground: crust that convergence thickens, at the pace of the plates; "
+             "given rates over the belts of deformation, or on the cells of boundaries; or nothing",
              "tectonica2026"),
       real("erosion.convergent_uplift_mm_yr", convergent_uplift_mm_yr, "mm yr-1", -100.0, 100.0,
            "rock uplift where plates converge, at full strength", "tectonica2026"),
@@ -62,6 +63,9 @@ std::vector<Parameter> ErosionParameters::declarations() {
            "speed of plates (plates.speed_cm_yr) at which these rates hold, in proportion to which "
            "they grow; 0: the same at any speed",
            "tectonica2026"),
+      real("erosion.damage", damage, "1", 0.0, 1000.0,
+           "by how many times more rock is erodible where shortening doubles its thickness",
+           "molnar2007"),
       real("erosion.erodibility_factor", erodibility_factor, "1", 0.0, 1000.0,
            "factor of the erodibilities that a field gives", "harel2016"),
       real("erosion.reference_cell_km", reference_cell_km, "km", 0.01, 1000.0,
@@ -124,6 +128,14 @@ void report(const ErosionParameters& p, const Landscape<float>& landscape, Budge
   budget["rock_eroded_m3"] = rock.eroded + rock.laid_on_land;
   budget["rock_reshaped_m3"] = rock.reshaped;
   budget["rock_stored_m3"] = stored;
+  if (p.growth_of_belts_myr() > 0.0) {
+    const double grown =
+        area_sum<double>(landscape.grid(), [&](Index c) { return landscape.crust_change_m()[c]; });
+    budget["crust_shortened_m3"] = rock.shortened;
+    budget["crust_stored_m3"] = grown;
+    budget["crust_closing_error"] =
+        (rock.shortened + rock.laid_at_sea - rock.eroded - grown) / scale;
+  }
   budget["rock_closing_error"] =
       (rock.uplifted + rock.rebound + rock.reshaped + rock.laid_at_sea - rock.eroded - stored) /
       scale;
@@ -156,10 +168,17 @@ class ErosionStage final : public Stage {
     const std::span<float> elevation = io.write(field::elevation);
     const std::span<float> uplift = io.write(field::uplift_rate);
     add_tectonic_uplift(io, speed_factor(parameters_, context.configuration), uplift);
-    const std::vector<float> erodibility =
+    std::vector<float> erodibility =
         resolved_erodibility<float>(parameters_, {}, grid, io.read_optional(field::erodibility));
+    const std::span<const float> thickening = parameters_.growth_of_belts_myr() > 0.0
+                                                  ? io.read_optional(field::thickening_rate)
+                                                  : std::span<const float>{};
+    if (!thickening.empty()) {
+      add_thickening_uplift<float>(parameters_, {}, grid, thickening, uplift);
+      break_rock<float>(parameters_, {}, thickening, erodibility);
+    }
 
-    Landscape<float> landscape(parameters_, {}, grid, elevation, uplift, erodibility,
+    Landscape<float> landscape(parameters_, {}, grid, elevation, uplift, thickening, erodibility,
                                find_outlets(grid, elevation));
     Drainage drainage;
     const auto route = [&] {
@@ -183,6 +202,7 @@ class ErosionStage final : public Stage {
       landscape.step(drainage);
       context.advance(static_cast<double>(step + 1) / static_cast<double>(steps + 1));
     }
+    if (!thickening.empty()) write_rock_uplift(landscape, uplift);
     reshape([&] { return inject_noise<float>(parameters_, {}, grid, context.seed, elevation); });
     reshape([&] { return warp<float>(parameters_, {}, grid, context.seed, elevation); });
     landscape.relax();
@@ -191,22 +211,24 @@ class ErosionStage final : public Stage {
     route();
     write_rates(io, landscape, drainage, erodibility);
     if (parameters_.deposits()) write_sediment(io, landscape.sediment());
+    write_crust(io, landscape);
     report(parameters_, landscape, context.budget);
-    add_uniform_uplift(elevation, uplift);
+    if (thickening.empty()) add_uniform_uplift(elevation, uplift);
   }
 
  private:
   static StageInfo described(std::initializer_list<const FieldSpec*> of_sediment) {
-    StageInfo info{"erosion",
-                   "rivers and hillslopes wear the land down",
-                   {&field::elevation},
-                   {&field::erodibility, &field::uplift_rate, &field::boundary_type,
-                    &field::boundary_strength, &field::convergent_deformation,
-                    &field::divergent_deformation, &field::transform_deformation},
-                   {&field::elevation, &field::uplift_rate, &field::erosion_rate,
-                    &field::drainage_area, &field::flow_receiver},
-                   /*own_grid=*/false,
-                   /*feels_events=*/true};
+    StageInfo info{
+        "erosion",
+        "rivers and hillslopes wear the land down",
+        {&field::elevation},
+        {&field::erodibility, &field::thickening_rate, &field::uplift_rate, &field::boundary_type,
+         &field::boundary_strength, &field::convergent_deformation, &field::divergent_deformation,
+         &field::transform_deformation},
+        {&field::elevation, &field::uplift_rate, &field::erosion_rate, &field::drainage_area,
+         &field::flow_receiver, &field::crust_thickness_change},
+        /*own_grid=*/false,
+        /*feels_events=*/true};
     info.writes.insert(info.writes.end(), of_sediment);
     return info;
   }
@@ -229,6 +251,13 @@ class ErosionStage final : public Stage {
       rate_m_yr[cell] = static_cast<float>(lowered_m[cell] / time_yr);
     }
   }
+  void write_crust(StageIo& io, const Landscape<float>& landscape) const {
+    const std::span<float> change_m = io.write(field::crust_thickness_change);
+#pragma omp parallel for schedule(static)
+    for (std::size_t cell = 0; cell < change_m.size(); ++cell) {
+      change_m[cell] = static_cast<float>(landscape.crust_change_m()[cell]);
+    }
+  }
   void write_sediment(StageIo& io, const SedimentRecord& sediment) const {
     const auto copy = [&](const std::vector<float>& from, const Field<float>& to, double factor) {
       const std::span<float> values = io.write(to);
@@ -245,7 +274,7 @@ class ErosionStage final : public Stage {
   }
   /// Rock uplift by plates (Tectonica blueprint 4.5).
   void add_tectonic_uplift(StageIo& io, double faster, std::span<float> uplift_m_yr) const {
-    if (parameters_.uplift_from == "deformation") {
+    if (parameters_.uplift_from == "deformation" || parameters_.uplift_from == "shortening") {
       const auto closing = io.read_optional(field::convergent_deformation);
       const auto opening = io.read_optional(field::divergent_deformation);
       const auto shear = io.read_optional(field::transform_deformation);
@@ -256,6 +285,16 @@ class ErosionStage final : public Stage {
       const auto strength = io.read_optional(field::boundary_strength);
       if (type.empty() || strength.empty()) return;
       add_boundary_uplift<float>(parameters_, {}, type, strength, faster, uplift_m_yr);
+    }
+  }
+  /// Where crust thickens, the file reports how fast rock came up, rebound included.
+  void write_rock_uplift(const Landscape<float>& landscape, std::span<float> uplift) const {
+    const double time_yr = 1e6 * parameters_.growth_of_belts_myr();
+#pragma omp parallel for schedule(static)
+    for (std::size_t cell = 0; cell < uplift.size(); ++cell) {
+      uplift[cell] = landscape.outlets()[cell] != 0
+                         ? 0.0F
+                         : static_cast<float>(landscape.raised_m(cell) / time_yr);
     }
   }
   /// What the file reports is the whole uplift of the land.

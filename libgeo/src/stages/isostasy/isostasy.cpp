@@ -5,6 +5,7 @@
 
 #include "blueprint_crust.hpp"
 #include "geo/core/error.hpp"
+#include "geo/stages/erosion/erosion.hpp"
 #include "geo/stages/isostasy/floating_crust.hpp"
 #include "geo/stages/isostasy/freeboard.hpp"
 #include "geo/stages/isostasy/rocks.hpp"
@@ -33,6 +34,16 @@ std::span<const float> made_by_plates(const IsostasyParameters& p, const StageIo
   return elevation_m;
 }
 
+/// How long erosion lets belts grow in this configuration; by its defaults where it has none.
+double growth_of_belts_myr(const IsostasyParameters& p, std::span<const Parameter> configuration) {
+  if (p.crust != "margins") return 0.0;
+  ErosionParameters erosion;
+  for (const Parameter& own : erosion.declarations()) {
+    if (const Parameter* given = find_parameter(configuration, own.name)) own.set(given->value());
+  }
+  return erosion.growth_of_belts_myr();
+}
+
 Crust<float> open_crust(const IsostasyParameters& parameters, StageIo& io, const Context& context) {
   return {.parameters = parameters,
           .planet = context.planet,
@@ -57,7 +68,9 @@ Crust<float> open_crust(const IsostasyParameters& parameters, StageIo& io, const
           .density = io.write(field::crust_density),
           .rock = io.write(field::rock_type),
           .erodibility = io.write(field::erodibility),
-          .elevation_m = io.write(field::elevation)};
+          .elevation_m = io.write(field::elevation),
+          .thickening_m_yr = io.write(field::thickening_rate),
+          .run_myr = growth_of_belts_myr(parameters, context.configuration)};
 }
 
 void float_crust(const Crust<float>& crust, const CoarseGrid& coarse, const Context& context) {
@@ -150,7 +163,8 @@ const StageInfo& stage_info() {
        &field::ridge_direction_east, &field::ridge_direction_north},
       {&field::convergent_deformation, &field::divergent_deformation, &field::transform_deformation,
        &field::lithospheric_weakness, &field::continental_fraction, &field::crust_thickness,
-       &field::crust_density, &field::rock_type, &field::erodibility, &field::elevation}};
+       &field::crust_density, &field::rock_type, &field::erodibility, &field::elevation,
+       &field::thickening_rate}};
   return kInfo;
 }
 

@@ -13,15 +13,6 @@ constexpr auto kConvergent = static_cast<std::int8_t>(BoundaryType::convergent);
 constexpr auto kDivergent = static_cast<std::int8_t>(BoundaryType::divergent);
 constexpr auto kTransform = static_cast<std::int8_t>(BoundaryType::transform);
 
-std::vector<float> speed_mm_yr(const CrustInputs& in, const CoarseGrid& coarse) {
-  std::vector<float> speed = coarse.middle(in.velocity_east);
-  const std::vector<float> north = coarse.middle(in.velocity_north);
-  for (std::size_t cell = 0; cell < speed.size(); ++cell) {
-    speed[cell] = std::hypot(speed[cell], north[cell]);
-  }
-  return speed;
-}
-
 void limit(std::vector<float>& values, float most) {
   for (float& value : values) value = std::min(value, most);
 }
@@ -74,7 +65,8 @@ TectonicFrame tectonic_frame(const IsostasyParameters& p, const CoarseGrid& coar
   smooth(grid, std::span<float>(frame.inland_km), 80e3);
   if (is_blueprint) return frame;
   frame.margins = convergent_margins(grid, coarse.middle(in.plate), type, strength, fraction,
-                                     coarse.middle(in.age_myr), speed_mm_yr(in, coarse));
+                                     coarse.middle(in.age_myr), coarse.middle(in.velocity_east),
+                                     coarse.middle(in.velocity_north));
   return frame;
 }
 

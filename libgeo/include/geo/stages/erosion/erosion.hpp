@@ -34,6 +34,7 @@ struct ErosionParameters {
   double divergent_uplift_mm_yr = -0.02;
   double transform_uplift_mm_yr = 0.03;
   double uplift_speed_cm_yr = 0.0;
+  double damage = 10.0;
   double rebound_fraction = 0.8;
   double rebound_length_km = 100.0;
   double rebound_time_yr = 1e6;
@@ -50,6 +51,10 @@ struct ErosionParameters {
   [[nodiscard]] std::vector<Parameter> declarations();
   /// Whether rivers lay down what they cannot carry.
   [[nodiscard]] bool deposits() const { return model == "sediment" && deposition > 0.0; }
+  /// How long belts grow by shortening in this run.
+  [[nodiscard]] double growth_of_belts_myr() const {
+    return uplift_from == "shortening" ? 1e-6 * static_cast<double>(steps) * time_step_yr : 0.0;
+  }
 };
 
 /// Landscape evolution, dz/dt = U - K A^m S^n + (G / A) Q + kappa lap(z) on land (Braun & Willett

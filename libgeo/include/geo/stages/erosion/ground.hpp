@@ -10,6 +10,7 @@
 #include "geo/core/grid.hpp"
 #include "geo/core/numeric.hpp"
 #include "geo/core/parameter.hpp"
+#include "geo/kernels/numerics/smoothing.hpp"
 #include "geo/kernels/water/valley_width.hpp"
 #include "geo/stages/erosion/erosion.hpp"
 
@@ -31,7 +32,10 @@ template <class V>
 void add_belt_uplift(const ErosionParameters& p, const ActiveVariables<V>& active,
                      std::span<const V> convergent, std::span<const V> divergent,
                      std::span<const V> transform, double faster, std::span<V> uplift_m_yr) {
-  const V closing(1e-3 * faster * active(p.convergent_uplift_mm_yr));
+  // Where belts grow by shortening, that raises them.
+  const V closing(p.uplift_from == "shortening"
+                      ? Arithmetic<V>(0.0)
+                      : Arithmetic<V>(1e-3 * faster * active(p.convergent_uplift_mm_yr)));
   const V opening(1e-3 * faster * active(p.divergent_uplift_mm_yr));
   const V shearing(1e-3 * faster * active(p.transform_uplift_mm_yr));
 #pragma omp parallel for schedule(static)
@@ -53,6 +57,42 @@ void add_boundary_uplift(const ErosionParameters& p, const ActiveVariables<V>& a
 #pragma omp parallel for schedule(static)
   for (std::size_t cell = 0; cell < uplift_m_yr.size(); ++cell) {
     uplift_m_yr[cell] += rate[type[cell]] * V(strength[cell]);
+  }
+}
+
+/// Surface uplift by crust that shortening thickens, m yr-1, added to a field: what is added stands
+/// on top, and its weight sinks as that of any load does (`rebound_fraction`), over the width in
+/// which the plate spreads it: dz/dt = dh/dt - (rho_c / rho_m) F dh/dt. In front of a belt that is
+/// negative: a foredeep.
+template <class V>
+void add_thickening_uplift(const ErosionParameters& p, const ActiveVariables<V>& active,
+                           const Grid& grid, std::span<const V> thickening_m_yr,
+                           std::span<V> uplift_m_yr) {
+  std::vector<V> sinking(thickening_m_yr.begin(), thickening_m_yr.end());
+  if (p.rebound_length_km > 0.0) {
+    apply_linear<V, 1>(std::span<V>(sinking), {1000.0 * active(p.rebound_length_km)},
+                       [&](auto values, const std::array<double, 1>& length_m) {
+                         smooth_broadly(grid, values, length_m[0]);
+                       });
+  }
+  const V share(active(p.rebound_fraction));
+#pragma omp parallel for schedule(static)
+  for (std::size_t cell = 0; cell < uplift_m_yr.size(); ++cell) {
+    uplift_m_yr[cell] += thickening_m_yr[cell] - share * sinking[cell];
+  }
+}
+
+/// Rock that shortening has folded and broken is more erodible (Molnar et al. 2007):
+/// K = K0 (1 + damage e), e the strain of the run, thickening over the crust of `kWhole_m`.
+template <class V>
+void break_rock(const ErosionParameters& p, const ActiveVariables<V>& active,
+                std::span<const V> thickening_m_yr, std::span<V> erodibility) {
+  constexpr double kWhole_m = 35e3;
+  const double time_yr = 1e6 * p.growth_of_belts_myr();
+  const V per_rate(active(p.damage) * (time_yr / kWhole_m));
+#pragma omp parallel for schedule(static)
+  for (std::size_t cell = 0; cell < erodibility.size(); ++cell) {
+    erodibility[cell] *= V(1.0F) + per_rate * thickening_m_yr[cell];
   }
 }
 

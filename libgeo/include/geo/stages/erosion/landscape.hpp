@@ -23,6 +23,7 @@ namespace geo {
 template <class Number>
 struct RockVolumes {
   Number uplifted{0.0}, eroded{0.0}, rebound{0.0}, reshaped{0.0};
+  Number shortened{0.0};     ///< crust that convergence has added
   Number laid_on_land{0.0};  ///< of what was eroded
   Number laid_at_sea{0.0};
   Number over_edges{0.0};  ///< by rivers, out of the world
@@ -42,19 +43,23 @@ class Landscape {
  public:
   using Number = Arithmetic<V>;
 
+  /// `thickening_m_yr`: crust that shortening adds, whose uplift `uplift_m_yr` holds; or empty.
   /// `outlets`: find_outlets of the relief. `erodibility`: resolved for this grid, one per cell.
   Landscape(const ErosionParameters& parameters, const ActiveVariables<V>& active, const Grid& grid,
             std::span<V> elevation_m, std::span<const V> uplift_m_yr,
-            std::span<const V> erodibility, std::vector<std::uint8_t> outlets)
+            std::span<const V> thickening_m_yr, std::span<const V> erodibility,
+            std::vector<std::uint8_t> outlets)
       : p_(parameters),
         active_(active),
         grid_(grid),
         z_(elevation_m),
         uplift_m_yr_(uplift_m_yr),
+        thickening_m_yr_(thickening_m_yr),
         erodibility_(erodibility),
         initial_(elevation_m.begin(), elevation_m.end()),
         outlets_(std::move(outlets)),
         lowered_(grid.size(), V(0.0F)) {
+    if constexpr (kRecords) crust_change_m_.assign(grid.size(), 0.0);
     if (!deposits()) return;
     unsettled_m_.assign(grid.size(), Number(0.0));
     if constexpr (kRecords) {
@@ -63,6 +68,7 @@ class Landscape {
     }
   }
 
+  [[nodiscard]] const Grid& grid() const { return grid_; }
   /// Where the water leaves the land.
   [[nodiscard]] const std::vector<std::uint8_t>& outlets() const { return outlets_; }
 
@@ -128,6 +134,11 @@ class Landscape {
   }
   /// By how much each cell was lowered, m.
   [[nodiscard]] std::span<const V> lowered_m() const { return lowered_; }
+  /// By how much each column's crust has grown: shortening and deposition less erosion, m. Empty
+  /// where numbers carry derivatives.
+  [[nodiscard]] const std::vector<double>& crust_change_m() const { return crust_change_m_; }
+  /// How far rock has come up in all, by shortening and rebound, where it is land, m.
+  [[nodiscard]] V raised_m(Index cell) const { return z_[cell] - initial_[cell] + lowered_[cell]; }
   /// Volume above the initial relief, m3.
   [[nodiscard]] Number stored_m3() const {
     return area_sum<Number>(grid_, [&](Index c) { return Number(z_[c]) - Number(initial_[c]); });
@@ -163,7 +174,22 @@ class Landscape {
       // routing.
       z_[cell] = greater(V(0.0F), V(Number(z_[cell]) + (field + everywhere) * dt));
     });
+    if (!thickening_m_yr_.empty()) thicken(dt);
     rock_.uplifted += volume_since_before();
+  }
+  /// Crust grows also where the sea stands on it.
+  void thicken(const Number& dt) {
+    at_sea_floor([&](Index cell) {
+      z_[cell] = lesser(V(Number(z_[cell]) + Number(uplift_m_yr_[cell]) * dt), V(-kShallowest_m));
+    });
+    rock_.shortened +=
+        area_sum<Number>(grid_, [&](Index cell) { return Number(thickening_m_yr_[cell]) * dt; });
+    if constexpr (kRecords) {
+#pragma omp parallel for schedule(static)
+      for (Index cell = 0; cell < grid_.size(); ++cell) {
+        crust_change_m_[cell] += Number(thickening_m_yr_[cell]) * dt;
+      }
+    }
   }
   /// Hillslopes end at the shore: what moves down them does not see the depth of the sea.
   void creep() {
@@ -183,6 +209,9 @@ class Landscape {
   void book_lowering() {
     rock_.eroded -= volume_since_before();
     on_land([&](Index cell) { lowered_[cell] += before_[cell] - z_[cell]; });
+    if constexpr (kRecords) {
+      on_land([&](Index cell) { crust_change_m_[cell] += Number(z_[cell]) - before_[cell]; });
+    }
   }
   /// Takes what this step lowered down the rivers and lays it at sea.
   void carry(const FlowGraph& graph) {
@@ -214,6 +243,7 @@ class Landscape {
       z_[cell] = lesser(V(Number(floor) + supply_m[cell]), greater(floor, V(-kShallowest_m)));
       laid_m[cell] = z_[cell] - floor;
       unsettled_m_[cell] = supply_m[cell] - (Number(z_[cell]) - Number(floor));
+      if constexpr (kRecords) crust_change_m_[cell] += Number(z_[cell]) - Number(floor);
     }
     rock_.laid_at_sea += area_sum<Number>(grid_, [&](Index c) {
       return sea[c] != 0 ? Number(z_[c]) - Number(before_[c]) : Number(0.0);
@@ -289,12 +319,13 @@ class Landscape {
   ActiveVariables<V> active_;
   const Grid& grid_;
   std::span<V> z_;
-  std::span<const V> uplift_m_yr_;
+  std::span<const V> uplift_m_yr_, thickening_m_yr_;
   std::span<const V> erodibility_;
   std::vector<V> initial_;
   std::vector<std::uint8_t> outlets_;
   std::vector<V> lowered_, before_, owed_m_;
   std::vector<Number> unsettled_m_;
+  std::vector<double> crust_change_m_;
   SedimentRecord sediment_;
   RockVolumes<Number> rock_;
 };

@@ -12,10 +12,35 @@
 
 namespace geo {
 
+/// How convergence shortens crust.
+template <class V>
+struct Shortening {
+  Arithmetic<V> collision, subduction, crust_km;
+  double front;
+};
+
+/// Crust that shortening adds in a belt, km Myr-1: plates close at v, of which a share shortens
+/// crust of thickness h0, and the density w of the cross section says where,
+///   dh/dt = share v h0 w(x),   integral of w over x = 1.
+/// Thickening by shear, not by a profile: a belt is as wide as its section and as high as rate,
+/// time, isostasy and rivers leave it (England & McKenzie 1982; Oncken et al. 2006).
+template <class V>
+Arithmetic<V> shortening_km_myr(const ConvergentMargins& margins, Index cell, double along,
+                                double across, double strength, const Shortening<V>& s) {
+  const double closing_km_myr =
+      margins.closing_mm_yr[cell] * std::clamp(1.0 + 0.35 * along, 0.2, 2.0);
+  if (margins.kind[cell] == Convergence::continents) {
+    return s.collision * s.crust_km *
+           (closing_km_myr * himalayan_shortening(across, strength, s.front));
+  }
+  return s.subduction * s.crust_km *
+         (closing_km_myr * andean_shortening(across, strength, s.front));
+}
+
 /// What a convergent margin does to one cell; noise makes its belts wind and swell.
 template <class V>
 void cut_section(const ConvergentMargins& margins, Index cell, double along, double shift,
-                 const Arithmetic<V>& trenches, Tectonics<V>& t) {
+                 const Arithmetic<V>& trenches, const Shortening<V>& shortening, Tectonics<V>& t) {
   const double straight_km = margins.across_km[cell];
   const double across = straight_km + 55.0 * shift * smooth_step(40, 200, std::abs(straight_km));
   const double strength = std::clamp(margins.strength[cell] * (1.0 + 0.35 * along), 0.05, 1.3);
@@ -26,10 +51,14 @@ void cut_section(const ConvergentMargins& margins, Index cell, double along, dou
       break;
     case Convergence::ocean_continent:
       t.thickening[cell] = V(andean_thickening(across, strength));
+      t.shortening_km_myr[cell] =
+          V(shortening_km_myr(margins, cell, along, across, strength, shortening));
       t.trench_m[cell] = V(trenches * trench_m(straight_km, strength));
       break;
     case Convergence::continents:
       t.thickening[cell] = V(himalayan_thickening(across, strength));
+      t.shortening_km_myr[cell] =
+          V(shortening_km_myr(margins, cell, along, across, strength, shortening));
       break;
     default:
       break;
@@ -69,13 +98,17 @@ void cut_sections(const Crust<V>& crust, const CoarseGrid& coarse, const Tectoni
   const UnitNoise floor = unit_noise("isostasy.ocean_swells", 2800.0, 4, 0.55);
   const UnitNoise suture = unit_noise("isostasy.sutures", 4200.0, 4, 0.5);
   const UnitNoise worn = unit_noise("isostasy.worn", 2000.0, 3, 0.6);
-  for (auto* field : {&t.thickening, &t.arc, &t.trench_m, &t.thickness_noise_km, &t.swell_m}) {
+  for (auto* field : {&t.thickening, &t.shortening_km_myr, &t.arc, &t.trench_m,
+                      &t.thickness_noise_km, &t.swell_m}) {
     field->assign(grid.size(), V(0.0F));
   }
   t.ocean_swell.resize(grid.size());
   t.relict.resize(grid.size());
   const Arithmetic<V> thickness_noise_km = crust.active(p.thickness_noise_km);
   const Arithmetic<V> swell_m = crust.active(p.swell_m);
+  const Shortening<V> shortening{crust.active(p.collision_shortening),
+                                 crust.active(p.subduction_shortening),
+                                 crust.active(p.continental_km), p.front_shortening};
   const Arithmetic<V> trenches = crust.active(p.trench_depth_m) / kDeepestTrench_m;
   struct Lines {
     NoiseRow row;
@@ -114,7 +147,8 @@ void cut_sections(const Crust<V>& crust, const CoarseGrid& coarse, const Tectoni
         for (auto* line : {&alongs, &shifts}) line->read(row);
         for (int i = 0; i < grid.nx(); ++i) {
           if (is_near(i))
-            cut_section(frame.margins, grid.cell(i, j), alongs[i], shifts[i], trenches, t);
+            cut_section(frame.margins, grid.cell(i, j), alongs[i], shifts[i], trenches, shortening,
+                        t);
         }
       });
     }
@@ -122,6 +156,7 @@ void cut_sections(const Crust<V>& crust, const CoarseGrid& coarse, const Tectoni
   errors.rethrow();
   const Arithmetic<V> smoothing_km = crust.active(p.deformation_smoothing_km);
   soften_far_edges<V>(grid, frame.margins, 2e3 * smoothing_km, t.thickening);
+  blur(grid, t.shortening_km_myr, 1e3 * smoothing_km);
   blur(grid, t.arc, 0.7e3 * smoothing_km);
   blur(grid, t.trench_m, 0.6e3 * smoothing_km);
   t.convergent = t.thickening;

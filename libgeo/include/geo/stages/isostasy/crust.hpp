@@ -35,7 +35,10 @@ struct Crust {
   std::span<std::int8_t> rock;
   std::span<float> erodibility;
   std::span<V> elevation_m;
+  std::span<V> thickening_m_yr;  ///< by shortening; left to the landscape's run
 
+  /// How long belts grow while the landscape runs; 0: they stand as their sections have them.
+  double run_myr = 0.0;
   ActiveVariables<V> active = {};
   NoiseStore* noise = nullptr;  ///< keeps noise for further planets of this seed and grid
 

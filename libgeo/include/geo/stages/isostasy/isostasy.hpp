@@ -30,6 +30,9 @@ struct IsostasyParameters {
   double oceanic_km = 7.0;
   double thickness_noise_km = 4.5;
   double collision_km = 14.5;
+  double collision_shortening = 0.5;
+  double subduction_shortening = 0.15;
+  double front_shortening = 0.4;
   double arc_km = 13.0;
   double rift_km = 20.0;
   double transpression_km = 2.0;

@@ -49,9 +49,10 @@ class Columns {
         rows.read(field, j, std::span(line), scratch);
       };
       for (const auto seen :
-           {&Tectonics<V>::thickening, &Tectonics<V>::arc, &Tectonics<V>::trench_m,
-            &Tectonics<V>::divergent, &Tectonics<V>::transform, &Tectonics<V>::weakness,
-            &Tectonics<V>::swell_m, &Tectonics<V>::thickness_noise_km, &Tectonics<V>::flexure_m}) {
+           {&Tectonics<V>::thickening, &Tectonics<V>::shortening_km_myr, &Tectonics<V>::arc,
+            &Tectonics<V>::trench_m, &Tectonics<V>::divergent, &Tectonics<V>::transform,
+            &Tectonics<V>::weakness, &Tectonics<V>::swell_m, &Tectonics<V>::thickness_noise_km,
+            &Tectonics<V>::flexure_m}) {
         see(tectonics.*seen, from_afar.*seen, scratch_);
       }
       see(tectonics.relict, from_afar.relict, plain_scratch_);
@@ -135,10 +136,14 @@ class Columns {
     crust_.divergent[cell] = limited(row.divergent[i], 0.0, 1.0);
     crust_.transform[cell] = limited(row.transform[i], 0.0, 1.0);
     crust_.weakness[cell] = limited(row.weakness[i], 0.0, 1.0);
+    const Number added_km_myr(greater(V(0.0F), row.shortening_km_myr[i]));
+    if (crust_.run_myr > 0.0) {
+      crust_.thickening_m_yr[cell] = V(Number(1e-3 * share * added_km_myr));
+    }
 
     const double rough = is_rough(share, value_of(island)) ? along.land[i] : 0.0;
     Continent land{p_.continental_km, Number(0.0)};
-    if (share > 0.0) land = continent(i, along, belt, hot, rough);
+    if (share > 0.0) land = continent(i, along, belt, added_km_myr, hot, rough);
     if (!crust_.in.made_elevation_m.empty()) {
       return draw_made(i, cell, along, {share, belt, hot, rough});
     }
@@ -190,7 +195,8 @@ class Columns {
           at_sea_m * (1.0 - at.share) + Number(row.trench_m[i]) * (1.0 - 0.5 * at.share));
   }
 
-  [[nodiscard]] Continent continent(int i, const Row& along, const Number& belt, const Number& hot,
+  [[nodiscard]] Continent continent(int i, const Row& along, const Number& belt,
+                                    const Number& added_km_myr, const Number& hot,
                                     double rough) const {
     using std::exp;
     const Tectonics<V>& row = along.from_afar;
@@ -198,7 +204,8 @@ class Columns {
     const double relict = row.relict[i];
     const double fabric = is_folded(value_of(belt), relict) ? along.ranges[i] : 0.0;
     const Number thickness_km = p_.continental_km + noise_km +
-                                p_.collision_km * (belt * (1.0 + 0.16 * fabric)) +
+                                p_.collision_km * (belt * (1.0 + 0.16 * fabric)) -
+                                to_come_km(p_.collision_km * belt, added_km_myr, crust_.run_myr) +
                                 p_.relict_km * (relict * (1.0 + 0.3 * fabric)) +
                                 p_.transpression_km * Number(row.transform[i]) -
                                 p_.rift_km * 0.35 * Number(row.divergent[i]);

@@ -51,15 +51,17 @@ BeltLoads<V> belt_loads_m(const Crust<V>& crust, const CoarseGrid& coarse, const
   using Number = Arithmetic<V>;
   const IsostasyParameters& p = crust.parameters;
   const auto density = crust.densities();
-  const Number belt_m =
-      1e3 * crust.active(p.collision_km) * density.continental_crust / density.mantle;
+  const Number belt_km = crust.active(p.collision_km);
+  const Number sinks = 1e3 * density.continental_crust / density.mantle;
   const Number arc_m = 1e3 * crust.active(p.arc_km) * (density.oceanic_crust - density.water) /
                        (density.mantle - density.water);
   const auto share = coarse.middle(std::span<const float>(crust.fraction));
   BeltLoads<V> loads{std::vector<V>(share.size()), std::vector<V>(share.size())};
   for (std::size_t cell = 0; cell < share.size(); ++cell) {
     const double continental = share[cell];
-    loads.on_land[cell] = V(continental * (belt_m * thickened(t.thickening[cell])));
+    Number there_km = belt_km * thickened(t.thickening[cell]);
+    there_km -= to_come_km(there_km, Number(t.shortening_km_myr[cell]), crust.run_myr);
+    loads.on_land[cell] = V(continental * (sinks * there_km));
     loads.at_sea[cell] = V((1.0 - continental) * (arc_m * raised_arc(t.arc[cell])));
     loads.any_at_sea = loads.any_at_sea || value_of(loads.at_sea[cell]) > 0.0;
   }

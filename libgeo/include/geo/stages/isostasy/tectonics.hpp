@@ -25,9 +25,16 @@ template <class V>
 struct Tectonics {
   std::vector<V> convergent, divergent, transform, weakness;  // 0 to 1
   std::vector<V> thickening, arc, trench_m;                   // cross sections of margins
+  std::vector<V> shortening_km_myr;                           // crust that it adds
   std::vector<V> thickness_noise_km, swell_m, flexure_m;
   std::vector<float> ocean_swell, relict;
 };
+
+/// How much of a belt's thickening was not yet there when the landscape begins to run, km.
+template <class Number>
+[[nodiscard]] Number to_come_km(const Number& belt_km, const Number& added_km_myr, double run_myr) {
+  return lesser(belt_km, Number(added_km_myr * run_myr));
+}
 
 /// Thickening and arc as columns have them.
 template <class V>

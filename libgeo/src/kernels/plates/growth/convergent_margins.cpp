@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "geo/core/field.hpp"
+#include "geo/core/vector3.hpp"
 #include "geo/kernels/numerics/nearest_source.hpp"
 #include "geo/kernels/numerics/shapes.hpp"
 
@@ -49,8 +51,33 @@ bool touches_another_plate(const Grid& grid, std::span<const std::int16_t> plate
 struct Side {
   std::int16_t plate = -1;
   double fraction = 0.0, floor_myr = 0.0, speed = 0.0;
+  Vector3 centre{};
+  Index nearest = 0;
   int cells = 0, floor_cells = 0;
 };
+
+/// A velocity along the ground, in the frame of the grid's axis.
+Vector3 velocity(const Vector3& at, double east, double north) {
+  const double level = std::hypot(at[0], at[1]);
+  if (!(level > 0.0)) return {};
+  const Vector3 to_east{-at[1] / level, at[0] / level, 0.0};
+  return add(add({}, to_east, east), cross(at, to_east), north);
+}
+
+/// How fast two plates approach each other along the way between them, 0 where they part.
+double closing_speed(const Grid& grid, const Side& own, const Side& other,
+                     std::span<const float> east, std::span<const float> north) {
+  const auto place = [&](Index cell) {
+    return grid.to_axis(grid.unit_vector(grid.column(cell), grid.row(cell)));
+  };
+  const Vector3 here = place(own.nearest), there = place(other.nearest);
+  const Vector3 way = grid.to_axis(add(other.centre, own.centre, -1.0));
+  const Vector3 along = tangent(way, here);
+  if (!(length(along) > 0.0)) return 0.0;
+  const Vector3 relative = add(velocity(there, east[other.nearest], north[other.nearest]),
+                               velocity(here, east[own.nearest], north[own.nearest]), -1.0);
+  return std::max(0.0, -dot(relative, normalised(along)));
+}
 
 }  // namespace
 
@@ -75,12 +102,39 @@ double trench_m(double across_km, double strength) {
          320.0 * bell(across_km, -170.0, 65.0);
 }
 
+namespace {
+
+/// `front` of a density lies in a bell, the rest over a section whose integral is `width_km`.
+double with_front(double section, double width_km, double front, double from_front_km) {
+  constexpr double kRange_km = 60.0;
+  const double range_km = kRange_km * std::sqrt(2.0 * std::numbers::pi);
+  return (1.0 - front) * section / width_km +
+         front * bell(from_front_km, 0.0, kRange_km) / range_km;
+}
+
+}  // namespace
+
+double andean_shortening(double across_km, double strength, double front) {
+  const double inner = 250.0 + 250.0 * strength, outer = inner + 600.0;
+  const double section =
+      smooth_step(50.0, 190.0, across_km) * (1.0 - smooth_step(inner, outer, across_km));
+  return with_front(section, 0.5 * (inner + outer) - 120.0, front, across_km - 200.0);
+}
+
+double himalayan_shortening(double across_km, double strength, double front) {
+  const double inner = 250.0 + 600.0 * strength, outer = inner + 750.0;
+  const double section =
+      smooth_step(-110.0, 60.0, across_km) * (1.0 - smooth_step(inner, outer, across_km));
+  return with_front(section, 0.5 * (inner + outer) + 25.0, front, across_km - 40.0);
+}
+
 ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int16_t> plate,
                                      std::span<const std::int8_t> boundary_type,
                                      std::span<const float> boundary_strength,
                                      std::span<const float> continental_fraction,
                                      std::span<const float> age_myr,
-                                     std::span<const float> speed_mm_yr) {
+                                     std::span<const float> east_mm_yr,
+                                     std::span<const float> north_mm_yr) {
   constexpr auto kConvergent = static_cast<std::int8_t>(BoundaryType::convergent);
   constexpr double kWindow_m = 220e3, kWidest_rad = 0.35, kHandicap_m = 150e3;
   // On small planets a window of that width holds all plates.
@@ -88,6 +142,7 @@ ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int1
   Sources sources(grid);
   std::vector<std::int16_t> down;
   std::vector<Convergence> kind;
+  std::vector<float> closing;
   for (Index cell = 0; cell < grid.size(); ++cell) {
     if (boundary_type[cell] != kConvergent || !touches_another_plate(grid, plate, cell)) continue;
     // Means of both plates over a window of constant size.
@@ -98,6 +153,7 @@ ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int1
     const int stride = std::max(1, columns / (2 * rows));
     std::array<Side, 2> side;
     side[0].plate = plate[cell];
+    side[0].nearest = cell;
     int nearest = 1 << 20;
     for (int pass = 0; pass < 2; ++pass) {
       for (int dj = -rows; dj <= rows; ++dj) {
@@ -109,12 +165,14 @@ ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int1
           if (pass == 0 && plate[there] != side[0].plate && far < nearest) {
             nearest = far;
             side[1].plate = plate[there];
+            side[1].nearest = there;
           }
           if (pass == 0) continue;
           for (Side& s : side) {
             if (plate[there] != s.plate) continue;
             s.fraction += continental_fraction[there];
-            s.speed += speed_mm_yr[there];
+            s.speed += std::hypot(east_mm_yr[there], north_mm_yr[there]);
+            s.centre = add(s.centre, grid.unit_vector(grid.column(there), j), 1.0);
             ++s.cells;
             if (continental_fraction[there] >= 0.5F) continue;  // of another age
             s.floor_myr += age_myr[there];
@@ -129,6 +187,7 @@ ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int1
       s.fraction /= s.cells;
       s.floor_myr /= std::max(1, s.floor_cells);
       s.speed /= s.cells;
+      s.centre = add({}, s.centre, 1.0 / s.cells);
     }
     constexpr double kContinental = 0.45;
     const bool a = side[0].fraction > kContinental, b = side[1].fraction > kContinental;
@@ -147,6 +206,8 @@ ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int1
       kind.push_back(Convergence::oceans);
     }
     down.push_back(side[first_goes_down ? 0 : 1].plate);
+    closing.push_back(
+        static_cast<float>(closing_speed(grid, side[0], side[1], east_mm_yr, north_mm_yr)));
     sources.add(grid, cell, kHandicap_m * (1.0 - boundary_strength[cell]));
   }
   sources.propagate(grid);
@@ -154,6 +215,7 @@ ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int1
   margins.across_km.assign(grid.size(), kFar_km);
   margins.strength.assign(grid.size(), 0.0F);
   margins.kind.assign(grid.size(), Convergence::none);
+  margins.closing_mm_yr.assign(grid.size(), 0.0F);
   if (sources.position.empty()) return margins;
 #pragma omp parallel for schedule(static)
   for (Index cell = 0; cell < grid.size(); ++cell) {
@@ -162,6 +224,7 @@ ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int1
     margins.across_km[cell] = static_cast<float>(side * sources.distance_km(grid, cell));
     margins.strength[cell] = boundary_strength[sources.cell[source]];
     margins.kind[cell] = kind[source];
+    margins.closing_mm_yr[cell] = closing[source];
   }
   return margins;
 }

@@ -24,6 +24,13 @@ namespace geo {
 inline constexpr double kDeepestTrench_m = 3000.0;
 [[nodiscard]] double trench_m(double across_km, double strength);
 
+/// Where crust is shortened across a convergent margin, km-1: a density whose integral over
+/// `across_km` is 1. All but `front` lies under the belt's whole width, that of the sections above
+/// (a thin viscous sheet, England & McKenzie 1982), `front` in the range behind its edge, where a
+/// wedge takes up what arrives (Dahlen 1990).
+[[nodiscard]] double andean_shortening(double across_km, double strength, double front);
+[[nodiscard]] double himalayan_shortening(double across_km, double strength, double front);
+
 /// What meets at a convergent boundary.
 enum class Convergence : std::uint8_t { none, oceans, ocean_continent, continents };
 
@@ -32,18 +39,20 @@ struct ConvergentMargins {
   std::vector<float> across_km;  ///< signed distance; far away where there is none
   std::vector<float> strength;
   std::vector<Convergence> kind;
+  std::vector<float> closing_mm_yr;  ///< how fast the two plates approach across the boundary
 };
 
 /// Which plate goes down at each convergent boundary, and how far each cell is from it. The less
 /// continental plate goes down; of two oceans the older; of two continents the faster.
-/// @param plate, boundary_type, boundary_strength, continental_fraction, age_myr, speed_mm_yr  per
-///        cell of a sphere grid
+/// @param plate, boundary_type, boundary_strength, continental_fraction, age_myr, velocities of
+///        plates, mm yr-1  per cell of a sphere grid
 ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int16_t> plate,
                                      std::span<const std::int8_t> boundary_type,
                                      std::span<const float> boundary_strength,
                                      std::span<const float> continental_fraction,
                                      std::span<const float> age_myr,
-                                     std::span<const float> speed_mm_yr);
+                                     std::span<const float> east_mm_yr,
+                                     std::span<const float> north_mm_yr);
 
 /// The boundary of one type that deforms each cell most, where deformation dies away as
 /// strength exp(-distance / length).
