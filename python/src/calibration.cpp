@@ -20,7 +20,8 @@ using geo::calibration::Result;
 using geo::calibration::SeedMisfit;
 
 Result fit(Configuration& configuration, const std::string& target, const std::string& folder,
-           const std::string& name, bool resume, bool overwrite, py::object tell) {
+           const std::string& name, bool resume, bool overwrite, bool allow_other_build,
+           py::object tell) {
   Listener listener(std::move(tell));
   const geo::calibration::Watch watch{
       .info = [&](std::string_view text) { listener.tell("info", text, 0.0); },
@@ -37,7 +38,8 @@ Result fit(Configuration& configuration, const std::string& target, const std::s
                                         .events = configuration.settings.events,
                                         .settings = configuration.calibration,
                                         .resume = resume,
-                                        .overwrite = overwrite},
+                                        .overwrite = overwrite,
+                                        .allow_other_build = allow_other_build},
                                        watch);
   });
 }
@@ -89,7 +91,8 @@ void add_calibration(py::module_& module) {
       .def_property_readonly("failure", &geo::calibration::failure_of,
                              "Why the target was not reached; empty when it was.");
   module.def("calibrate", &fit, py::arg("configuration"), py::arg("target"), py::arg("folder"),
-             py::arg("name"), py::arg("resume"), py::arg("overwrite"), py::arg("tell"));
+             py::arg("name"), py::arg("resume"), py::arg("overwrite"), py::arg("allow_other_build"),
+             py::arg("tell"));
 }
 
 }  // namespace terrane::python

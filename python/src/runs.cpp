@@ -83,8 +83,8 @@ std::vector<StageInMemory> run(Configuration& configuration, const std::string& 
 }
 
 void run_to_folder(Configuration& configuration, const std::string& folder, const std::string& from,
-                   const std::string& to, bool resume, bool overwrite, int threads,
-                   py::object tell) {
+                   const std::string& to, bool resume, bool overwrite, bool allow_other_build,
+                   int threads, py::object tell) {
   const Threads limit(threads);
   Listener listener(std::move(tell));
   geo::io::RunSession session(configuration.run(), configuration.stage_numbers(),
@@ -92,6 +92,7 @@ void run_to_folder(Configuration& configuration, const std::string& folder, cons
                                .from = from,
                                .to = to,
                                .resume = resume,
+                               .allow_other_build = allow_other_build,
                                .overwrite = overwrite,
                                .threads = omp_get_max_threads()});
   listener.run([&] {
@@ -115,15 +116,15 @@ StageInMemory island(Configuration& configuration, const std::vector<const Stage
       [&] { return geo::io::island_in_memory(configuration.run(), snapshots, listener.events()); });
 }
 
-std::string island_to_folder(Configuration& configuration, const std::string& folder, int threads,
-                             py::object tell) {
+std::string island_to_folder(Configuration& configuration, const std::string& folder,
+                             bool allow_other_build, int threads, py::object tell) {
   const Threads limit(threads);
   Listener listener(std::move(tell));
   geo::io::IslandSession session(configuration.pipeline, configuration.stage_numbers().back(),
                                  configuration.settings, configuration.planet,
                                  configuration.parameters(), folder);
   return listener.run([&] {
-    session.prepare();
+    session.prepare(allow_other_build);
     return session.execute(listener.events());
   });
 }
@@ -168,11 +169,11 @@ void add_runs(py::module_& module) {
              py::arg("grid"), py::arg("fields"), py::arg("threads"), py::arg("tell"));
   module.def("run_to_folder", &run_to_folder, py::arg("configuration"), py::arg("folder"),
              py::arg("from_stage"), py::arg("to_stage"), py::arg("resume"), py::arg("overwrite"),
-             py::arg("threads"), py::arg("tell"));
+             py::arg("allow_other_build"), py::arg("threads"), py::arg("tell"));
   module.def("island", &island, py::arg("configuration"), py::arg("planet"), py::arg("threads"),
              py::arg("tell"));
   module.def("island_to_folder", &island_to_folder, py::arg("configuration"), py::arg("folder"),
-             py::arg("threads"), py::arg("tell"));
+             py::arg("allow_other_build"), py::arg("threads"), py::arg("tell"));
 }
 
 }  // namespace terrane::python

@@ -71,7 +71,8 @@ def _grid_text(grid: Union[str, Tuple[int, int]]) -> str:
 def run(preset: str = "", *, seed: Optional[int] = None, grid: Union[str, Tuple[int, int], None] = None,
         parameters: Union[Parameters, Mapping[str, Value], None] = None, config: Path = "", dem: Path = "",
         elevation: Union[xr.DataArray, np.ndarray, None] = None, from_stage: str = "", to: str = "",
-        folder: Path = "", overwrite: bool = False, resume: bool = False, threads: int = 0,
+        folder: Path = "", overwrite: bool = False, resume: bool = False, allow_other_build: bool = False,
+        threads: int = 0,
         progress: Union[bool, Progress] = False) -> Planet:
     """Runs the pipeline, or a part of it.
 
@@ -88,7 +89,8 @@ def run(preset: str = "", *, seed: Optional[int] = None, grid: Union[str, Tuple[
     from_stage, to
         First and last stage.
     folder
-        Writes what the program ``terrane run -o FOLDER`` writes; without it nothing is written.
+        Writes what the program ``terrane run -o FOLDER`` writes; without it nothing is written. ``resume``,
+        ``overwrite`` and ``allow_other_build`` are those of the program.
     threads
         0: as many as OpenMP takes.
     progress
@@ -105,7 +107,8 @@ def run(preset: str = "", *, seed: Optional[int] = None, grid: Union[str, Tuple[
     if folder:
         if elevation is not None:
             raise _core.ConfigurationError("elevation: a run in a folder reads it from a file: give dem")
-        _core.run_to_folder(made._configuration, os.fspath(folder), from_stage, to, resume, overwrite, threads, tell)
+        _core.run_to_folder(made._configuration, os.fspath(folder), from_stage, to, resume, overwrite,
+                            allow_other_build, threads, tell)
         return open_run(folder)
     place, given = None, {}
     if elevation is not None:
@@ -134,7 +137,7 @@ def _relief(made: Parameters, elevation: Union[xr.DataArray, np.ndarray]) -> Tup
 
 def island(planet: Union[Planet, Path], *, center: Optional[Tuple[float, float]] = None,
            size: Optional[Tuple[int, int]] = None, cell_m: Optional[float] = None,
-           parameters: Mapping[str, Value] = {}, threads: int = 0,
+           parameters: Mapping[str, Value] = {}, allow_other_build: bool = False, threads: int = 0,
            progress: Union[bool, Progress] = False) -> Stage:
     """Crops and refines one more island from a finished planet.
 
@@ -153,7 +156,8 @@ def island(planet: Union[Planet, Path], *, center: Optional[Tuple[float, float]]
         made[name] = value
     tell = _Teller(progress)
     if whole.folder is not None:
-        name = _core.island_to_folder(made._configuration, os.fspath(whole.folder), threads, tell)
+        name = _core.island_to_folder(made._configuration, os.fspath(whole.folder), allow_other_build, threads,
+                                      tell)
         return open_run(whole.folder).stages[name]
     return stage_of(_core.island(made._configuration, [stage._core for stage in whole._own()], threads, tell))
 
@@ -164,7 +168,7 @@ def score(planet: Union[Planet, Path]) -> _core.Scorecard:
 
 
 def calibrate(target: Path, preset: str = "", *, parameters: Union[Parameters, Mapping[str, Value], None] = None,
-              config: Path = "", folder: Path = "", overwrite: bool = False, resume: bool = False,
+              config: Path = "", folder: Path = "", overwrite: bool = False, resume: bool = False, allow_other_build: bool = False,
               progress: Union[bool, Callable[[str, float], None]] = False) -> _core.Calibration:
     """Fits parameters so that planets have the hypsometry of a target.
 
@@ -183,5 +187,5 @@ def calibrate(target: Path, preset: str = "", *, parameters: Union[Parameters, M
     name = f"preset {preset}" if preset else os.fspath(config) or "defaults"
     with tempfile.TemporaryDirectory() as scratch:
         place = os.fspath(folder) or os.path.join(scratch, "calibration")
-        return _core.calibrate(made._configuration, os.fspath(target), place, name, resume, overwrite,
+        return _core.calibrate(made._configuration, os.fspath(target), place, name, resume, overwrite, allow_other_build,
                                _Teller(progress))
