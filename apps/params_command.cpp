@@ -184,8 +184,10 @@ void print_markdown(const Rows& rows, std::string_view heading = {}) {
                  heading.empty() ? fmt::format("[{}]", section) : heading);
       fmt::print("|---|---|---|---|---|---|\n");
     }
-    fmt::print("| `{}` | `{}` | {} | {} | {} | {} |\n", row.name.substr(section.size() + 1),
-               geo::to_toml(row.default_value), row.units, row.range_text(), row.doc, row.source);
+    // Other pages, and people, can point at each parameter.
+    fmt::print("| <a id=\"{}\"></a>`{}` | `{}` | {} | {} | {} | {} |\n", row.name,
+               row.name.substr(section.size() + 1), geo::to_toml(row.default_value), row.units,
+               row.range_text(), row.doc, row.source);
   }
 }
 

@@ -5,7 +5,10 @@
   const root = document.getElementById("globe");
   const canvas = root.querySelector("canvas");
   const gl = "DecompressionStream" in window ? canvas.getContext("webgl2", { antialias: true }) : null;
-  if (!gl) return;
+  if (!gl) {
+    document.querySelector('nav a[href="#globe"]')?.remove();
+    return;
+  }
   root.hidden = false;
   const index = JSON.parse(document.getElementById("globe-index").textContent);
   const { nx, ny } = index, cells = nx * ny;

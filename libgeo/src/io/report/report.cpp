@@ -5,6 +5,7 @@
 #include <cmath>
 #include <pugixml.hpp>
 #include <sstream>
+#include <tuple>
 
 #include "geo/io/files/atomic_file.hpp"
 #include "geo/io/files/embedded_data.hpp"
@@ -24,6 +25,29 @@ void add_head(pugi::xml_node html, const std::string& title) {
   viewport.append_attribute("content") = "width=device-width, initial-scale=1";
   add_element(head, "title", title);
   add_element(head, "style", std::string(embedded_file("report/report.css")));
+}
+
+/// A heading that contents can lead to.
+void add_heading(pugi::xml_node main, const char* id, const char* words) {
+  add_element(main, "h2", words).append_attribute("id") = id;
+}
+
+/// Links to what the page has, in its order.
+void add_contents(pugi::xml_node main, const Report& report) {
+  const std::tuple<const char*, const char*, bool> parts[] = {
+      {"globe", "Globe", !report.globe.empty()},
+      {"maps", "Maps", !report.maps.empty()},
+      {"beside-earth", "Beside Earth", report.scorecard && !report.scorecard->lines.empty()},
+      {"events", "Events", !report.events.empty()},
+      {"fields", "Fields", !report.fields.empty()},
+      {"parameters", "Parameters", !report.parameters.empty()},
+      {"provenance", "Provenance", !report.provenance.empty()}};
+  auto nav = add_element(main, "nav");
+  nav.append_attribute("aria-label") = "Contents";
+  for (const auto& [id, words, is_there] : parts) {
+    if (is_there)
+      add_element(nav, "a", words).append_attribute("href") = fmt::format("#{}", id).c_str();
+  }
 }
 
 void add_pictures(pugi::xml_node main, const std::filesystem::path& folder,
@@ -52,7 +76,7 @@ std::string shown(double value) {
 }
 
 void add_fields(pugi::xml_node main, const std::vector<FieldFigures>& fields) {
-  add_element(main, "h2", "Fields");
+  add_heading(main, "fields", "Fields");
   auto scroll = add_element(main, "div");
   scroll.append_attribute("class") = "wide";
   auto table = add_element(scroll, "table");
@@ -73,14 +97,14 @@ void add_fields(pugi::xml_node main, const std::vector<FieldFigures>& fields) {
 }
 
 void add_events(pugi::xml_node main, const std::vector<std::string>& events) {
-  add_element(main, "h2", "Events");
+  add_heading(main, "events", "Events");
   auto list = add_element(main, "ol");
   for (const auto& event : events) add_element(list, "li", event);
 }
 
 void add_provenance(pugi::xml_node main,
                     const std::vector<std::pair<std::string, std::string>>& provenance) {
-  add_element(main, "h2", "Provenance");
+  add_heading(main, "provenance", "Provenance");
   auto list = add_element(main, "dl");
   for (const auto& [name, value] : provenance) {
     add_element(list, "dt", name);
@@ -122,7 +146,9 @@ std::filesystem::path write_report(const std::filesystem::path& folder, const Re
   auto main = add_element(add_element(html, "body"), "main");
   add_element(main, "h1", report.title);
   if (!report.introduction.empty()) add_element(main, "p", report.introduction);
+  add_contents(main, report);
   if (!report.globe.empty()) main.append_child(pugi::node_comment).set_value(kGlobesName);
+  if (!report.maps.empty()) add_heading(main, "maps", "Maps");
   add_pictures(main, folder, report.maps);
   if (report.scorecard && !report.scorecard->lines.empty()) {
     add_scorecard(main, *report.scorecard);
@@ -131,6 +157,7 @@ std::filesystem::path write_report(const std::filesystem::path& folder, const Re
   if (!report.fields.empty()) add_fields(main, report.fields);
   if (!report.parameters.empty()) {
     auto details = add_element(main, "details");
+    details.append_attribute("id") = "parameters";
     add_element(details, "summary", "Parameters");
     add_element(details, "pre", report.parameters);
   }

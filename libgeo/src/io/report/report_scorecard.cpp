@@ -48,7 +48,7 @@ pugi::xml_node add_element(pugi::xml_node parent, const char* tag, const std::st
 }
 
 void add_scorecard(pugi::xml_node main, const Scorecard& card) {
-  add_element(main, "h2", "Beside Earth");
+  add_element(main, "h2", "Beside Earth").append_attribute("id") = "beside-earth";
   add_element(main, "p",
               fmt::format("{} of {} figures lie within tolerance of Earth's. A star marks "
                           "tolerances that are our judgement.",
