@@ -180,7 +180,7 @@ void write_chunks(const nc::File& file, int variable, const Array& array, const 
         values *= size[d];
         names[k] = fmt::format("{}{}{}", at, names[k].empty() ? "" : ".", names[k]);
       }
-      if (rank == 0) names[k] = "0";
+      if (rank == 0) names[k].assign(1, '0');
       std::vector<std::uint8_t> part(values * width);
       nc::check(nc_get_vara(file.id(), variable, start.data(), size.data(), part.data()));
       band[k].resize(chunk_values * width);
