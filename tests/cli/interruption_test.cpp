@@ -111,6 +111,23 @@ TEST_F(Interruption, KilledAnywhereAndResumedGivesTheSameBits) {
   EXPECT_GT(hits, static_cast<int>(moments.size())) << "most runs ended before they were hit";
 }
 
+TEST(InterruptedFrames, LeaveNothingHalfWrittenOnceResumed) {
+  const TemporaryFolder folder;
+  const fs::path out = folder / "out";
+  const Outcome outcome =
+      terrane({"run", "--preset", "sphere", "--grid", "32x16", "--to", "plates", "--no-maps",
+               "--set", "plates.sphere.samples=2000", "--set", "plates.sphere.time_myr=20", "--set",
+               "plates.sphere.frames_myr=10", "--quiet", "-o", out});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  // As kills leave them.
+  for (const char* name : {".01-plates.nc.1.tmp", "frames/.plates-0010.00.nc.1.tmp"}) {
+    std::ofstream(out / name) << "half";
+  }
+  const Outcome resumed = terrane({"run", "--resume", "--quiet", "-o", out});
+  EXPECT_EQ(resumed.code, 0) << resumed.err;
+  EXPECT_FALSE(has_temporary_files(out));
+}
+
 TEST_F(Interruption, EndingAfterEachStageAndResumingGivesTheSameBits) {
   for (const std::string& stage : stages_of(straight_)) {
     SCOPED_TRACE(stage);

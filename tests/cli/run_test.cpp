@@ -131,6 +131,27 @@ TEST_F(Run, DryRunPredictsAndWritesNothing) {
   EXPECT_TRUE(before == contents_of(folder_.path()));
 }
 
+// A disk with room enough for a small island was refused, as for one of half a million cells.
+TEST_F(Run, PredictsTheFilesOfAnIslandOfAnySize) {
+  std::vector<std::string> arguments{
+      "run",          "--preset", "preview",         "--grid",        "128x64",
+      "--to",         "island",   "--set",           "island.nx=128", "--set",
+      "island.ny=64", "--set",    "output.vtk=true", "--no-maps",     "-o",
+      folder_ / "out"};
+  ASSERT_EQ(terrane(arguments).code, 0);
+  double written = 0.0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder_ / "out")) {
+    if (entry.is_regular_file()) written += static_cast<double>(entry.file_size());
+  }
+  arguments.insert(arguments.end(), {"--overwrite", "--dry-run"});
+  const std::string told = terrane(arguments).out;
+  const auto at = told.find("files   about ");
+  ASSERT_NE(at, std::string::npos) << told;
+  const double predicted = 1e6 * std::stod(told.substr(at + 14));
+  EXPECT_GT(predicted, 0.4 * written);
+  EXPECT_LT(predicted, 2.5 * written);
+}
+
 TEST_F(Run, QuietSaysNothing) {
   const Outcome outcome = run("out", {"--quiet"});
   EXPECT_EQ(outcome.code, 0);

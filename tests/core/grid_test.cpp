@@ -64,6 +64,12 @@ TEST(Grid, RefusesWhatItCannotRepresent) {
   EXPECT_THROW((void)Grid::sphere(2, 2), ConfigurationError);
   EXPECT_THROW((void)Grid::sphere(100000, 50000), ConfigurationError);
   EXPECT_THROW((void)Grid::plane(10, 10, 0.0, 1.0), ConfigurationError);
+  for (const double side_m : {-1.0, 1e-300, 1e300, double{INFINITY}, double{NAN}}) {
+    EXPECT_THROW((void)Grid::plane(10, 10, side_m, 1.0), ConfigurationError) << side_m;
+    EXPECT_THROW((void)Grid::torus(10, 10, 1.0, side_m), ConfigurationError) << side_m;
+  }
+  EXPECT_THROW((void)Grid::window(10, 10, {0.0, 1e-300, 0.0, 1.0}), ConfigurationError);
+  EXPECT_THROW((void)Grid::window(10, 10, {0.0, 1.0, 0.0, 1e-300}), ConfigurationError);
   EXPECT_THROW((void)Grid::plane(10, 10, std::nan(""), 1.0), ConfigurationError);
 }
 

@@ -137,7 +137,9 @@ class Faults:
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             out = self.folder / f"{name}-{number.name}"
             running = self.start(arguments, out)
-            time.sleep(seconds * self.random.uniform(0.1, 0.6))
+            while not (out / "config.toml").exists() and running.poll() is None:  # the run has begun
+                time.sleep(0.01)
+            time.sleep(seconds * self.random.uniform(0.0, 0.5))
             running.send_signal(number)
             code, _, err = self.finish(running)
             require(code in (0, 130), f"{number.name}: exit {code}: {err}")

@@ -366,6 +366,73 @@ TEST(Island, PlainsHaveNoLakesThatThePlanetLacks) {
   EXPECT_LT(lakes, 0.01 * land);
 }
 
+/// Of the river cells near the edge of a plane and of those farther in, which share lies in
+/// straight runs of eight steps or more.
+struct Straight {
+  double near_edge = 0.0, inside = 0.0;
+  int longest = 0;  ///< steps
+};
+Straight straight_rivers(const std::vector<State>& islands) {
+  constexpr int kLong = 8, kEdge_cells = 25;
+  constexpr double kRiver_m2 = 20e6;
+  Straight found;
+  double straight[2] = {}, all[2] = {};
+  for (const State& island : islands) {
+    const Grid& fine = island.grid();
+    const auto z = island.read(field::elevation);
+    const auto lake = island.read(field::lake_id);
+    const auto area = island.read(field::drainage_area);
+    const auto receiver = island.read(field::flow_receiver);
+    const auto direction = island.read(field::flow_direction);
+    const auto is_river = [&](Index c) {
+      return z[c] >= 0.0F && lake[c] == 0 && area[c] > kRiver_m2;
+    };
+    const auto goes_on = [&](Index c) {
+      return receiver[c] != c && is_river(receiver[c]) && direction[receiver[c]] == direction[c];
+    };
+    std::vector<std::uint8_t> begins(fine.size(), 1);
+    for (Index c = 0; c < fine.size(); ++c) {
+      if (is_river(c) && goes_on(c)) begins[receiver[c]] = 0;
+    }
+    std::vector<Index> run;
+    for (Index c = 0; c < fine.size(); ++c) {
+      if (!is_river(c) || begins[c] == 0) continue;
+      run.assign(1, c);
+      while (goes_on(run.back())) run.push_back(receiver[run.back()]);
+      const bool is_long = std::ssize(run) >= kLong;
+      found.longest = std::max(found.longest, static_cast<int>(run.size()));
+      for (const Index at : run) {
+        const int i = fine.column(at), j = fine.row(at);
+        const bool inside = std::min({i, fine.nx() - 1 - i, j, fine.ny() - 1 - j}) >= kEdge_cells;
+        all[inside] += 1.0;
+        straight[inside] += is_long ? 1.0 : 0.0;
+      }
+    }
+  }
+  found.near_edge = straight[0] / std::max(1.0, all[0]);
+  found.inside = straight[1] / std::max(1.0, all[1]);
+  return found;
+}
+
+// A planet's cells are as large as these windows: what lies between them is the island's own.
+TEST(Island, RiversBetweenThePlanetsCellsDoNotFollowTheGrid) {
+  std::vector<State> islands;
+  for (const Index river : great_rivers(3)) {
+    for (const Centre place : {place_of(river), mouth_of(river)}) {
+      IslandParameters p;
+      p.nx = 512;
+      p.ny = 256;
+      p.center = text(place);
+      islands.push_back(make(p).island);
+    }
+  }
+  const Straight found = straight_rivers(islands);
+  // Valleys of mountains run straight for three kilometres now and then: 0.06 of their length.
+  EXPECT_LT(found.inside, 0.08);
+  EXPECT_LT(found.near_edge, 0.12);
+  EXPECT_LT(found.longest, 32);
+}
+
 TEST(Island, RunoffIsThatOfThePlanetOverTheSameGround) {
   const Grid& coarse = planet().grid();
   const auto z = planet().read(field::elevation);

@@ -29,6 +29,9 @@ void check_size(int nx, int ny) {
   }
 }
 
+/// Beyond these areas, distances and what is counted by them leave the numbers' range or precision.
+bool is_cell_side(double side_m) { return side_m >= 1e-3 && side_m <= 1e9; }
+
 }  // namespace
 
 Grid::Grid(Topology topology, Edges edges, int nx, int ny, Ellipsoid figure)
@@ -66,6 +69,12 @@ Grid Grid::window(int nx, int ny, Window window, Ellipsoid figure, Edges edges) 
                      window.south_deg < window.north_deg && window.west_deg < window.east_deg &&
                      window.east_deg - window.west_deg <= 360.0 + 1e-9;
   if (!sound) throw ConfigurationError("latitude-longitude window is empty or beyond the planet");
+  const double degree_m = figure.radius_m * kRadiansPerDegree;
+  if (!is_cell_side(degree_m * (window.north_deg - window.south_deg) / ny) ||
+      !is_cell_side(degree_m * (window.east_deg - window.west_deg) / nx)) {
+    throw ConfigurationError(
+        "cells of a latitude-longitude window must measure between 1 mm and 1e6 km");
+  }
   Grid grid(Topology::plane, edges, nx, ny, figure);
   grid.set_latitude_longitude(window);
   return grid;
@@ -134,8 +143,8 @@ Grid Grid::torus(int nx, int ny, double dx_m, double dy_m) {
 }
 
 void Grid::set_plane_metric(double dx_m, double dy_m) {
-  if (!(dx_m > 0.0 && dy_m > 0.0 && std::isfinite(dx_m) && std::isfinite(dy_m))) {
-    throw ConfigurationError("cell size of a plane must be positive and finite");
+  if (!is_cell_side(dx_m) || !is_cell_side(dy_m)) {
+    throw ConfigurationError("cells of a plane must measure between 1 mm and 1e6 km");
   }
   step_north_m_ = dy_m;
   const double diagonal_m = std::hypot(dx_m, dy_m);

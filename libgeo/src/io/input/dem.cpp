@@ -249,19 +249,21 @@ Relief read_from(const nc::File& file, const std::string& wanted, const std::str
 }
 
 /// The first cell without a value, counted as the files count rows, from the top.
-void refuse_gaps(const PlainRaster& raster) {
-  const auto gap = std::find_if(raster.values.begin(), raster.values.end(),
-                                [](float value) { return std::isnan(value); });
-  if (gap == raster.values.end()) return;
-  const auto cell = static_cast<int>(gap - raster.values.begin());
-  throw InputError(
-      fmt::format("has no value in row {} from the top, column {}: every cell must "
-                  "have one",
-                  raster.ny - cell / raster.nx, cell % raster.nx + 1));
+/// Gaps where none may be, and everywhere what single precision cannot hold.
+void check_values(const PlainRaster& raster, Gaps gaps) {
+  const bool may_lack = gaps != Gaps::refused;
+  const auto wrong = std::find_if(raster.values.begin(), raster.values.end(), [&](float value) {
+    return !std::isfinite(value) && !(may_lack && std::isnan(value));
+  });
+  if (wrong == raster.values.end()) return;
+  const auto cell = static_cast<int>(wrong - raster.values.begin());
+  throw InputError(fmt::format("has {} in row {} from the top, column {}: every cell must have one",
+                               std::isnan(*wrong) ? "no value" : "no finite value",
+                               raster.ny - cell / raster.nx, cell % raster.nx + 1));
 }
 
 Relief relief_of(const PlainRaster& raster, Gaps gaps, const Planet& planet) {
-  if (gaps == Gaps::refused) refuse_gaps(raster);
+  check_values(raster, gaps);
   if (!raster.geographic) {
     return {raster.values,
             Grid::plane(raster.nx, raster.ny, raster.step_x, raster.step_y, Edges::open, {},

@@ -102,8 +102,9 @@ void RunFolder::open() {
   fs::create_directories(path_, error);
   if (error) refuse(path_, "could not make the folder: " + error.message());
   lock();
-  remove_leftovers(path_);
-  if (fs::is_directory(maps(), error)) remove_leftovers(maps());
+  for (const fs::path& folder : {path_, maps(), path_ / "frames"}) {
+    if (fs::is_directory(folder, error)) remove_leftovers(folder);
+  }
 }
 
 void RunFolder::remove_stage(int number, std::string_view stage) const {

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string>
+#include <variant>
 
 namespace geo::io {
 namespace {
@@ -25,7 +28,6 @@ constexpr StageCost kStageCosts[] = {
 };
 constexpr StageCost kUnknownStage{"", 0.0, 500.0, 150.0};
 
-constexpr double kIslandCells = 1024.0 * 512.0;
 constexpr double kBaseMemory_bytes = 120e6;  // program and libraries
 constexpr double kWriting_ns = 15.0;         // per value: what is not written beside the stages
 constexpr double kCompression = 0.55;        // NetCDF values after deflate
@@ -48,6 +50,20 @@ double value_bytes(const FieldSpec& spec) {
   }
 }
 
+/// Columns times rows of a stage that has a grid of its own, as its parameters nx and ny say.
+std::optional<double> cells_of_own_grid(Stage& stage) {
+  const auto parameters = stage.parameters();
+  double cells = 1.0;
+  for (const std::string_view side : {"nx", "ny"}) {
+    const auto* row =
+        find_parameter(parameters, std::string(stage.info().name) + "." + std::string(side));
+    const auto value = row == nullptr ? ParameterValue{} : row->value();
+    if (!std::holds_alternative<std::int64_t>(value)) return {};
+    cells *= static_cast<double>(std::get<std::int64_t>(value));
+  }
+  return cells;
+}
+
 }  // namespace
 
 Prediction predict(const Pipeline& pipeline, int first, int last, double cells,
@@ -58,7 +74,8 @@ Prediction predict(const Pipeline& pipeline, int first, int last, double cells,
     const auto* cost = std::find_if(std::begin(kStageCosts), std::end(kStageCosts),
                                     [&](const StageCost& row) { return row.stage == info.name; });
     if (cost == std::end(kStageCosts)) cost = &kUnknownStage;
-    const double own_cells = info.own_grid ? kIslandCells : cells;
+    const double own_cells =
+        info.own_grid ? cells_of_own_grid(*pipeline.stages()[at]).value_or(cells) : cells;
     sum.memory_bytes = std::max(sum.memory_bytes, cost->memory_bytes * own_cells);
     double bytes = 0.0;
     for (const FieldSpec* spec : info.writes) bytes += value_bytes(*spec);

@@ -257,7 +257,10 @@ SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& m
       }
     }
 #pragma omp parallel for schedule(dynamic, 1)
-    for (std::size_t k = 0; k < budgets.size(); ++k) budgets[k]->solve();
+    for (std::size_t k = 0; k < budgets.size(); ++k) {
+      errors.guard([&] { budgets[k]->solve(); });
+    }
+    errors.rethrow();
     const bool last_round = round + 1 == kRounds;
     if (last_round) {
 #pragma omp parallel for schedule(dynamic, 1)

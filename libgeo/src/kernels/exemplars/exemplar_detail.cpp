@@ -196,10 +196,13 @@ void exemplar_detail_on_sphere(const Grid& grid, std::span<const std::uint8_t> w
   std::vector<Primitive> primitives(places.count());
 #pragma omp parallel for schedule(static)
   for (std::int64_t k = 0; k < places.count(); ++k) {
-    const Vector3 centre = on.to_axis(places.shifted(k, random));
-    const LocalTerrain local = look_around(on, guide, centre, band.spacing_m);
-    primitives[k] = draw_primitive(random, k, centre, planet_m, local, textures, size);
+    errors.guard([&] {
+      const Vector3 centre = on.to_axis(places.shifted(k, random));
+      const LocalTerrain local = look_around(on, guide, centre, band.spacing_m);
+      primitives[k] = draw_primitive(random, k, centre, planet_m, local, textures, size);
+    });
   }
+  errors.rethrow();
   // Discs are measured in the plane that touches the sphere: they reach a little further on it.
   const double reach = 1.02 * std::asin(std::min(0.9, size.radius_m / planet_m));
   const RowBands bands(grid, primitives.size(), reach, [&](std::size_t k) {

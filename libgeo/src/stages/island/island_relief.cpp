@@ -11,6 +11,7 @@
 #include "geo/kernels/numerics/shapes.hpp"
 #include "geo/kernels/remapping/catmull_rom.hpp"
 #include "geo/kernels/water/depressions.hpp"
+#include "geo/kernels/water/receiver_distance.hpp"
 #include "geo/stages/erosion/ground.hpp"
 
 namespace geo {
@@ -135,16 +136,20 @@ std::vector<float> exemplary_detail(const PlanetCells& cells, const PlanetRelief
   return detail;
 }
 
-/// Makes unit detail on land that of exemplars.
+/// Makes unit detail on land that of exemplars, and likewise what of it is there near the edge.
 void take_exemplars(const PlanetCells& cells, const PlanetRelief& planet, const IslandParameters& p,
                     const DetailLaw& law, const ExemplarLibrary& library, std::uint64_t seed,
-                    std::span<const float> planet_m, std::span<float> detail) {
+                    std::span<const float> planet_m, std::span<float> detail,
+                    std::span<float> near_edge) {
   constexpr double kShallow_m = -200.0;
   const std::vector<float> exemplary = exemplary_detail(cells, planet, p, law, library, seed);
-  on_cells(cells.fine(), [&](int, int, Index c) {
+  on_cells(cells.fine(), [&](int i, int j, Index c) {
     const double land = smooth_step(kShallow_m, 0.0, static_cast<double>(planet_m[c]));
+    const double ramp = edge_ramp(cells.fine(), i, j, seam_m(cells));
     detail[c] =
         static_cast<float>(std::sqrt(land) * exemplary[c] + std::sqrt(1.0 - land) * detail[c]);
+    near_edge[c] = static_cast<float>(std::sqrt(land) * ramp * exemplary[c] +
+                                      std::sqrt(1.0 - land) * near_edge[c]);
   });
 }
 
@@ -160,8 +165,10 @@ void add_rough_detail(const PlanetCells& cells, const PlanetRelief& planet,
   law.gain = std::exp2(-p.detail_hurst);
   std::vector<float> detail(fine.size()), roughness(cells.size());
   unit_detail(fine, law, seed, "island.detail", detail);
+  std::vector<float> near_edge = detail;
+  unit_detail_near_edge(fine, law, seam_m(cells), seed, "island.detail", near_edge);
   if (exemplars != nullptr) {
-    take_exemplars(cells, planet, p, law, *exemplars, seed, planet_m, detail);
+    take_exemplars(cells, planet, p, law, *exemplars, seed, planet_m, detail, near_edge);
   }
   local_roughness(cells, planet.elevation_m, roughness);
   for (float& rough_m : roughness) {
@@ -170,13 +177,17 @@ void add_rough_detail(const PlanetCells& cells, const PlanetRelief& planet,
   on_cells(fine, [&](int i, int j, Index c) {
     const double rough_m = std::max(0.0, cells.interpolate(roughness, i, j));
     detail[c] *= static_cast<float>(p.detail_amplitude * rough_m);
+    near_edge[c] *= static_cast<float>(p.detail_amplitude * rough_m);
   });
   const std::vector<float> mean = cells.means(detail, {}, 0.0F);
   const std::vector<float> dry = all_round(cells, planet.elevation_m, /*land=*/true);
   on_cells(fine, [&](int i, int j, Index c) {
-    const double centred_m = detail[c] - cells.interpolate(mean, i, j);
-    z[c] = static_cast<float>(with_detail(z[c], edge_ramp(fine, i, j, seam_m(cells)) * centred_m,
-                                          std::clamp(cells.interpolate(dry, i, j), 0.0, 1.0)));
+    const double mean_m = cells.interpolate(mean, i, j),
+                 ramp = edge_ramp(fine, i, j, seam_m(cells));
+    // The edge keeps the planet's heights: hollows close behind it would have no way out.
+    const double detail_m = std::max(near_edge[c] - ramp * mean_m, ramp * (detail[c] - mean_m));
+    z[c] = static_cast<float>(
+        with_detail(z[c], detail_m, std::clamp(cells.interpolate(dry, i, j), 0.0, 1.0)));
   });
 }
 
@@ -211,6 +222,30 @@ void sink_edges(const Grid& fine, const IslandParameters& p, std::uint64_t seed,
   });
 }
 
+/// Makes plains of dips: they rise from where their water leaves them, along its ways over the
+/// ground as it dips, as graded rivers do, S = S1 (A / 1 km2)^-1/2. On an even plain rivers would
+/// run straight along the grid.
+void grade_plains(const Grid& fine, std::span<const std::uint8_t> dips,
+                  std::span<const std::uint8_t> sea, std::span<float> z) {
+  constexpr double kSlope = 2e-4, kArea_m2 = 1e6;
+  std::vector<std::uint8_t> outlets(sea.begin(), sea.end());
+  for (Index c = 0; c < fine.size(); ++c) {
+    if (fine.is_open_edge(fine.column(c), fine.row(c))) outlets[c] = 1;
+  }
+  const FlowGraph graph = route_water(fine, z, outlets).graph;
+  std::vector<double> area_m2(fine.size(), fine.area_m2(0));
+  graph.accumulate(area_m2);
+  for (auto at = graph.order.rbegin(); at != graph.order.rend(); ++at) {  // downstream first
+    const Index c = *at, to = graph.receiver[c];
+    if (dips[c] == 0) continue;
+    z[c] = 0.0F;
+    if (to == c || dips[to] == 0) continue;
+    const ReceiverDistance distance(fine, fine.row(c));
+    const double slope = kSlope * std::sqrt(kArea_m2 / area_m2[c]);
+    z[c] = static_cast<float>(z[to] + slope * distance(c, fine.column(c), to));
+  }
+}
+
 /// Land that detail or the interpolation dipped below the sea level stays land unless the sea, as
 /// the planet has it, reaches it.
 void dry_inland_dips(const PlanetCells& cells, std::span<const float> planet_elevation_m,
@@ -233,9 +268,9 @@ void dry_inland_dips(const PlanetCells& cells, std::span<const float> planet_ele
       front.push_back(next);
     }
   }
-  for (Index c = 0; c < fine.size(); ++c) {
-    if (z[c] < 0.0F && wet[c] == 0) z[c] = 0.0F;
-  }
+  std::vector<std::uint8_t> dips(fine.size());
+  for (Index c = 0; c < fine.size(); ++c) dips[c] = z[c] < 0.0F && wet[c] == 0 ? 1 : 0;
+  if (std::find(dips.begin(), dips.end(), 1) != dips.end()) grade_plains(fine, dips, wet, z);
 }
 
 /// Raises land so that its mean over each planet cell is `target` again.

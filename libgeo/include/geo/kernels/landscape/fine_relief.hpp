@@ -28,6 +28,13 @@ struct DetailLaw {
 void unit_detail(const Grid& fine, const DetailLaw& law, std::uint64_t seed,
                  std::string_view stream, std::span<float> detail);
 
+/// The same near the edges of a plane, where each wave fades in over half its length, or over
+/// `seam_m` where that is shorter: were all to fade in with the longest, the ground along the edge
+/// would be an even slope, on which water runs straight. Only cells nearer than `seam_m` are
+/// written.
+void unit_detail_near_edge(const Grid& fine, const DetailLaw& law, double seam_m,
+                           std::uint64_t seed, std::string_view stream, std::span<float> detail);
+
 /// A height with detail on it. Plains near the level of the sea would become flats at it wherever
 /// detail dips further: `inland` (0 to 1), h exp(d / h) stays above it and drains.
 [[nodiscard]] double with_detail(double height_m, double detail_m, double inland);
