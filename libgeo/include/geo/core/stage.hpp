@@ -23,10 +23,10 @@ namespace geo {
 /// What a stage is, and which fields pass through it.
 struct StageInfo {
   std::string_view name;
-  std::string_view doc;
-  std::vector<const FieldSpec*> reads;     ///< must be there before it runs
-  std::vector<const FieldSpec*> optional;  ///< used when there
-  std::vector<const FieldSpec*> writes;    ///< there afterwards, and in the stage's file
+  std::string_view doc{};
+  std::vector<const FieldSpec*> reads{};     ///< must be there before it runs
+  std::vector<const FieldSpec*> optional{};  ///< used when there
+  std::vector<const FieldSpec*> writes{};    ///< there afterwards, and in the stage's file
   /// A part of a planet seen closer: reads a whole planet, a sphere, and hands over a new state on
   /// a grid of its own. The planet's state stays as it is.
   bool own_grid = false;
