@@ -39,7 +39,10 @@ const std::vector<std::string> kExact{"isostasy.collision_km",
                                       "erosion.erodibility_factor",
                                       "erosion.area_exponent",
                                       "erosion.slope_exponent",
-                                      "erosion.convergent_uplift_mm_yr",
+                                      "isostasy.collision_shortening",
+                                      "isostasy.subduction_shortening",
+                                      "isostasy.front_shortening",
+                                      "erosion.damage",
                                       "erosion.uplift_mm_yr",
                                       "erosion.rebound_fraction",
                                       "erosion.rebound_time_yr",
@@ -124,6 +127,13 @@ TEST(Derivatives, DualNumbersAgreeWithTheComplexStep) {
     EXPECT_GT(norm(rate), 0.0) << name;
     EXPECT_LT(distance(rate_by_jet(p, name), rate, 0.0), 1e-10) << name;
   }
+}
+
+TEST(Derivatives, OfGivenRatesOfUplift) {
+  Planet1 p(48, "erosion.uplift_from=deformation");
+  const auto rate = rate_by_complex_step(p, "erosion.convergent_uplift_mm_yr");
+  EXPECT_GT(norm(rate), 0.0);
+  EXPECT_LT(distance(rate_by_jet(p, "erosion.convergent_uplift_mm_yr"), rate, 0.0), 1e-10);
 }
 
 TEST(Derivatives, FollowContinentsThatSettle) {
@@ -228,7 +238,8 @@ TEST(Derivatives, OfEveryParameterAreThoseOfDifferences) {
       {"isostasy.ocean_depth_m=3690", "erosion.slope_exponent=1.3", "erosion.area_exponent=0.45"},
       {"planet.sea_level=volume", "erosion.uplift_from=boundaries", "isostasy.compensation=airy",
        "erosion.depressions=breach"},
-      {"planet.ocean_fraction=0.5", "isostasy.compensation=airy-dry", "erosion.uplift_mm_yr=0.02",
+      {"planet.ocean_fraction=0.5", "erosion.uplift_from=deformation", "erosion.model=detachment",
+       "isostasy.compensation=airy-dry", "erosion.uplift_mm_yr=0.02",
        "erosion.rebound_length_km=0"}};
   std::set<std::string> heard;
   std::vector<std::string> names;
