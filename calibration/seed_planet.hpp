@@ -156,7 +156,7 @@ Relief<V> SeedPlanet::evaluate(const Model& model, const ActiveVariables<V>& act
                        .erodibility = {},
                        .elevation_m = relief.elevation_m,
                        .thickening_m_yr = thickening,
-                       .run_myr = p.growth_of_belts_myr(),
+                       .run_myr = growth_of_belts_myr<V>(p, active),
                        .active = active,
                        .noise = &noise_};
   if (routes) hold_frame(model.isostasy, in);
@@ -212,7 +212,7 @@ Relief<V> SeedPlanet::evaluate(const Model& model, const ActiveVariables<V>& act
                            uplift);
   }
   std::vector<V> erodibility = resolved_erodibility<V>(p, active, grid, held_.erodibility);
-  if (p.growth_of_belts_myr() > 0.0) {
+  if (value_of(growth_of_belts_myr<V>(p, active)) > 0.0) {
     add_thickening_uplift<V>(p, active, grid, thickening, uplift);
     break_rock<V>(p, active, thickening, erodibility);
   } else {

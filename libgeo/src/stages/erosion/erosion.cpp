@@ -128,7 +128,7 @@ void report(const ErosionParameters& p, const Landscape<float>& landscape, Budge
   budget["rock_eroded_m3"] = rock.eroded + rock.laid_on_land;
   budget["rock_reshaped_m3"] = rock.reshaped;
   budget["rock_stored_m3"] = stored;
-  if (p.growth_of_belts_myr() > 0.0) {
+  if (growth_of_belts_myr<float>(p, {}) > 0.0) {
     const double grown =
         area_sum<double>(landscape.grid(), [&](Index c) { return landscape.crust_change_m()[c]; });
     budget["crust_shortened_m3"] = rock.shortened;
@@ -170,7 +170,7 @@ class ErosionStage final : public Stage {
     add_tectonic_uplift(io, speed_factor(parameters_, context.configuration), uplift);
     std::vector<float> erodibility =
         resolved_erodibility<float>(parameters_, {}, grid, io.read_optional(field::erodibility));
-    const std::span<const float> thickening = parameters_.growth_of_belts_myr() > 0.0
+    const std::span<const float> thickening = growth_of_belts_myr<float>(parameters_, {}) > 0.0
                                                   ? io.read_optional(field::thickening_rate)
                                                   : std::span<const float>{};
     if (!thickening.empty()) {
@@ -289,12 +289,10 @@ class ErosionStage final : public Stage {
   }
   /// Where crust thickens, the file reports how fast rock came up, rebound included.
   void write_rock_uplift(const Landscape<float>& landscape, std::span<float> uplift) const {
-    const double time_yr = 1e6 * parameters_.growth_of_belts_myr();
+    const double time_yr = 1e6 * growth_of_belts_myr<float>(parameters_, {});
 #pragma omp parallel for schedule(static)
     for (std::size_t cell = 0; cell < uplift.size(); ++cell) {
-      uplift[cell] = landscape.outlets()[cell] != 0
-                         ? 0.0F
-                         : static_cast<float>(landscape.raised_m(cell) / time_yr);
+      uplift[cell] = static_cast<float>(landscape.raised_m()[cell] / time_yr);
     }
   }
   /// What the file reports is the whole uplift of the land.

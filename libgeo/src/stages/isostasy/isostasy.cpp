@@ -5,7 +5,7 @@
 
 #include "blueprint_crust.hpp"
 #include "geo/core/error.hpp"
-#include "geo/stages/erosion/erosion.hpp"
+#include "geo/stages/erosion/ground.hpp"
 #include "geo/stages/isostasy/floating_crust.hpp"
 #include "geo/stages/isostasy/freeboard.hpp"
 #include "geo/stages/isostasy/rocks.hpp"
@@ -35,13 +35,13 @@ std::span<const float> made_by_plates(const IsostasyParameters& p, const StageIo
 }
 
 /// How long erosion lets belts grow in this configuration; by its defaults where it has none.
-double growth_of_belts_myr(const IsostasyParameters& p, std::span<const Parameter> configuration) {
+double growth_of_belts(const IsostasyParameters& p, std::span<const Parameter> configuration) {
   if (p.crust != "margins") return 0.0;
   ErosionParameters erosion;
   for (const Parameter& own : erosion.declarations()) {
     if (const Parameter* given = find_parameter(configuration, own.name)) own.set(given->value());
   }
-  return erosion.growth_of_belts_myr();
+  return geo::growth_of_belts_myr<float>(erosion, {});
 }
 
 Crust<float> open_crust(const IsostasyParameters& parameters, StageIo& io, const Context& context) {
@@ -70,7 +70,7 @@ Crust<float> open_crust(const IsostasyParameters& parameters, StageIo& io, const
           .erodibility = io.write(field::erodibility),
           .elevation_m = io.write(field::elevation),
           .thickening_m_yr = io.write(field::thickening_rate),
-          .run_myr = growth_of_belts_myr(parameters, context.configuration)};
+          .run_myr = growth_of_belts(parameters, context.configuration)};
 }
 
 void float_crust(const Crust<float>& crust, const CoarseGrid& coarse, const Context& context) {

@@ -17,7 +17,7 @@ struct ErosionParameters {
   double slope_exponent = 1.0;
   double erodibility_yr = 2e-6;
   double diffusivity_m2_yr = 0.02;
-  std::string model = "detachment";
+  std::string model = "sediment";
   // Of the model "sediment".
   double deposition = 1.0;
   double dispersal_km = 300.0;
@@ -25,16 +25,16 @@ struct ErosionParameters {
   std::string flow_routing = "mfd";
   double flow_exponent = 1.1;
   std::string depressions = "fill";
-  double erodibility_factor = 0.15;
+  double erodibility_factor = 0.36;
   double reference_cell_km = 10.0;
   double subgrid_exponent = 0.38;
   double uplift_mm_yr = 0.0;
-  std::string uplift_from = "deformation";
+  std::string uplift_from = "shortening";
   double convergent_uplift_mm_yr = 0.06;
   double divergent_uplift_mm_yr = -0.02;
   double transform_uplift_mm_yr = 0.03;
   double uplift_speed_cm_yr = 0.0;
-  double damage = 10.0;
+  double damage = 6.0;
   double rebound_fraction = 0.8;
   double rebound_length_km = 100.0;
   double rebound_time_yr = 1e6;
@@ -51,10 +51,6 @@ struct ErosionParameters {
   [[nodiscard]] std::vector<Parameter> declarations();
   /// Whether rivers lay down what they cannot carry.
   [[nodiscard]] bool deposits() const { return model == "sediment" && deposition > 0.0; }
-  /// How long belts grow by shortening in this run.
-  [[nodiscard]] double growth_of_belts_myr() const {
-    return uplift_from == "shortening" ? 1e-6 * static_cast<double>(steps) * time_step_yr : 0.0;
-  }
 };
 
 /// Landscape evolution, dz/dt = U - K A^m S^n + (G / A) Q + kappa lap(z) on land (Braun & Willett

@@ -60,6 +60,13 @@ void add_boundary_uplift(const ErosionParameters& p, const ActiveVariables<V>& a
   }
 }
 
+/// How long belts grow by shortening while the landscape runs, Myr.
+template <class V>
+Arithmetic<V> growth_of_belts_myr(const ErosionParameters& p, const ActiveVariables<V>& active) {
+  if (p.uplift_from != "shortening") return Arithmetic<V>(0.0);
+  return (1e-6 * static_cast<double>(p.steps)) * active(p.time_step_yr);
+}
+
 /// Surface uplift by crust that shortening thickens, m yr-1, added to a field: what is added stands
 /// on top, and its weight sinks as that of any load does (`rebound_fraction`), over the width in
 /// which the plate spreads it: dz/dt = dh/dt - (rho_c / rho_m) F dh/dt. In front of a belt that is
@@ -88,8 +95,7 @@ template <class V>
 void break_rock(const ErosionParameters& p, const ActiveVariables<V>& active,
                 std::span<const V> thickening_m_yr, std::span<V> erodibility) {
   constexpr double kWhole_m = 35e3;
-  const double time_yr = 1e6 * p.growth_of_belts_myr();
-  const V per_rate(active(p.damage) * (time_yr / kWhole_m));
+  const V per_rate(active(p.damage) * (1e6 / kWhole_m) * growth_of_belts_myr<V>(p, active));
 #pragma omp parallel for schedule(static)
   for (std::size_t cell = 0; cell < erodibility.size(); ++cell) {
     erodibility[cell] *= V(1.0F) + per_rate * thickening_m_yr[cell];

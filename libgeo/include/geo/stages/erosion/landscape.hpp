@@ -59,7 +59,10 @@ class Landscape {
         initial_(elevation_m.begin(), elevation_m.end()),
         outlets_(std::move(outlets)),
         lowered_(grid.size(), V(0.0F)) {
-    if constexpr (kRecords) crust_change_m_.assign(grid.size(), 0.0);
+    if constexpr (kRecords) {
+      crust_change_m_.assign(grid.size(), 0.0);
+      if (!thickening_m_yr_.empty()) raised_m_.assign(grid.size(), 0.0F);
+    }
     if (!deposits()) return;
     unsettled_m_.assign(grid.size(), Number(0.0));
     if constexpr (kRecords) {
@@ -137,8 +140,8 @@ class Landscape {
   /// By how much each column's crust has grown: shortening and deposition less erosion, m. Empty
   /// where numbers carry derivatives.
   [[nodiscard]] const std::vector<double>& crust_change_m() const { return crust_change_m_; }
-  /// How far rock has come up in all, by shortening and rebound, where it is land, m.
-  [[nodiscard]] V raised_m(Index cell) const { return z_[cell] - initial_[cell] + lowered_[cell]; }
+  /// How far rock has come up in all, by uplift and rebound, m. Empty without shortening.
+  [[nodiscard]] const std::vector<float>& raised_m() const { return raised_m_; }
   /// Volume above the initial relief, m3.
   [[nodiscard]] Number stored_m3() const {
     return area_sum<Number>(grid_, [&](Index c) { return Number(z_[c]) - Number(initial_[c]); });
@@ -176,6 +179,13 @@ class Landscape {
     });
     if (!thickening_m_yr_.empty()) thicken(dt);
     rock_.uplifted += volume_since_before();
+    record_raising();
+  }
+  void record_raising() {
+    if constexpr (kRecords) {
+      if (raised_m_.empty()) return;
+      on_land([&](Index cell) { raised_m_[cell] += z_[cell] - before_[cell]; });
+    }
   }
   /// Crust grows also where the sea stands on it.
   void thicken(const Number& dt) {
@@ -313,6 +323,7 @@ class Landscape {
       });
     }
     rock_.rebound += volume_since_before();
+    record_raising();
   }
 
   const ErosionParameters& p_;
@@ -326,6 +337,7 @@ class Landscape {
   std::vector<V> lowered_, before_, owed_m_;
   std::vector<Number> unsettled_m_;
   std::vector<double> crust_change_m_;
+  std::vector<float> raised_m_;
   SedimentRecord sediment_;
   RockVolumes<Number> rock_;
 };

@@ -15,26 +15,25 @@ namespace geo {
 /// How convergence shortens crust.
 template <class V>
 struct Shortening {
-  Arithmetic<V> collision, subduction, crust_km;
-  double front;
+  Arithmetic<V> collision, subduction, crust_km, front;
 };
 
-/// Crust that shortening adds in a belt, km Myr-1: plates close at v, of which a share shortens
-/// crust of thickness h0, and the density w of the cross section says where,
-///   dh/dt = share v h0 w(x),   integral of w over x = 1.
-/// Thickening by shear, not by a profile: a belt is as wide as its section and as high as rate,
-/// time, isostasy and rivers leave it (England & McKenzie 1982; Oncken et al. 2006).
+/// Crust that shortening adds in a belt, km Myr-1. Plates close at v, of which a share shortens
+/// crust of thickness h0; the densities w say where across the margin:
+///   dh/dt = share v h0 [(1 - front) w_sheet + front w_wedge],   integral of each w over x = 1.
+/// A belt so begins as high as it was when the landscape began to run, its thickening less what is
+/// still to come, and floats, wears and comes up again while it grows: how high it stands follows
+/// from rate, time, isostasy, rock and rivers (England & McKenzie 1982; Oncken et al. 2006).
 template <class V>
 Arithmetic<V> shortening_km_myr(const ConvergentMargins& margins, Index cell, double along,
                                 double across, double strength, const Shortening<V>& s) {
+  const bool collides = margins.kind[cell] == Convergence::continents;
+  const ShorteningDensity density =
+      collides ? himalayan_shortening(across, strength) : andean_shortening(across, strength);
   const double closing_km_myr =
       margins.closing_mm_yr[cell] * std::clamp(1.0 + 0.35 * along, 0.2, 2.0);
-  if (margins.kind[cell] == Convergence::continents) {
-    return s.collision * s.crust_km *
-           (closing_km_myr * himalayan_shortening(across, strength, s.front));
-  }
-  return s.subduction * s.crust_km *
-         (closing_km_myr * andean_shortening(across, strength, s.front));
+  return (collides ? s.collision : s.subduction) * s.crust_km *
+         (closing_km_myr * (density.sheet + s.front * (density.wedge - density.sheet)));
 }
 
 /// What a convergent margin does to one cell; noise makes its belts wind and swell.
@@ -108,7 +107,7 @@ void cut_sections(const Crust<V>& crust, const CoarseGrid& coarse, const Tectoni
   const Arithmetic<V> swell_m = crust.active(p.swell_m);
   const Shortening<V> shortening{crust.active(p.collision_shortening),
                                  crust.active(p.subduction_shortening),
-                                 crust.active(p.continental_km), p.front_shortening};
+                                 crust.active(p.continental_km), crust.active(p.front_shortening)};
   const Arithmetic<V> trenches = crust.active(p.trench_depth_m) / kDeepestTrench_m;
   struct Lines {
     NoiseRow row;

@@ -38,7 +38,7 @@ struct Crust {
   std::span<V> thickening_m_yr;  ///< by shortening; left to the landscape's run
 
   /// How long belts grow while the landscape runs; 0: they stand as their sections have them.
-  double run_myr = 0.0;
+  Arithmetic<V> run_myr{0.0};
   ActiveVariables<V> active = {};
   NoiseStore* noise = nullptr;  ///< keeps noise for further planets of this seed and grid
 

@@ -26,13 +26,13 @@ struct IsostasyParameters {
   double deformation_smoothing_km = 30.0;
 
   double continental_km = 36.4;
-  double ocean_depth_m = 3690.0;
+  double ocean_depth_m = 3750.0;
   double oceanic_km = 7.0;
   double thickness_noise_km = 4.5;
-  double collision_km = 14.5;
-  double collision_shortening = 0.5;
-  double subduction_shortening = 0.15;
-  double front_shortening = 0.4;
+  double collision_km = 22.0;
+  double collision_shortening = 0.12;
+  double subduction_shortening = 0.04;
+  double front_shortening = 0.55;
   double arc_km = 13.0;
   double rift_km = 20.0;
   double transpression_km = 2.0;
@@ -48,8 +48,8 @@ struct IsostasyParameters {
   double relict_km = 9.2;
   double heat_m = 950.0;
   double thermal_coefficient = 0.02;
-  double shelf_depth_m = 65.0;
-  double shelf_edge = 0.68;
+  double shelf_depth_m = 90.0;
+  double shelf_edge = 0.78;
   double trench_depth_m = 1700.0;
   double seamount_m = 1800.0;
   double seafloor_roughness_m = 130.0;

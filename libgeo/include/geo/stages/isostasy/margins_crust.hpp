@@ -137,7 +137,7 @@ class Columns {
     crust_.transform[cell] = limited(row.transform[i], 0.0, 1.0);
     crust_.weakness[cell] = limited(row.weakness[i], 0.0, 1.0);
     const Number added_km_myr(greater(V(0.0F), row.shortening_km_myr[i]));
-    if (crust_.run_myr > 0.0) {
+    if (value_of(crust_.run_myr) > 0.0) {
       crust_.thickening_m_yr[cell] = V(Number(1e-3 * share * added_km_myr));
     }
 

@@ -32,7 +32,8 @@ struct Tectonics {
 
 /// How much of a belt's thickening was not yet there when the landscape begins to run, km.
 template <class Number>
-[[nodiscard]] Number to_come_km(const Number& belt_km, const Number& added_km_myr, double run_myr) {
+[[nodiscard]] Number to_come_km(const Number& belt_km, const Number& added_km_myr,
+                                const Number& run_myr) {
   return lesser(belt_km, Number(added_km_myr * run_myr));
 }
 

@@ -104,28 +104,27 @@ double trench_m(double across_km, double strength) {
 
 namespace {
 
-/// `front` of a density lies in a bell, the rest over a section whose integral is `width_km`.
-double with_front(double section, double width_km, double front, double from_front_km) {
-  constexpr double kRange_km = 60.0;
-  const double range_km = kRange_km * std::sqrt(2.0 * std::numbers::pi);
-  return (1.0 - front) * section / width_km +
-         front * bell(from_front_km, 0.0, kRange_km) / range_km;
+/// Of a section whose integral is `width_km`, and of ranges about a place.
+ShorteningDensity density(double section, double width_km, double from_ranges_km) {
+  constexpr double kRanges_km = 90.0;
+  const double integral_km = kRanges_km * std::sqrt(2.0 * std::numbers::pi);
+  return {section / width_km, bell(from_ranges_km, 0.0, kRanges_km) / integral_km};
 }
 
 }  // namespace
 
-double andean_shortening(double across_km, double strength, double front) {
+ShorteningDensity andean_shortening(double across_km, double strength) {
   const double inner = 250.0 + 250.0 * strength, outer = inner + 600.0;
   const double section =
       smooth_step(50.0, 190.0, across_km) * (1.0 - smooth_step(inner, outer, across_km));
-  return with_front(section, 0.5 * (inner + outer) - 120.0, front, across_km - 200.0);
+  return density(section, 0.5 * (inner + outer) - 120.0, across_km - 200.0);
 }
 
-double himalayan_shortening(double across_km, double strength, double front) {
+ShorteningDensity himalayan_shortening(double across_km, double strength) {
   const double inner = 250.0 + 600.0 * strength, outer = inner + 750.0;
   const double section =
       smooth_step(-110.0, 60.0, across_km) * (1.0 - smooth_step(inner, outer, across_km));
-  return with_front(section, 0.5 * (inner + outer) + 25.0, front, across_km - 40.0);
+  return density(section, 0.5 * (inner + outer) + 25.0, across_km - 40.0);
 }
 
 ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int16_t> plate,

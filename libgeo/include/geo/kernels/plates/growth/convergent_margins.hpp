@@ -24,12 +24,15 @@ namespace geo {
 inline constexpr double kDeepestTrench_m = 3000.0;
 [[nodiscard]] double trench_m(double across_km, double strength);
 
-/// Where crust is shortened across a convergent margin, km-1: a density whose integral over
-/// `across_km` is 1. All but `front` lies under the belt's whole width, that of the sections above
-/// (a thin viscous sheet, England & McKenzie 1982), `front` in the range behind its edge, where a
-/// wedge takes up what arrives (Dahlen 1990).
-[[nodiscard]] double andean_shortening(double across_km, double strength, double front);
-[[nodiscard]] double himalayan_shortening(double across_km, double strength, double front);
+/// Where crust is shortened across a convergent margin, km-1: densities whose integrals over
+/// `across_km` are 1. `sheet` lies under the whole width of the belt, that of the sections above (a
+/// thin viscous sheet, England & McKenzie 1982); `wedge` under the ranges behind its front, where
+/// what arrives is stacked first (Dahlen 1990).
+struct ShorteningDensity {
+  double sheet, wedge;
+};
+[[nodiscard]] ShorteningDensity andean_shortening(double across_km, double strength);
+[[nodiscard]] ShorteningDensity himalayan_shortening(double across_km, double strength);
 
 /// What meets at a convergent boundary.
 enum class Convergence : std::uint8_t { none, oceans, ocean_continent, continents };
