@@ -22,6 +22,8 @@ class Section:
     value is at ``describe``.
     """
 
+    _configuration: _core.Configuration
+
     def __init__(self, configuration: _core.Configuration, name: str, names: List[str]):
         prefix = f"{name}." if name else ""
         inside = [full[len(prefix):] for full in names if full.startswith(prefix)]

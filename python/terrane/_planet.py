@@ -53,6 +53,7 @@ def _latitudes(dims: Any, values: np.ndarray, word: str) -> Tuple[Any, np.ndarra
 def coordinates(grid: _core.Grid) -> Dict[str, Any]:
     """Coordinates of a grid, with the areas of its cells."""
     rows, columns = dimensions(grid)
+    found: Dict[str, Any]
     if grid.is_latitude_longitude:
         found = {"lat": _latitudes("lat", grid.latitude, "latitude"),
                  "lon": _latitudes("lon", grid.longitude, "longitude")}
@@ -98,10 +99,11 @@ def _mapping(grid: _core.Grid) -> Dict[str, Any]:
 def dataset_of(arrays: Dict[str, np.ndarray], grid: _core.Grid, **attributes: Any) -> xr.Dataset:
     """Arrays of a grid as a Dataset that shares their memory, with the attributes of files."""
     dims = dimensions(grid)
-    variables = {}
+    variables: Dict[str, Any] = {}
+    make: Any = xr.Variable
     for name, values in arrays.items():
         field = _FIELDS[name]
-        variable = xr.Variable(dims, values, _attributes(field, values.dtype, grid.is_geographic))
+        variable = make(dims, values, _attributes(field, values.dtype, grid.is_geographic))
         variable.encoding["_FillValue"] = np.nan if values.dtype.kind == "f" else values.dtype.type(field.missing)
         variables[name] = variable
     return xr.Dataset(variables, coordinates(grid), {"Conventions": "CF-1.10", **attributes})
@@ -218,5 +220,5 @@ def _steps(place: Path, record: Dict[str, Any]) -> Dict[str, np.ndarray]:
     tables = [name for name in record["files"] if name.endswith(f"-{record['name']}.csv")]
     if not tables:
         return {}
-    table = np.genfromtxt(place / tables[0], delimiter=",", names=True, deletechars="", ndmin=1)
-    return {name: table[name] for name in table.dtype.names}
+    table: Any = np.genfromtxt(place / tables[0], delimiter=",", names=True, deletechars="", ndmin=1)
+    return {column: table[column] for column in table.dtype.names}

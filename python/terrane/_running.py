@@ -110,7 +110,8 @@ def run(preset: str = "", *, seed: Optional[int] = None, grid: Union[str, Tuple[
         _core.run_to_folder(made._configuration, os.fspath(folder), from_stage, to, resume, overwrite,
                             allow_other_build, threads, tell)
         return open_run(folder)
-    place, given = None, {}
+    place: Any = None
+    given: Dict[str, Any] = {}
     if elevation is not None:
         place, given = _relief(made, elevation)
         from_stage = from_stage or "erosion"

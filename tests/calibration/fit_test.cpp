@@ -320,6 +320,10 @@ TEST(Fit, FreesNothingThatMovesThePlates) {
 
 TEST(Fit, WarnsInWordsOfWhatTheTargetDoesNotTell) {
   SmallRun run;
+  for (const auto& [name, value] : {std::pair{"erosion.uplift_from", "deformation"},
+                                    std::pair{"erosion.model", "detachment"}}) {
+    find_parameter(run.parameters, name)->set_text(value);  // what shortens crust tells them apart
+  }
   // Thickness of continents and weight of their roots shift all land alike.
   run.settings.free = "isostasy.continental_km, isostasy.lithosphere, isostasy.collision_km";
   run.settings.deviation_m = 200.0;

@@ -57,7 +57,7 @@ TEST(Params, TellTheSameInEveryFormat) {
     const std::string name = parameter.at("name");
     const std::string key = name.substr(name.rfind('.') + 1);
     EXPECT_THAT(table, HasSubstr(name + " "));
-    EXPECT_THAT(markdown, HasSubstr("| `" + key + "` |"));
+    EXPECT_THAT(markdown, HasSubstr("| <a id=\"" + name + "\"></a>`" + key + "` |"));
     EXPECT_THAT(toml, HasSubstr("\n" + key + " = "));
     EXPECT_FALSE(parameter.at("doc").get<std::string>().empty()) << name;
     EXPECT_FALSE(parameter.at("source").get<std::string>().empty()) << name;

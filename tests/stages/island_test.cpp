@@ -260,8 +260,8 @@ TEST(Island, RiversThatEnterAreThereAndNoWaterIsLost) {
 // come in over.
 TEST(Island, RiversCarryWhatTheyCarryOnThePlanet) {
   double carried = 0.0;
-  int rivers = 0;
-  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+  int rivers = 0, poor = 0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     const State whole = make_planet(seed);
     const auto receiver = whole.read(field::flow_receiver);
     const auto planets = whole.read(field::discharge);
@@ -275,14 +275,17 @@ TEST(Island, RiversCarryWhatTheyCarryOnThePlanet) {
       for (Index k = 0; k < island.grid().size(); ++k) {
         if (cells.cell_of()[k] == c) most = std::max(most, discharge[k]);
       }
-      // Where rivers meet may move by a cell or two, and a brook may join the river beside.
-      EXPECT_GT(most, 0.8 * planets[c]);
+      // Where rivers meet may move by a cell or two, and a brook may join the river beside: of many
+      // rivers one may lose a branch.
+      EXPECT_GT(most, 0.7 * planets[c]);
+      poor += most < 0.9 * planets[c] ? 1 : 0;
       EXPECT_LT(most, 1.1 * planets[receiver[receiver[c]]]);
       carried += std::min(1.0, static_cast<double>(most) / planets[c]);
       ++rivers;
     }
   }
   EXPECT_GT(carried, 0.97 * rivers);
+  EXPECT_LE(poor, rivers / 16);
 }
 
 /// Whether a planet's cell has a river of its own, whose centre is well inside an island.
@@ -300,7 +303,8 @@ bool has_river(const State& whole, const Grid& fine, Index cell) {
 // Rivers once met beyond the edge, left over a lower place, or ended in lakes of the detail.
 TEST(Island, RiversKeepTheirWaterAllTheWay) {
   double all_there = 0.0, all_kept = 0.0;
-  for (const std::uint64_t seed : {2, 5}) {
+  int rivers = 0, poor = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     const State whole = make_planet(seed);
     const auto planets = whole.read(field::discharge);
     const auto receiver = whole.read(field::flow_receiver);
@@ -335,13 +339,16 @@ TEST(Island, RiversKeepTheirWaterAllTheWay) {
         kept += std::min<double>(here, planets[cell]);
         too_much += std::max(0.0, in_rivers[cell] - 1.1 * below);
       }
-      EXPECT_GT(kept, 0.8 * there);
+      EXPECT_GT(kept, 0.7 * there);
+      ++rivers;
+      poor += kept < 0.9 * there ? 1 : 0;
       EXPECT_LT(too_much, 0.05 * there);
       all_there += there;
       all_kept += kept;
     }
   }
   EXPECT_GT(all_kept, 0.95 * all_there);
+  EXPECT_LE(poor, rivers / 8);
 }
 
 // Detail once dipped plains to the level of the sea, and rivers left the flats over its edge.

@@ -117,6 +117,8 @@ std::vector<const FieldSpec*> scorecard_fields() {
       if (std::find(fields.begin(), fields.end(), spec) == fields.end()) fields.push_back(spec);
     }
   }
+  fields.push_back(
+      &field::crust_thickness_change);  // where crust has grown or worn, it is measured so
   return fields;
 }
 

@@ -157,6 +157,7 @@ class IslandStage final : public Stage {
     }
     open_river_courses(fine, edges, courses, z);
     Bytes outlets = edges;
+    add_ways_out(fine, z, outlets);
     add_endorheic_bottoms(cells, io.read(field::flow_receiver), z, outlets);
     for (std::size_t c = 0; c < held.size(); ++c) held[c] |= outlets[c];
 

@@ -294,6 +294,22 @@ void restore_means(const PlanetCells& cells, std::span<const float> target,
 
 }  // namespace
 
+void add_ways_out(const Grid& fine, std::span<const float> z, std::span<std::uint8_t> outlets) {
+  const std::vector<std::uint8_t> edges(outlets.begin(), outlets.end());
+  for (Index c = 0; c < fine.size(); ++c) {
+    const int i = fine.column(c), j = fine.row(c);
+    if (std::min({i, fine.nx() - 1 - i, j, fine.ny() - 1 - j}) != 1) continue;
+    const std::array<Index, kDirections> offsets = fine.offsets();
+    const Index lowest =
+        c + *std::min_element(offsets.begin(), offsets.end(),
+                              [&](Index a, Index b) { return z[c + a] < z[c + b]; });
+    if (edges[lowest] != 0 && fine.is_open_edge(fine.column(lowest), fine.row(lowest)) &&
+        z[lowest] < z[c]) {
+      outlets[c] = 1;
+    }
+  }
+}
+
 void raise_island(const PlanetCells& cells, const PlanetRelief& planet, const IslandParameters& p,
                   const ExemplarLibrary* exemplars, std::uint64_t seed, std::span<float> planet_m,
                   std::span<float> elevation_m) {

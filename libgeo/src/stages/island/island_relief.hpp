@@ -20,6 +20,11 @@ struct PlanetRelief {
   std::span<const float> orogeny_age_myr, fold_east, fold_north;
 };
 
+/// Cells next to an edge over which their water leaves are outlets as well: base levels of rivers
+/// are then as uneven as the ground. Behind the even slope of the edge alone they would cut a gorge
+/// that follows it.
+void add_ways_out(const Grid& fine, std::span<const float> z, std::span<std::uint8_t> outlets);
+
 /// Interpolated relief with detail, before any erosion.
 /// @param exemplars what detail is made like; null unless `p.detail` asks for it
 /// @param planet_m  out: the interpolated relief alone
