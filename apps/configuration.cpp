@@ -91,6 +91,7 @@ void Configuration::take(const ConfigurationSources& sources) {
   set("--dem-range", "dem.range", sources.dem_range);
   set("--dem-window", "dem.window", sources.dem_window);
   set("--topology", "run.topology", sources.topology);
+  set("--turn", "run.turn", sources.turn);
   check_topology(*this);
 }
 

@@ -19,7 +19,7 @@ struct ConfigurationSources {
   std::string config;                    ///< TOML file
   std::string dem;                       ///< FILE[:VARIABLE]
   std::vector<std::string> assignments;  ///< "section.key=value"
-  std::string seed, grid, topology, dem_range, dem_window, exemplars;
+  std::string seed, grid, topology, turn, dem_range, dem_window, exemplars;
   /// The file is what an earlier run kept: complete, so that no preset goes before it.
   bool is_kept = false;
 };

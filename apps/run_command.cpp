@@ -132,6 +132,11 @@ void add_run_command(CLI::App& program, Action& action) {
                    "file, preset raster")
       ->type_name("sphere|torus");
   command
+      ->add_option("--turn", o.sources.turn,
+                   "Lay the planet out with its place LAT,LON at the north pole and the prime "
+                   "meridian ANGLE degrees further east")
+      ->type_name("LAT,LON,ANGLE");
+  command
       ->add_option("--dem", o.sources.dem,
                    "A real relief takes the place of plates and isostasy; without --preset, preset "
                    "earth-dem")

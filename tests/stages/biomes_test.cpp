@@ -157,10 +157,39 @@ TEST(Biomes, RiversCarryTreesThroughDryLand) {
   EXPECT_GT(changed, 100);
 }
 
+TEST(Biomes, SettlementByLimitsFallsWithSlopeAndIsWateredByRivers) {
+  State state = make_planet(360, 180), flat = make_planet(360, 180);
+  for (float& z : flat.update(field::elevation)) z = z < 0.0F ? z : 10.0F;
+  run(state);
+  run(flat);
+  const auto z = state.read(field::elevation), t = state.read(field::temperature);
+  const auto river = state.read(field::river_intensity), lake = state.read(field::lake_depth);
+  const auto steep = state.read(field::settlement_suitability);
+  const auto even = flat.read(field::settlement_suitability);
+  const auto range = state.read(field::temperature_range), rain = state.read(field::precipitation);
+  const auto seasonality = state.read(field::precipitation_seasonality);
+  int watered = 0, lower = 0;
+  for (Index c = 0; c < state.grid().size(); ++c) {
+    if (z[c] < 0 || lake[c] > 0) continue;
+    const SettlementLimits limits =
+        settlement_limits(harmonic_months(t[c], range[c], rain[c], seasonality[c]));
+    ASSERT_LE(steep[c], even[c] + 1e-6);
+    ASSERT_GE(even[c], limits.product() - 1e-5);
+    if (river[c] > 0.12F) {
+      ASSERT_NEAR(even[c], limits.warmth * limits.heat * limits.soil, 1e-5);
+      watered += limits.water < 0.5 ? 1 : 0;
+    }
+    lower += steep[c] < even[c] - 0.01F ? 1 : 0;
+  }
+  EXPECT_GT(watered, 10);
+  EXPECT_GT(lower, 100);
+}
+
 TEST(Biomes, SettlementFollowsProductivityAltitudeAndRivers) {
   State state = make_planet(360, 180), bonus = make_planet(360, 180);
-  run(state);
   BiomesParameters parameters;
+  parameters.settlement = "productivity";
+  run(state, parameters);
   parameters.river_weight = 0.25;
   run(bonus, parameters);
   const auto z = state.read(field::elevation), npp = state.read(field::net_primary_productivity);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -15,6 +16,13 @@ namespace geo {
   const double latitude = place.latitude_deg * kRadians, longitude = place.longitude_deg * kRadians;
   return {std::cos(latitude) * std::cos(longitude), std::cos(latitude) * std::sin(longitude),
           std::sin(latitude)};
+}
+
+/// The place that a unit vector points at.
+[[nodiscard]] inline Centre place_of(const Vector3& unit_vector) {
+  constexpr double kDegrees = 180.0 / std::numbers::pi;
+  return {kDegrees * std::asin(std::clamp(unit_vector[2], -1.0, 1.0)),
+          kDegrees * std::atan2(unit_vector[1], unit_vector[0])};
 }
 
 }  // namespace geo

@@ -32,6 +32,12 @@ std::vector<Parameter> RunSettings::parameters() {
              "a whole planet, or a tile as wide as the planet's girth whose opposite sides meet, "
              "for plates.model = raster",
              "design"),
+      text(
+          "run.turn", turn,
+          "LAT,LON,ANGLE, degrees: lays the planet, and what is given of it as files, out with its "
+          "place LAT,LON at the north pole and the prime meridian ANGLE further east; empty turns "
+          "nothing",
+          "design"),
       text("run.from", from, "first stage to run; empty is the first there is", "design"),
       text("run.to", to, "last stage to run; empty is the last there is", "design"),
       text(

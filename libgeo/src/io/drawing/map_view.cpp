@@ -10,6 +10,7 @@
 
 #include "geo/core/error.hpp"
 #include "geo/core/parameter.hpp"
+#include "geo/core/turn.hpp"
 
 namespace geo::io {
 namespace {
@@ -71,6 +72,19 @@ Centre parse_centre(std::string_view what, std::string_view text) {
         "{} {}: must be latitude and longitude in degrees, such as 45,-120", what, text));
   }
   return {numbers[0], std::remainder(numbers[1], 360.0)};
+}
+
+std::array<double, 3> parse_turn(std::string_view what, std::string_view text) {
+  if (text.empty()) return {};
+  const auto numbers = numbers_of(text);
+  if (numbers.size() != 3 || std::abs(numbers[0]) > 90.0 || std::abs(numbers[1]) > 360.0 ||
+      std::abs(numbers[2]) > 360.0) {
+    throw ConfigurationError(
+        fmt::format("{} {}: must be the latitude and longitude of the new pole and an angle, in "
+                    "degrees, such as 35,-120,0",
+                    what, text));
+  }
+  return turn_to_pole({numbers[0], numbers[1]}, numbers[2]);
 }
 
 Window parse_box(std::string_view what, std::string_view text) {

@@ -108,6 +108,7 @@ void put(Parcel& parcel, const Grid& grid) {
   const Centre centre = grid.centre().value_or(Centre{});
   put(parcel, centre.latitude_deg);
   put(parcel, centre.longitude_deg);
+  for (const double part : grid.turn()) put(parcel, part);
 }
 
 Grid take_grid(Parcel& parcel) {
@@ -126,9 +127,11 @@ Grid take_grid(Parcel& parcel) {
   Centre centre;
   take(parcel, centre.latitude_deg);
   take(parcel, centre.longitude_deg);
+  std::array<double, 3> turn{};
+  for (double& part : turn) take(parcel, part);
   switch (kind) {
     case Kind::sphere:
-      return Grid::sphere(nx, ny, figure);
+      return Grid::sphere(nx, ny, figure, turn);
     case Kind::window:
       return Grid::window(nx, ny, window, figure, edges);
     case Kind::plane:

@@ -1,4 +1,5 @@
 #include "geo/io/input/dem.hpp"
+#include "geo/kernels/remapping/turned_planet.hpp"
 
 #include <fmt/format.h>
 
@@ -387,6 +388,10 @@ Relief read_field_with_gaps(const std::string& file_and_variable, const FieldSpe
 }
 
 std::vector<float> resample(const Relief& relief, const Grid& target) {
+  if (target.turn() != std::array<double, 3>{}) {
+    const Grid finer = Grid::sphere(2 * target.nx(), 2 * target.ny(), target.figure());
+    return laid_out_turned(finer, resample(relief, finer), target);
+  }
   const bool own_raster = !relief.raster_m.empty();
   const bool metric =
       !relief.grid.is_latitude_longitude() && !target.is_latitude_longitude() && !own_raster;

@@ -22,6 +22,7 @@ constexpr const char* kSpacing = "terrane_grid_spacing_m";
 constexpr const char* kWindow = "terrane_grid_window_deg";
 constexpr const char* kCentre = "terrane_grid_centre_deg";
 constexpr const char* kRadius = "terrane_grid_radius_m";
+constexpr const char* kTurn = "terrane_grid_turn";
 constexpr const char* kFlattening = "terrane_grid_flattening";
 
 struct CoordinateNames {
@@ -126,6 +127,8 @@ void put_rebuilding_attributes(const nc::File& file, const Grid& grid) {
   if (const auto& centre = grid.centre()) put(kCentre, centre->latitude_deg, centre->longitude_deg);
   put(kRadius, grid.figure().radius_m);
   put(kFlattening, grid.figure().flattening);
+  const auto& turn = grid.turn();
+  if (turn != std::array<double, 3>{}) put(kTurn, turn[0], turn[1], turn[2]);
 }
 
 void write_axis(const nc::File& file, const CoordinateNames& names, const Axis& axis) {
@@ -279,7 +282,11 @@ Grid read_grid(const nc::File& file) {
   const Edges edges =
       file.text(NC_GLOBAL, kEdges).value_or("open") == "closed" ? Edges::closed : Edges::open;
   try {
-    if (*topology == "sphere") return Grid::sphere(nx, ny, figure);
+    if (*topology == "sphere") {
+      const auto turn = file.numbers(NC_GLOBAL, kTurn);
+      if (turn.size() != 3) return Grid::sphere(nx, ny, figure);
+      return Grid::sphere(nx, ny, figure, {turn[0], turn[1], turn[2]});
+    }
     if (*topology == "window") {
       const auto w = required_numbers(file, kWindow, 4);
       return Grid::window(nx, ny, {w[0], w[1], w[2], w[3]}, figure, edges);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "geo/core/error.hpp"
+#include "geo/io/drawing/map_view.hpp"
 #include "geo/io/input/dem.hpp"
 #include "geo/io/input/exemplar_files.hpp"
 #include "geo/io/input/hypsography.hpp"
@@ -19,12 +20,22 @@
 namespace geo::io {
 namespace {
 
+/// Only a whole planet has poles that can be moved.
+void refuse_turn(const RunSettings& settings, std::string_view what) {
+  if (settings.turn.empty()) return;
+  throw ConfigurationError(
+      fmt::format("run.turn = {}: {} cannot be turned: must be empty", settings.turn, what));
+}
+
 /// The grid that a relief is put on.
 Grid grid_for(const Relief& relief, const RunSettings& settings, const Planet& planet) {
-  if (settings.grid_is_automatic()) return relief.grid;
-  const auto [nx, ny] = parse_grid_size(settings.grid);
   const Grid& source = relief.grid;
-  if (source.topology() == Topology::sphere) return Grid::sphere(nx, ny, planet.figure());
+  const auto turn = parse_turn("run.turn", settings.turn);
+  if (source.topology() != Topology::sphere) refuse_turn(settings, "a part of a planet");
+  const auto [nx, ny] = settings.grid_is_automatic() ? GridSize{source.nx(), source.ny()}
+                                                     : parse_grid_size(settings.grid);
+  if (source.topology() == Topology::sphere) return Grid::sphere(nx, ny, planet.figure(), turn);
+  if (settings.grid_is_automatic()) return source;
   if (source.is_latitude_longitude()) {
     return Grid::window(nx, ny, source.window(), planet.figure(), source.edges());
   }
@@ -147,8 +158,10 @@ class Reader {
     const auto [nx, ny] = settings_.grid_is_automatic() ? usual : parse_grid_size(settings_.grid);
     const auto figure = run_.planet.figure();
     const double cell_m = 2.0 * std::numbers::pi * figure.radius_m / std::max(1, nx);
-    begin_on(std::make_shared<const Grid>(is_torus ? Grid::torus(nx, ny, cell_m, cell_m)
-                                                   : Grid::sphere(nx, ny, figure)));
+    if (is_torus) refuse_turn(settings_, "a torus");
+    begin_on(std::make_shared<const Grid>(
+        is_torus ? Grid::torus(nx, ny, cell_m, cell_m)
+                 : Grid::sphere(nx, ny, figure, parse_turn("run.turn", settings_.turn))));
   }
 
   void read_initial_relief() {

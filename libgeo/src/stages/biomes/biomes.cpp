@@ -7,8 +7,10 @@
 #include "geo/kernels/climate/blueprint_climate.hpp"
 #include "geo/kernels/life/koppen.hpp"
 #include "geo/kernels/life/productivity.hpp"
+#include "geo/kernels/life/settlement.hpp"
 #include "geo/kernels/life/whittaker.hpp"
 #include "geo/kernels/noise/noise.hpp"
+#include "geo/kernels/numerics/shapes.hpp"
 
 namespace geo {
 namespace {
@@ -120,6 +122,7 @@ class BiomesStage final : public Stage {
     const auto settlement = io.write(field::settlement_suitability);
 
     const Treeline treeline(p_, grid, context.seed);
+    const bool by_limits = p_.settlement == "limits";
     const bool by_exposure = p_.coast == "exposure" && p_.coast_weight > 0;
     const std::vector<float> land_share = by_exposure ? land_of(elevation) : std::vector<float>{};
     const DisplacedSampler land(grid, land_share);
@@ -137,7 +140,12 @@ class BiomesStage final : public Stage {
         if (!lake.empty() && lake[c] > 0) continue;  // nobody farms or lives on the water
         const double npp = miami_productivity(t, rain[c]);
         productivity[c] = static_cast<float>(npp);
-        double suitability = npp / kFullYield * altitude_factor(elevation[c]);
+        double suitability =
+            by_limits
+                ? limited(grid, elevation, i, j,
+                          settlement_limits(harmonic_months(t, range[c], rain[c], seasonality[c])),
+                          river.empty() ? 0.0F : river[c])
+                : npp / kFullYield * altitude_factor(elevation[c]);
         if (!river.empty()) suitability += p_.river_weight * river[c];
         if (p_.coast_weight > 0 && (!coast.empty() || by_exposure)) {
           const double near = by_exposure ? sea_exposure(land, i, j, p_.coast_reach_km * 1000)
@@ -160,6 +168,21 @@ class BiomesStage final : public Stage {
   }
 
  private:
+  /// Suitability where climate, slope and soil set limits. A river waters the fields along it.
+  [[nodiscard]] double limited(const Grid& grid, std::span<const float> elevation, int i, int j,
+                               SettlementLimits limits, double river) const {
+    limits.water = std::max(limits.water, smooth_step(0.0, p_.riparian_threshold, river));
+    double lowest_m = elevation[grid.cell(i, j)], highest_m = lowest_m;
+    for (int k = 0; k < kDirections; ++k) {
+      const Index n = grid.neighbour(i, j, k);
+      if (n == kNoCell) continue;
+      const double z = std::max(0.0F, elevation[n]);  // the sea's level, not its bed
+      lowest_m = std::min(lowest_m, z);
+      highest_m = std::max(highest_m, z);
+    }
+    const double across_m = 2.0 * std::sqrt(grid.area_m2(j));
+    return limits.product() * slope_limit(field_slope(highest_m - lowest_m, across_m));
+  }
   static std::vector<float> land_of(std::span<const float> elevation) {
     std::vector<float> land(elevation.size());
     std::transform(elevation.begin(), elevation.end(), land.begin(),
@@ -219,6 +242,10 @@ std::vector<Parameter> BiomesParameters::declarations() {
            "whether that smoothing comes after the trees along rivers, as in the blueprint's 7.5, "
            "and takes those away that stand alone",
            "tectonica2026"),
+      choice("biomes.settlement", settlement, {"limits", "productivity"},
+             "what settlement follows: how far warmth, water, heat, slope and soil let people farm "
+             "and work, or productivity alone, as in the blueprint's 8.5",
+             "ramankutty2002"),
       real("biomes.river_weight", river_weight, "1", 0.0, 1.0,
            "what a navigable river adds to the suitability for settlement", "diamond1997"),
       real("biomes.coast_weight", coast_weight, "1", 0.0, 1.0,

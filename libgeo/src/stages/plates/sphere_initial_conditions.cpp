@@ -19,9 +19,11 @@ namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
+// What is given as files lies on the planet as it is before a grid is turned over it: in the frame
+// of the samples.
+
 /// The plate of each sample: the last one whose outline holds it, in gaps the nearest.
-std::vector<std::int16_t> plates_at_samples(const Grid& grid, const SphereMesh& mesh,
-                                            Context& context) {
+std::vector<std::int16_t> plates_at_samples(const SphereMesh& mesh, Context& context) {
   const std::vector<PlateOutline>& outlines = context.plates;
   std::vector<RegionOutline> regions;
   regions.reserve(outlines.size());
@@ -30,7 +32,7 @@ std::vector<std::int16_t> plates_at_samples(const Grid& grid, const SphereMesh& 
   std::int32_t shared = 0;
 #pragma omp parallel for schedule(dynamic, 1024) reduction(+ : shared)
   for (std::int32_t i = 0; i < mesh.size(); ++i) {
-    const Centre at = position_of(grid, mesh.samples().position(i));
+    const Centre at = place_of(mesh.samples().position(i));
     int holding = 0;
     for (std::size_t p = 0; p < regions.size(); ++p) {
       if (!regions[p].holds(at)) continue;
@@ -63,8 +65,8 @@ std::vector<std::int16_t> plates_at_samples(const Grid& grid, const SphereMesh& 
   return plate;
 }
 
-void take_plates(const Grid& grid, const SphereMesh& mesh, Context& context, SphereStart& start) {
-  start.plate = plates_at_samples(grid, mesh, context);
+void take_plates(const SphereMesh& mesh, Context& context, SphereStart& start) {
+  start.plate = plates_at_samples(mesh, context);
   std::vector<std::int16_t> number(context.plates.size(), -1);
   for (const std::int16_t plate : start.plate) number[plate] = 0;
   for (std::size_t p = 0; p < number.size(); ++p) {
@@ -76,7 +78,7 @@ void take_plates(const Grid& grid, const SphereMesh& mesh, Context& context, Sph
     }
     number[p] = static_cast<std::int16_t>(start.rotation_rad_myr.size());
     start.rotation_rad_myr.push_back(
-        scaled(place_on(grid, outline.pole), outline.rate_deg_myr / kDegrees));
+        scaled(unit_vector_of(outline.pole), outline.rate_deg_myr / kDegrees));
   }
   for (std::int16_t& plate : start.plate) plate = number[plate];
 }
@@ -84,13 +86,13 @@ void take_plates(const Grid& grid, const SphereMesh& mesh, Context& context, Sph
 /// Means of cells over the samples that are nearest to them; a sample without cells takes the cell
 /// that it lies in. NaN where the cells are.
 std::vector<float> means_at_samples(const GivenRelief& given, const std::vector<float>& values,
-                                    const Grid& turned, const SphereMesh& mesh) {
+                                    const SphereMesh& mesh) {
   const Grid& grid = given.grid;
   std::vector<std::int32_t> nearest(grid.size());
 #pragma omp parallel for schedule(dynamic, 8)
   for (int j = 0; j < grid.ny(); ++j) {
     for (int i = 0; i < grid.nx(); ++i) {
-      nearest[grid.cell(i, j)] = mesh.samples().nearest(place_on(turned, grid.position(i, j)));
+      nearest[grid.cell(i, j)] = mesh.samples().nearest(unit_vector_of(grid.position(i, j)));
     }
   }
   std::vector<double> sum(mesh.size(), 0.0), area(mesh.size(), 0.0);
@@ -106,7 +108,7 @@ std::vector<float> means_at_samples(const GivenRelief& given, const std::vector<
       mean[i] = static_cast<float>(sum[i] / area[i]);
       continue;
     }
-    const Centre at = position_of(turned, mesh.samples().position(i));
+    const Centre at = place_of(mesh.samples().position(i));
     const int column = static_cast<int>((at.longitude_deg / 360.0 + 0.5) * grid.nx());
     const int row = static_cast<int>((at.latitude_deg / 180.0 + 0.5) * grid.ny());
     mean[i] =
@@ -115,8 +117,7 @@ std::vector<float> means_at_samples(const GivenRelief& given, const std::vector<
   return mean;
 }
 
-void take_relief(const Grid& grid, const SphereMesh& mesh, const Context& context,
-                 SphereStart& start) {
+void take_relief(const SphereMesh& mesh, const Context& context, SphereStart& start) {
   if (!context.initial_elevation) {
     throw InputError(
         "plates: plates.sphere.initial_elevation = given needs fields.initial_elevation, a NetCDF "
@@ -124,16 +125,15 @@ void take_relief(const Grid& grid, const SphereMesh& mesh, const Context& contex
   }
   const GivenRelief& given = *context.initial_elevation;
   start.real_floor = true;
-  start.elevation_m = means_at_samples(given, given.elevation_m, grid, mesh);
+  start.elevation_m = means_at_samples(given, given.elevation_m, mesh);
   if (given.age_myr.empty()) return;
-  start.age_myr = means_at_samples(given, given.age_myr, grid, mesh);
+  start.age_myr = means_at_samples(given, given.age_myr, mesh);
 }
 
 }  // namespace
 
 Centre position_of(const Grid& grid, const Vector3& place) {
-  const Vector3 at = grid.to_axis(place);
-  return {std::asin(std::clamp(at[2], -1.0, 1.0)) * kDegrees, std::atan2(at[1], at[0]) * kDegrees};
+  return place_of(grid.to_axis(place));
 }
 
 Vector3 place_on(const Grid& grid, const Centre& place) {
@@ -169,11 +169,11 @@ SphereStart sphere_start(const PlatesParameters& parameters, const SphereMesh& m
   start.continental_share = parameters.cratons.share;
   start.whole_plates = parameters.continents == "plates";
   start.oldest_floor_myr = parameters.oldest_floor_myr;
-  if (!context.plates.empty()) take_plates(io.grid(), mesh, context, start);
+  if (!context.plates.empty()) take_plates(mesh, context, start);
   if (parameters.initial_elevation == "hypsography") {
     start.elevation_m = hypsographic_heights_m(parameters, io, context, mesh.samples().positions());
   } else if (parameters.initial_elevation == "given") {
-    take_relief(io.grid(), mesh, context, start);
+    take_relief(mesh, context, start);
   }
   if (parameters.initial_elevation != "given" && context.initial_elevation) {
     context.warnings.push_back(

@@ -23,6 +23,7 @@ struct RunSettings {
   std::int64_t seed = 1;
   std::string grid = "auto";
   std::string topology = "sphere";
+  std::string turn;  ///< "LAT,LON,ANGLE"
   std::string from;
   std::string to;
 

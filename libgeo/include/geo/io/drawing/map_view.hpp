@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -45,6 +46,9 @@ Centre parse_centre(std::string_view what, std::string_view text);
 /// "W,S,E,N" in degrees; an east edge west of the west edge lies beyond the date line. Throws
 /// ConfigurationError that begins with `what`.
 Window parse_box(std::string_view what, std::string_view text);
+/// "LAT,LON,ANGLE" in degrees as the turn of a grid (`turn_to_pole`); empty turns nothing. Throws
+/// ConfigurationError that begins with `what`.
+std::array<double, 3> parse_turn(std::string_view what, std::string_view text);
 /// Throws ConfigurationError that names the nearest projection where the name is none.
 const MapProjection& find_projection(std::string_view name);
 

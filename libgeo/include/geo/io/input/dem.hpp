@@ -55,7 +55,8 @@ Relief read_field_with_gaps(const std::string& file_and_variable, const FieldSpe
                             const Planet& planet);
 
 /// Area-weighted mean of a relief on another grid (conservative where coarser, bilinear where
-/// finer). Both must cover the same region, or `target` lie within. Throws InputError otherwise.
+/// finer). On a sphere with a turn the relief is laid out with that turn, by way of cells half as
+/// wide. Both must cover the same region, or `target` lie within. Throws InputError otherwise.
 std::vector<float> resample(const Relief& relief, const Grid& target);
 
 }  // namespace geo::io

@@ -20,6 +20,7 @@ struct BiomesParameters {
   double riparian_threshold = 0.12;
   double smoothing_km = 10.0;
   bool smooth_corridors = false;
+  std::string settlement = "limits";
   double river_weight = 0.0;
   double coast_weight = 0.0;
   std::string coast = "distance";

@@ -1,0 +1,60 @@
+#include "geo/kernels/remapping/turned_planet.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geo/core/error.hpp"
+#include "geo/core/parallel_errors.hpp"
+#include "geo/core/place.hpp"
+#include "geo/kernels/remapping/catmull_rom.hpp"
+
+namespace geo {
+namespace {
+
+double sampled(const Grid& source, std::span<const float> values, const Centre& place) {
+  const CatmullRom cubic(source, place);
+  float least = INFINITY, most = -INFINITY;
+  for (const int j : {1, 2}) {
+    for (const int i : {1, 2}) {
+      const int shift = cubic.crossed[j] ? cubic.half_round : 0;
+      const float value =
+          values[source.cell((cubic.column[i] + shift) % source.nx(), cubic.row[j])];
+      if (std::isnan(value)) return NAN;
+      least = std::min(least, value);
+      most = std::max(most, value);
+    }
+  }
+  const double value = cubic.of(values);
+  return std::isnan(value) ? 0.5 * (least + most) : std::clamp<double>(value, least, most);
+}
+
+}  // namespace
+
+std::vector<float> laid_out_turned(const Grid& source, std::span<const float> values,
+                                   const Grid& target) {
+  if (source.topology() != Topology::sphere || target.topology() != Topology::sphere) {
+    throw InputError("only a whole planet can be laid out with another pole");
+  }
+  const Grid places =
+      Grid::sphere(2 * target.nx(), 2 * target.ny(), target.figure(), target.turn());
+  std::vector<float> laid(target.size());
+  ParallelErrors errors;
+#pragma omp parallel for schedule(static)
+  for (int j = 0; j < target.ny(); ++j) {
+    errors.guard([&] {
+      for (int i = 0; i < target.nx(); ++i) {
+        double sum = 0.0;
+        for (const int dj : {0, 1}) {
+          for (const int di : {0, 1}) {
+            sum += sampled(source, values, place_of(places.unit_vector(2 * i + di, 2 * j + dj)));
+          }
+        }
+        laid[target.cell(i, j)] = static_cast<float>(0.25 * sum);
+      }
+    });
+  }
+  errors.rethrow();
+  return laid;
+}
+
+}  // namespace geo
