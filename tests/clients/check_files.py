@@ -123,7 +123,6 @@ def check_conventions(reference):
     for holder in (dataset, *dataset.variables.values()):
         for name in holder.ncattrs():
             expect(len(str(holder.getncattr(name))) < 2000, file, name, "fills what clients print")
-    expect(" = " in str(dataset["terrane_config"][...]), file, "terrane_config is not the configuration")
 
     for name, variable in dataset.variables.items():
         where = f"{file}: {name}:"
@@ -428,12 +427,19 @@ def check_ncdump(reference):
     output = call("ncdump", "-h", reference.path)
     if output is None:
         return
+    # Not through netCDF4, whose HDF5 keeps the file of texts beyond its end.
+    text = subprocess.run(["ncdump", "-v", "terrane_config", reference.path], capture_output=True, text=True).stdout
+    expect(" = " in text.rpartition("terrane_config =")[2], reference.path.name,
+           "terrane_config is not the configuration")
     for name in reference.fields:
         expect(re.search(rf"\b{name}\((drift_time, )?\w+, \w+\)", output), f"{reference.path.name}: {name}: ncdump",
                "does not list it")
 
 
 def main():
+    if len(sys.argv) == 3 and sys.argv[1] == "--series":
+        check_series(sorted(Path(sys.argv[2]).glob("frame-*.nc")))
+        sys.exit(1 if failures else 0)
     if len(sys.argv) != 2:
         sys.exit(__doc__)
     files = sorted(Path(sys.argv[1]).glob("*.nc"))
@@ -444,7 +450,9 @@ def main():
         for check in (check_conventions, check_areas, check_anticlockwise, check_projection, check_xarray,
                       check_cdo, check_nco, check_gdal, check_ncdump):
             check(reference)
-    check_series(files)
+    # In a process of its own: HDF5 1.10 goes back to files of texts that are closed, and would crash here.
+    series = subprocess.run([sys.executable, __file__, "--series", sys.argv[1]])
+    expect(series.returncode == 0, "frames are no series")
     print(f"{len(files)} files, {len(failures)} failures; asked netCDF4, {', '.join(sorted(asked))}")
     sys.exit(1 if failures else 0)
 

@@ -12,7 +12,7 @@ namespace {
 
 /// Where a place of the planet comes to lie on a grid with a turn.
 Vector3 laid_out(const Centre& place, const std::array<double, 3>& turn) {
-  return Grid::sphere(4, 2, {}, turn).to_axis(unit_vector_of(place));
+  return Grid::sphere(8, 4, {}, turn).to_axis(unit_vector_of(place));
 }
 
 void expect_near(const Vector3& a, const Vector3& b) {

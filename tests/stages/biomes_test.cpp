@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "geo/core/random.hpp"
+#include "geo/kernels/life/settlement.hpp"
 
 namespace geo {
 namespace {
@@ -160,6 +161,8 @@ TEST(Biomes, RiversCarryTreesThroughDryLand) {
 TEST(Biomes, SettlementByLimitsFallsWithSlopeAndIsWateredByRivers) {
   State state = make_planet(360, 180), flat = make_planet(360, 180);
   for (float& z : flat.update(field::elevation)) z = z < 0.0F ? z : 10.0F;
+  const auto steps = state.update(field::elevation);  // from cell to cell, 2 km
+  for (std::size_t c = 0; c < steps.size(); c += 2) steps[c] += steps[c] < 0.0F ? 0.0F : 2000.0F;
   run(state);
   run(flat);
   const auto z = state.read(field::elevation), t = state.read(field::temperature);
