@@ -15,6 +15,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
+#include <fstream>
 #include <new>
 
 #include "geo/core/error.hpp"
@@ -112,6 +113,19 @@ void prepare_memory() {
   constexpr int kKeptAtTheEnd = 2047 << 20;
   mallopt(M_TRIM_THRESHOLD, kKeptAtTheEnd);
   reserve_stack();
+}
+
+double memory_of_machine_bytes() {
+  const double machine =
+      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  // What a container or a job of a cluster may take.
+  double least = machine;
+  for (const char* path :
+       {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"}) {
+    double limit = 0.0;
+    if (std::ifstream(path) >> limit && limit > 0.0) least = std::min(least, limit);
+  }
+  return least;
 }
 
 std::string want_of_memory() {

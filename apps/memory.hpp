@@ -14,6 +14,9 @@ namespace terrane {
 /// not: in libraries written in C, in OpenMP's own, in a parallel region without a guard.
 void prepare_memory();
 
+/// Memory that there is for this process: the machine's, or less where its group is kept to that.
+double memory_of_machine_bytes();
+
 /// What `main` says of std::bad_alloc, which knows no size.
 std::string want_of_memory();
 

@@ -3,6 +3,7 @@
 
 #include <CLI/App.hpp>
 #include <CLI/Formatter.hpp>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -13,6 +14,7 @@
 #include "geo/core/error.hpp"
 #include "geo/io/run/run_session.hpp"
 #include "log.hpp"
+#include "memory.hpp"
 #include "progress.hpp"
 #include "signals.hpp"
 #include "thread_count.hpp"
@@ -57,6 +59,19 @@ void print_prediction(const geo::io::RunSession& session, const RunOptions& opti
   fmt::print("files   about {} in {}\n", shown_bytes(prediction.disk_bytes), options.folder);
 }
 
+/// A run that the machine cannot hold would end somewhere in its middle, or hold up everybody else.
+void refuse_beyond_memory(const geo::io::RunSession& session) {
+  const double wanted = session.prediction({}).memory_bytes, there = memory_of_machine_bytes();
+  if (wanted <= there) return;
+  const double cells = static_cast<double>(session.grid().size()) * there / wanted;
+  const int columns = 2 * static_cast<int>(std::sqrt(0.5 * cells) / 16.0) * 16;
+  throw geo::ConfigurationError(fmt::format(
+      "a run on {} x {} cells wants about {} of memory, and there are {}: must be fewer cells, "
+      "such as --grid {}x{}",
+      session.grid().nx(), session.grid().ny(), shown_bytes(wanted), shown_bytes(there), columns,
+      columns / 2));
+}
+
 void run(const RunOptions& options) {
   set_log_style({.json = options.log_json || options.json_progress, .quiet = options.quiet});
   const int threads = use_threads(options.threads);
@@ -72,7 +87,9 @@ void run(const RunOptions& options) {
                                .overwrite = options.overwrite,
                                .threads = threads});
   session.prepare();
-  if (options.dry_run) return print_prediction(session, options, threads);
+  if (options.dry_run) print_prediction(session, options, threads);
+  refuse_beyond_memory(session);
+  if (options.dry_run) return;
 
   Progress progress(options.json_progress               ? ProgressStyle::json
                     : options.quiet || options.log_json ? ProgressStyle::none

@@ -109,6 +109,22 @@ TEST(Memory, ForAGridThatNoMachineHoldsIsToldWithItsSize) {
   EXPECT_THAT(outcome.err, HasSubstr("MB more were wanted beyond the"));
 }
 
+TEST(Memory, BeyondTheMachinesIsRefusedBeforeTheRunBegins) {
+  const TemporaryFolder folder;
+  const auto run = [&](const std::string& grid) {
+    return terrane({"run", "--grid", grid, "--quiet", "--dry-run", "-o", folder / "out"});
+  };
+  const Outcome outcome = run("46000x23000");
+  if (outcome.code == 0) GTEST_SKIP() << "this machine holds 180 GB";
+  EXPECT_EQ(outcome.code, 2);
+  const auto lines = lines_of(outcome.err);
+  ASSERT_EQ(lines.size(), 1U) << outcome.err;
+  EXPECT_THAT(lines.front(), HasSubstr("a run on 46000 x 23000 cells wants about"));
+  const auto at = lines.front().find("--grid ");
+  ASSERT_NE(at, std::string::npos) << lines.front();
+  EXPECT_EQ(run(lines.front().substr(at + 7)).code, 0) << "what it says would do does";
+}
+
 TEST(Threads, OfTheEnvironmentAreNoMoreThanTheMachineHas) {
   const TemporaryFolder folder;
   const std::vector<std::string> run{"run",       "--preset", "preview", "--grid",      "32x16",

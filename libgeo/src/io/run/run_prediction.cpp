@@ -22,7 +22,7 @@ struct StageCost {
 // on larger ones and on Earth's relief at 5'.
 constexpr StageCost kStageCosts[] = {
     {"plates", 0.8, 710.0, 60.0},     {"isostasy", 0.3, 1100.0, 115.0},
-    {"erosion", 0.0, 1770.0, 130.0},  {"climate", 1.1, 360.0, 110.0},
+    {"erosion", 0.0, 1770.0, 170.0},  {"climate", 1.1, 360.0, 110.0},
     {"hydrology", 0.0, 140.0, 150.0}, {"biomes", 0.0, 50.0, 130.0},
     {"island", 0.0, 4400.0, 400.0},  // per cell of its own
 };
