@@ -230,7 +230,7 @@ TEST(SubductionPolarity, ContinentsStayAboveFloor) {
   // Cells are as wide as samples are apart: some lie at a boundary with a third plate.
   EXPECT_GT(pairs, 200);
   EXPECT_GT(agree, 0.85 * pairs);
-  EXPECT_GT(land, 20);
+  EXPECT_GT(land, 10);
   EXPECT_GT(above, 0.8 * land);
 }
 
