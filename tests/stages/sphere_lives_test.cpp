@@ -34,12 +34,13 @@ History history(const PlatesParameters& parameters,
   return out;
 }
 
-const TextTable& lives_of(const Context& told) {
+const TextTable& table_of(const Context& told, const std::string& name) {
   const auto found = std::find_if(told.tables.begin(), told.tables.end(),
-                                  [](const TextTable& table) { return table.name == "lives"; });
-  if (found == told.tables.end()) throw Bug("no table of lives");
+                                  [&](const TextTable& table) { return table.name == name; });
+  if (found == told.tables.end()) throw Bug("no table of " + name);
   return *found;
 }
+const TextTable& lives_of(const Context& told) { return table_of(told, "lives"); }
 
 std::map<int, double> shares(const State& state) {
   std::map<int, double> area;
@@ -108,7 +109,7 @@ TEST(PlateLives, EachPlateTellsWhoseItWasAndWhatBecameOfIt) {
   const History run = history(restless());
   const TextTable& lives = lives_of(run.told);
   ASSERT_EQ(lives.columns, (std::vector<std::string>{"plate_id", "origin", "parent_id", "born_myr",
-                                                     "ended_myr", "joined_id"}));
+                                                     "ended_myr", "joined_id", "end"}));
   const StepTable& steps = run.told.steps;
   const auto area_column = static_cast<std::size_t>(
       std::find(steps.columns.begin(), steps.columns.end(), "plate_0_km2") - steps.columns.begin());
@@ -131,6 +132,7 @@ TEST(PlateLives, EachPlateTellsWhoseItWasAndWhatBecameOfIt) {
     if (!row[5].empty()) {
       EXPECT_LT(std::stoul(row[5]), lives.rows.size());
     }
+    EXPECT_EQ(row[6], row[4].empty() ? "" : row[5].empty() ? "subducted" : "merged");
     // It has an area from its birth to its end and no other time.
     for (const auto& step : steps.rows) {
       const std::size_t at = area_column + id;
@@ -142,6 +144,94 @@ TEST(PlateLives, EachPlateTellsWhoseItWasAndWhatBecameOfIt) {
   }
   EXPECT_EQ(origins["first"], 12);
   EXPECT_GT(origins["rift"], 2);
+}
+
+TEST(PlateRotations, AreThoseWithWhichFramesMove) {
+  PlatesParameters parameters = restless();
+  parameters.no_net_rotation = false;  // else that is taken away after a frame is shown
+  const History run = history(parameters);
+  const TextTable& rotations = table_of(run.told, "rotations");
+  ASSERT_EQ(rotations.columns,
+            (std::vector<std::string>{"from_myr", "to_myr", "plate_id", "pole_latitude_deg",
+                                      "pole_longitude_deg", "rate_deg_myr"}));
+  constexpr double kRadians = 3.14159265358979323846 / 180.0;
+  for (std::size_t k = 0; k + 1 < run.frames.size(); ++k) {
+    const State& frame = run.frames[k].fields;
+    std::map<int, Vector3> rotation_mm_yr;
+    for (const auto& row : rotations.rows) {
+      if (std::stod(row[0]) != run.frames[k].checkpoint.time_myr) continue;
+      const double latitude = std::stod(row[3]) * kRadians,
+                   longitude = std::stod(row[4]) * kRadians;
+      const double rate = std::stod(row[5]) * kRadians * 1e-3 * frame.grid().figure().radius_m;
+      rotation_mm_yr[std::stoi(row[2])] = {rate * std::cos(latitude) * std::cos(longitude),
+                                           rate * std::cos(latitude) * std::sin(longitude),
+                                           rate * std::sin(latitude)};
+    }
+    const auto plate = frame.read(field::plate_id);
+    const auto east = frame.read(field::plate_velocity_east);
+    const auto north = frame.read(field::plate_velocity_north);
+    const Grid& grid = frame.grid();
+    for (Index c = 0; c < grid.size(); ++c) {
+      ASSERT_TRUE(rotation_mm_yr.contains(plate[c])) << plate[c] << ", frame " << k;
+      const Centre at = grid.position(grid.column(c), grid.row(c));
+      const double phi = at.latitude_deg * kRadians, lambda = at.longitude_deg * kRadians;
+      const Vector3 r{std::cos(phi) * std::cos(lambda), std::cos(phi) * std::sin(lambda),
+                      std::sin(phi)};
+      const Vector3 v = cross(rotation_mm_yr[plate[c]], r);
+      ASSERT_NEAR(east[c], -v[0] * std::sin(lambda) + v[1] * std::cos(lambda), 1e-3);
+      ASSERT_NEAR(north[c],
+                  dot(v, {-std::sin(phi) * std::cos(lambda), -std::sin(phi) * std::sin(lambda),
+                          std::cos(phi)}),
+                  1e-3);
+    }
+  }
+}
+
+TEST(PlateRotations, EndWithThePlateAndAreThereInEachStepOfItsLife) {
+  const History run = history(restless());
+  const TextTable& rotations = table_of(run.told, "rotations");
+  std::map<int, std::vector<double>> steps;
+  for (const auto& row : rotations.rows) {
+    EXPECT_NEAR(std::stod(row[1]) - std::stod(row[0]), 2.0, 1e-9);
+    steps[std::stoi(row[2])].push_back(std::stod(row[0]));
+  }
+  for (const auto& life : lives_of(run.told).rows) {
+    const double born = std::stod(life[3]), ended = life[4].empty() ? 100.0 : std::stod(life[4]);
+    EXPECT_EQ(static_cast<double>(steps[std::stoi(life[0])].size()), (ended - born) / 2.0)
+        << "plate " << life[0];
+  }
+}
+
+/// Of two sides of a convergent boundary one goes below the other: continents stay above floor.
+TEST(SubductionPolarity, ContinentsStayAboveFloor) {
+  const History run = history(restless());
+  int pairs = 0, agree = 0, land = 0, above = 0;
+  for (const Frame& frame : run.frames) {
+    const State& state = frame.fields;
+    const Grid& grid = state.grid();
+    const auto polarity = state.read(field::subduction_polarity);
+    const auto type = state.read(field::boundary_type);
+    const auto plate = state.read(field::plate_id);
+    const auto fraction = state.read(field::continental_fraction);
+    for (Index c = 0; c < grid.size(); ++c) {
+      EXPECT_EQ(polarity[c] != 0, type[c] == static_cast<std::int8_t>(BoundaryType::convergent));
+      const int i = grid.column(c), j = grid.row(c);
+      const Index other = grid.cell((i + 1) % grid.nx(), j);
+      if (plate[c] == plate[other] || polarity[c] == 0 || polarity[other] == 0) continue;
+      ++pairs;
+      agree += polarity[c] + polarity[other] == 3 ? 1 : 0;
+      const bool is_land = fraction[c] > 0.8F;
+      if (is_land == (fraction[other] > 0.8F)) continue;
+      if (std::min(fraction[c], fraction[other]) > 0.05F) continue;
+      ++land;
+      above += polarity[is_land ? c : other] == 1 ? 1 : 0;
+    }
+  }
+  // Cells are as wide as samples are apart: some lie at a boundary with a third plate.
+  EXPECT_GT(pairs, 200);
+  EXPECT_GT(agree, 0.85 * pairs);
+  EXPECT_GT(land, 10);
+  EXPECT_GT(above, 0.8 * land);
 }
 
 TEST(PlateLives, TheLargestPieceOfARiftKeepsThePlatesNumber) {

@@ -14,6 +14,8 @@ constexpr std::array kDirectionFlags{
 constexpr std::array kBoundaryFlags{Flag{0, "interior"}, Flag{1, "convergent"},
                                     Flag{2, "divergent"}, Flag{3, "transform"}};
 
+constexpr std::array kPolarityFlags{Flag{0, "none"}, Flag{1, "overriding"}, Flag{2, "subducting"}};
+
 constexpr std::array kOrogenyFlags{Flag{0, "none"}, Flag{1, "andean"}, Flag{2, "himalayan"}};
 
 constexpr std::array kRockFlags{Flag{0, "basalt"},    Flag{1, "schist"},    Flag{2, "granite"},
@@ -78,6 +80,13 @@ const Field<float> boundary_strength{
      .type = Type::float32,
      .least = 0.0,
      .most = 1.0}};
+const Field<std::int8_t> subduction_polarity{
+    {.name = "subduction_polarity",
+     .units = "",
+     .doc = "at convergent boundaries, whether the plate here goes above or below the other",
+     .type = Type::int8,
+     .flags = kPolarityFlags,
+     .cell_methods = "area: point"}};
 const Field<float> crust_age{
     {.name = "crust_age",
      .units = "Myr",
@@ -379,6 +388,7 @@ std::span<const FieldSpec* const> all() {
                                                             &plate_velocity_north,
                                                             &boundary_type,
                                                             &boundary_strength,
+                                                            &subduction_polarity,
                                                             &crust_age,
                                                             &orogeny_type,
                                                             &heat_anomaly,

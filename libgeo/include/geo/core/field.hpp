@@ -58,7 +58,9 @@ namespace field {
 extern const Field<std::int16_t> plate_id;
 extern const Field<float> continental_fraction, plate_velocity_east, plate_velocity_north;
 extern const Field<std::int8_t> boundary_type;
-extern const Field<float> boundary_strength, crust_age;
+extern const Field<float> boundary_strength;
+extern const Field<std::int8_t> subduction_polarity;
+extern const Field<float> crust_age;
 extern const Field<std::int8_t> orogeny_type;
 extern const Field<float> heat_anomaly, crust_elevation, orogeny_age;
 extern const Field<float> fold_direction_east, fold_direction_north;

@@ -319,12 +319,13 @@ class PlatesStage final : public Stage {
 
  private:
   /// Models with a history also write the crust that it made.
-  static StageInfo with_crust(bool feels_events) {
+  static StageInfo with_crust(bool drifts) {
     StageInfo info =
         described({&field::crust_elevation, &field::crust_thickness, &field::orogeny_age,
                    &field::fold_direction_east, &field::fold_direction_north,
                    &field::ridge_direction_east, &field::ridge_direction_north});
-    info.feels_events = feels_events;
+    info.feels_events = drifts;
+    if (drifts) info.writes.push_back(&field::subduction_polarity);
     return info;
   }
   static StageInfo described(std::initializer_list<const FieldSpec*> crust) {

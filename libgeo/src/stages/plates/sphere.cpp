@@ -1,7 +1,5 @@
 #include "sphere.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,6 +8,7 @@
 #include "geo/core/error.hpp"
 #include "geo/kernels/plates/sphere/sphere_start.hpp"
 #include "sphere_checkpoint.hpp"
+#include "sphere_history.hpp"
 #include "sphere_initial_conditions.hpp"
 #include "sphere_on_grid.hpp"
 #include "sphere_timeline.hpp"
@@ -225,38 +224,6 @@ void tell(const SphereTectonics& model, const Grid& grid, Context& context) {
   }
 }
 
-std::string_view word_for(PlateLife::Origin origin) {
-  switch (origin) {
-    case PlateLife::Origin::first:
-      return "first";
-    case PlateLife::Origin::rift:
-      return "rift";
-    case PlateLife::Origin::subduction_initiation:
-      return "subduction-initiation";
-    case PlateLife::Origin::piece:
-      return "piece";
-    case PlateLife::Origin::terrane:
-      return "terrane";
-  }
-  return "";
-}
-
-/// All plates there have been: whose they were and what has become of them.
-TextTable lives_of(const SphereState& state) {
-  TextTable table{
-      "lives", {"plate_id", "origin", "parent_id", "born_myr", "ended_myr", "joined_id"}, {}};
-  const auto number = [](std::int16_t id) { return id < 0 ? std::string() : fmt::to_string(id); };
-  for (std::size_t id = 0; id < state.lives.size(); ++id) {
-    const PlateLife& life = state.lives[id];
-    const bool lives = life.ended_myr == PlateLife::kLives;
-    table.rows.push_back({fmt::to_string(id), std::string(word_for(life.origin)),
-                          number(life.parent), fmt::to_string(life.born_myr),
-                          lives ? std::string() : fmt::to_string(life.ended_myr),
-                          number(life.joined)});
-  }
-  return table;
-}
-
 /// Reads all crust anew to be seen. Plates that have come apart show one number still: their pieces
 /// are plates once the drift itself reads the crust anew.
 void finish_to_be_seen(SphereTectonics& model) {
@@ -300,6 +267,7 @@ void drift(const PlatesParameters& parameters, const StageInfo& info, StageIo& i
     if (settings.hold_motions) model.hold_motions();
   }
   MassBalance balance;
+  SphereHistory history(io.grid());
   context.steps.columns = MassBalance::columns();
   const auto steps = std::lround(parameters.time_myr / settings.law.step_myr);
   const bool shows = context.on_frame && parameters.frames_myr > 0.0;
@@ -315,6 +283,7 @@ void drift(const PlatesParameters& parameters, const StageInfo& info, StageIo& i
     context.advance(0.9 * static_cast<double>(k) / static_cast<double>(steps));
     model.begin_step();
     strike_plates(io.grid(), from_myr, from_myr + settings.law.step_myr, model, context);
+    history.enter(model);
     model.advance();
     balance.enter(model.budget());
     context.steps.rows.push_back(MassBalance::row(model));
@@ -326,7 +295,8 @@ void drift(const PlatesParameters& parameters, const StageInfo& info, StageIo& i
   finish_to_be_seen(model);
   balance.enter(model.budget());
   name_plates(context.steps);
-  context.tables.push_back(lives_of(model.state()));
+  context.tables.push_back(SphereHistory::lives(model.state()));
+  context.tables.push_back(history.rotations(model.state()));
   warn_of_later_events(model.state().time_myr, context);
   balance.close(context.budget);
   tell(model, io.grid(), context);

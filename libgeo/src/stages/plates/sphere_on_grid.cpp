@@ -23,7 +23,7 @@ double continental_share(const SphereCrust& crust, std::int32_t sample, double w
 }  // namespace
 
 struct SphereOnGrid::Outputs {
-  explicit Outputs(StageIo& io)
+  Outputs(StageIo& io, bool knows_polarity)
       : plate(io.write(field::plate_id)),
         fraction(io.write(field::continental_fraction)),
         east(io.write(field::plate_velocity_east)),
@@ -33,6 +33,7 @@ struct SphereOnGrid::Outputs {
         age(io.write(field::crust_age)),
         orogeny(io.write(field::orogeny_type)),
         heat(io.write(field::heat_anomaly)),
+        polarity(knows_polarity ? io.write(field::subduction_polarity) : std::span<std::int8_t>()),
         elevation(io.write(field::crust_elevation)),
         thickness(io.write(field::crust_thickness)),
         orogeny_age(io.write(field::orogeny_age)),
@@ -46,7 +47,9 @@ struct SphereOnGrid::Outputs {
   std::span<std::int8_t> type;
   std::span<float> strength, age;
   std::span<std::int8_t> orogeny;
-  std::span<float> heat, elevation, thickness, orogeny_age;
+  std::span<float> heat;
+  std::span<std::int8_t> polarity;  // empty where the model does not know which plate goes below
+  std::span<float> elevation, thickness, orogeny_age;
   std::span<float> fold_east, fold_north, ridge_east, ridge_north;
 };
 
@@ -107,6 +110,8 @@ SphereOnGrid::SphereOnGrid(const PlatesParameters& parameters, const SphereTecto
   nearest_boundary_ = nearest_samples(
       mesh_, samples, 3.0 * mesh_.samples().spacing() + p_.boundary_width_km / radius_km_);
 
+  if (p_.model == "sphere") find_polarity();
+
   std::vector<std::uint8_t> edge(mesh_.size(), 0);
 #pragma omp parallel for schedule(static)
   for (std::int32_t i = 0; i < mesh_.size(); ++i) {
@@ -127,8 +132,22 @@ SphereOnGrid::SphereOnGrid(const PlatesParameters& parameters, const SphereTecto
   }
 }
 
+/// Which of the two plates at each boundary sample stays up, as the drift itself would decide.
+void SphereOnGrid::find_polarity() {
+  const auto& plate = model_.state().crust.plate;
+  overrides_.assign(boundaries_.size(), 0);
+  for (std::size_t k = 0; k < boundaries_.size(); ++k) {
+    const SphereBoundary& point = boundaries_[k];
+    for (const std::int32_t j : mesh_.neighbours(point.sample)) {
+      if (plate[j] != point.other) continue;
+      overrides_[k] = model_.is_on_top(point.sample, j) ? 1 : 0;
+      break;
+    }
+  }
+}
+
 void SphereOnGrid::draw(StageIo& io) const {
-  const Outputs out(io);
+  const Outputs out(io, p_.model == "sphere");
   ParallelErrors errors;
 #pragma omp parallel
   {
@@ -200,6 +219,7 @@ void SphereOnGrid::draw_boundary(const Cell& at, Index cell, const Vector3& bent
                                  const Outputs& out) const {
   out.type[cell] = static_cast<std::int8_t>(BoundaryType::interior);
   out.strength[cell] = 0.0F;
+  if (!out.polarity.empty()) out.polarity[cell] = 0;
   const double half_width_km =
       std::max(0.5 * p_.boundary_width_km, 0.6e-3 * grid_.spacing_north_m(0));
   const double half = 0.5 * mesh_.samples().spacing();
@@ -214,6 +234,12 @@ void SphereOnGrid::draw_boundary(const Cell& at, Index cell, const Vector3& bent
     least_km = far_km;
     out.type[cell] = static_cast<std::int8_t>(point.type);
     out.strength[cell] = static_cast<float>(point.strength);
+    if (out.polarity.empty()) continue;
+    constexpr std::int8_t kNone = 0, kOverriding = 1, kSubducting = 2;
+    const bool is_above = (overrides_[nearest_boundary_[corner]] != 0) == (point.plate == own);
+    out.polarity[cell] = point.type != BoundaryType::convergent ? kNone
+                         : is_above                             ? kOverriding
+                                                                : kSubducting;
   }
 }
 

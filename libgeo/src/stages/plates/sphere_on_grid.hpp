@@ -28,6 +28,7 @@ class SphereOnGrid {
     SphereMesh::Place place;
     std::int32_t nearest;
   };
+  void find_polarity();
   void draw_crust(const Cell& at, Index cell, const Vector3& unit, const Outputs& out) const;
   [[nodiscard]] double age(const Cell& at, std::int16_t plate, bool land) const;
   void draw_boundary(const Cell& at, Index cell, const Vector3& bent, const Outputs& out) const;
@@ -41,6 +42,7 @@ class SphereOnGrid {
   std::uint64_t seed_;
   std::vector<SphereBoundary> boundaries_;
   std::vector<std::int32_t> nearest_boundary_;  // of each sample, -1 far from any
+  std::vector<std::uint8_t> overrides_;         // of each boundary: its plate stays up
   std::vector<std::uint8_t> is_edge_;           // samples beside another plate or crust type
 };
 

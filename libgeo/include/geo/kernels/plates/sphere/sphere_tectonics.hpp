@@ -151,6 +151,8 @@ class SphereTectonics {
   /// middle of the line, the right one first. They part as ever.
   void rift_along(int plate, const GreatCircleLine& line, int fragments, double speed_mm_yr);
 
+  /// Whether a sample stays above one of another plate where the two meet.
+  [[nodiscard]] bool is_on_top(std::int32_t sample, std::int32_t other) const;
   /// The plate that is on top at a place, or -1 in a gap.
   [[nodiscard]] int plate_at(const Vector3& place) const;
   /// From now on a plate turns about an axis (unit vector), rad/Myr. With settings.hold_motions it
@@ -269,7 +271,6 @@ class SphereTectonics {
                        SphereCrust& now, std::span<const std::int16_t> owner);
   void tidy_pieces();
   void measure_volume();
-  [[nodiscard]] bool is_on_top(std::int32_t sample, std::int32_t other) const;
   [[nodiscard]] bool is_due() const;
   [[nodiscard]] double distance_km(std::int32_t a, std::int32_t b) const;
   [[nodiscard]] double sample_km2() const;
