@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 
-#include "growth.hpp"
 #include "hypsography.hpp"
-#include "raster.hpp"
-#include "sphere.hpp"
+#include "stages/plates/growth/growth.hpp"
+#include "stages/plates/raster/raster.hpp"
+#include "stages/plates/sphere/sphere.hpp"
 
 namespace geo {
 

@@ -12,7 +12,7 @@
 #include "geo/core/random.hpp"
 #include "geo/kernels/plates/region_outline.hpp"
 #include "geo/kernels/plates/sphere/sphere_boundaries.hpp"
-#include "hypsography.hpp"
+#include "stages/plates/hypsography.hpp"
 
 namespace geo {
 namespace {
@@ -132,9 +132,7 @@ void take_relief(const SphereMesh& mesh, const Context& context, SphereStart& st
 
 }  // namespace
 
-Centre position_of(const Grid& grid, const Vector3& place) {
-  return place_of(grid.to_axis(place));
-}
+Centre position_of(const Grid& grid, const Vector3& place) { return place_of(grid.to_axis(place)); }
 
 Vector3 place_on(const Grid& grid, const Centre& place) {
   const Vector3 on_axis = unit_vector_of(place);

@@ -8,7 +8,7 @@
 #include "geo/core/field.hpp"
 #include "geo/kernels/plates/sphere/sphere_tectonics.hpp"
 #include "raster.hpp"
-#include "sphere_on_grid.hpp"
+#include "stages/plates/sphere/sphere_on_grid.hpp"
 
 namespace geo {
 namespace {
