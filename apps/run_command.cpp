@@ -59,17 +59,30 @@ void print_prediction(const geo::io::RunSession& session, const RunOptions& opti
   fmt::print("files   about {} in {}\n", shown_bytes(prediction.disk_bytes), options.folder);
 }
 
+/// Columns of the largest planet, twice as wide as high, on which the run fits into so much memory;
+/// 0 where it fits on none, because of an island's own cells.
+int columns_within(const geo::io::RunSession& session, double bytes) {
+  constexpr int kStep = 32;
+  const auto wants_bytes = [&](int columns) {
+    return session.prediction_on(0.5 * columns * columns, {}).memory_bytes;
+  };
+  const double most = std::sqrt(2.0 * static_cast<double>(session.grid().size()));
+  int columns = static_cast<int>(most / kStep) * kStep;
+  while (columns > 0 && wants_bytes(columns) > bytes) columns -= kStep;
+  return columns;
+}
+
 /// A run that the machine cannot hold would end somewhere in its middle, or hold up everybody else.
 void refuse_beyond_memory(const geo::io::RunSession& session) {
   const double wanted = session.prediction({}).memory_bytes, there = memory_of_machine_bytes();
   if (wanted <= there) return;
-  const double cells = static_cast<double>(session.grid().size()) * there / wanted;
-  const int columns = 2 * static_cast<int>(std::sqrt(0.5 * cells) / 16.0) * 16;
+  const int columns = columns_within(session, there);
+  const std::string fewer =
+      columns > 0 ? fmt::format("fewer cells, such as --grid {}x{}", columns, columns / 2)
+                  : "an island of fewer cells, island.nx times island.ny";
   throw geo::ConfigurationError(fmt::format(
-      "a run on {} x {} cells wants about {} of memory, and there are {}: must be fewer cells, "
-      "such as --grid {}x{}",
-      session.grid().nx(), session.grid().ny(), shown_bytes(wanted), shown_bytes(there), columns,
-      columns / 2));
+      "a run on {} x {} cells wants about {} of memory, and there are {}: must be {}",
+      session.grid().nx(), session.grid().ny(), shown_bytes(wanted), shown_bytes(there), fewer));
 }
 
 void run(const RunOptions& options) {

@@ -54,7 +54,7 @@ void RunSession::prepare() {
   plan_ = plan_run(run_, request_.from, request_.to);
   look_at_folder();
   inputs_ = read_inputs(run_, plan_, load_complete_stages(), [this](const Grid& grid) {
-    folder_.check_writable(prediction_on(grid, {}).disk_bytes);
+    folder_.check_writable(prediction_on(static_cast<double>(grid.size()), {}).disk_bytes);
   });
   run_.pipeline.check(inputs_.state->present(), plan_.first, plan_.last);
   config_ = resolved_config();
@@ -189,9 +189,8 @@ std::optional<State> RunSession::load_complete_stages() const {
   return state;
 }
 
-Prediction RunSession::prediction_on(const Grid& grid, const MachineSpeed& speed) const {
+Prediction RunSession::prediction_on(double cells, const MachineSpeed& speed) const {
   const RunSettings& settings = run_.settings;
-  const auto cells = static_cast<double>(grid.size());
   const double map_width_px = settings.maps ? static_cast<double>(settings.map_width_px) : 0.0;
   const auto predicted = [&](bool vtk) {
     return predict(run_.pipeline, plan_.first, plan_.last, cells, speed, vtk, map_width_px);

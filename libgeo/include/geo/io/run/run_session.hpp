@@ -54,8 +54,10 @@ class RunSession {
   void prepare();
   /// What the prepared run will take on a machine of some speed.
   [[nodiscard]] Prediction prediction(const MachineSpeed& speed) const {
-    return prediction_on(grid(), speed);
+    return prediction_on(static_cast<double>(grid().size()), speed);
   }
+  /// What it would take on another grid, of so many cells.
+  [[nodiscard]] Prediction prediction_on(double cells, const MachineSpeed& speed) const;
   /// Names of the stages that are still to be computed.
   [[nodiscard]] std::vector<std::string_view> stages_to_run() const;
   [[nodiscard]] const Grid& grid() const { return inputs_.state->grid(); }
@@ -72,7 +74,6 @@ class RunSession {
   [[nodiscard]] std::optional<State> load_complete_stages() const;
   [[nodiscard]] int count_complete_stages() const;
   [[nodiscard]] bool is_complete(int position) const;
-  [[nodiscard]] Prediction prediction_on(const Grid& grid, const MachineSpeed& speed) const;
   [[nodiscard]] std::string resolved_config() const;
   [[nodiscard]] std::filesystem::path file_of(int position, std::string_view extension) const;
 
