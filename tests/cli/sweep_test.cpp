@@ -20,9 +20,9 @@ using testing::HasSubstr;
 
 std::vector<std::string> sweep_of(const TemporaryFolder& folder,
                                   const std::vector<std::string>& more) {
-  std::vector<std::string> words{"sweep", "--preset", "preview", "--grid",
-                                 "32x16", "--to",     "erosion", "-o",
-                                 (folder / "sweep").string()};
+  std::vector<std::string> words{"sweep",   "--preset", "preview",
+                                 "--grid",  "32x16",    "--to",
+                                 "erosion", "-o",       (folder / "sweep").string()};
   words.insert(words.end(), more.begin(), more.end());
   return words;
 }
@@ -62,8 +62,8 @@ TEST(Sweep, OfATableGivesEachRowItsValues) {
   const TemporaryFolder folder;
   write(folder / "table.csv",
         "run,planet.ocean_fraction,plates.count\nwet,0.9,12\n\"dry\",0.3,7\n");
-  const Outcome outcome = terrane(
-      sweep_of(folder, {(folder / "table.csv").string(), "--seeds", "1", "--scores-only"}));
+  const Outcome outcome =
+      terrane(sweep_of(folder, {(folder / "table.csv").string(), "--seeds", "1", "--scores-only"}));
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const auto table = table_of(folder);
   ASSERT_EQ(table.rows(), 2U);

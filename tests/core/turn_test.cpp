@@ -15,9 +15,7 @@ Vector3 laid_out(const Centre& place, const std::array<double, 3>& turn) {
   return Grid::sphere(8, 4, {}, turn).to_axis(unit_vector_of(place));
 }
 
-void expect_near(const Vector3& a, const Vector3& b) {
-  EXPECT_LT(length(add(a, b, -1.0)), 1e-12);
-}
+void expect_near(const Vector3& a, const Vector3& b) { EXPECT_LT(length(add(a, b, -1.0)), 1e-12); }
 
 TEST(Turn, BringsAPlaceToTheNorthPole) {
   for (const Centre pole : {Centre{35.0, -120.0}, Centre{-60.0, 170.0}, Centre{0.0, 0.0},
