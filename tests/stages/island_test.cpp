@@ -5,6 +5,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -204,6 +205,68 @@ TEST(Island, CoastsWindAboutThePlanetsAndTakeAsMuchAsTheyGive) {
   EXPECT_GT(displaced_m, 0.2 * fray * spacing_m);
   EXPECT_LT(displaced_m, 1.5 * fray * spacing_m);
   EXPECT_LT(std::abs(gained_m2 - lost_m2), 0.3 * (gained_m2 + lost_m2));
+}
+
+/// Corners of the planet's cells where the cubic swings furthest above four cells of sea, and
+/// furthest below four of land.
+std::array<Centre, 2> greatest_swings() {
+  const Grid& grid = planet().grid();
+  const auto z = planet().read(field::elevation);
+  std::array<Centre, 2> places{};
+  double highest_m = 0.0, lowest_m = 0.0;
+  for (int j = grid.ny() / 6; j < grid.ny() * 5 / 6; ++j) {
+    for (int i = 0; i < grid.nx(); ++i) {
+      const Centre corner{0.5 * (grid.latitude_deg(j) + grid.latitude_deg(j + 1)),
+                          grid.longitude_deg(i) + 180.0 / grid.nx()};
+      const CatmullRom cubic(grid, corner);
+      const auto [least_m, most_m] = cubic.range(z);
+      const double height_m = cubic.of(z);
+      if (most_m < 0.0F && height_m > highest_m) {
+        highest_m = height_m;
+        places[0] = corner;
+      }
+      if (least_m > 0.0F && height_m < lowest_m) {
+        lowest_m = height_m;
+        places[1] = corner;
+      }
+    }
+  }
+  EXPECT_GT(highest_m, 0.0);
+  EXPECT_LT(lowest_m, 0.0);
+  return places;
+}
+
+// Cubics swing beyond what they pass through: basins had ponds behind their shore, and mountains at
+// a coast a row of islets before it.
+TEST(Island, HasNoLandBetweenThePlanetsCellsOfSeaAndNoSeaBetweenThoseOfLand) {
+  const auto planets_m = planet().read(field::elevation);
+  for (const Centre& place : greatest_swings()) {
+    SCOPED_TRACE(text(place));
+    IslandParameters p = around(place);
+    p.detail = "height";
+    p.height_amplitude = 0.0;
+    p.erosion_steps = 0;
+    const State island = make(p).island;
+    const Grid& fine = island.grid();
+    const auto z = island.read(field::elevation);
+    int sea = 0, land = 0, swings = 0;
+    for (Index c = 0; c < fine.size(); ++c) {
+      const CatmullRom cubic(planet().grid(), fine.position(fine.column(c), fine.row(c)));
+      const auto [least_m, most_m] = cubic.range(planets_m);
+      const double swung_m = cubic.of(planets_m);
+      if (most_m < 0.0F) {
+        ASSERT_LT(z[c], 0.0F) << "cell " << c;
+        ++sea;
+        if (swung_m >= 0.0) ++swings;
+      } else if (least_m > 0.0F) {
+        ASSERT_GE(z[c], 0.0F) << "cell " << c;
+        ++land;
+        if (swung_m < 0.0) ++swings;
+      }
+    }
+    EXPECT_GT(sea + land, 100);
+    EXPECT_GT(swings, 10) << "the cubic by itself had held";
+  }
 }
 
 /// All land drains to the sea, off the edge or into a lake.

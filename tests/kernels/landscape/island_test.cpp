@@ -58,6 +58,26 @@ TEST(CatmullRom, GoesOnOverTheDateLineAndThePole) {
   }
 }
 
+TEST(CatmullRom, RangeIsThatOfTheFourCellsRoundThePlaceOverTheDateLineAndThePole) {
+  const Grid planet = Grid::sphere(36, 18);  // cells of 10 degrees, centres at odd multiples of 5
+  std::vector<float> values(planet.size());
+  for (Index cell = 0; cell < planet.size(); ++cell) values[cell] = static_cast<float>(cell);
+  const auto range = [&](double lat, double lon) {
+    return CatmullRom(planet, {lat, lon}).range(values);
+  };
+  const auto value = [&](int i, int j) { return values[planet.cell(i, j)]; };
+  EXPECT_EQ(range(1.0, 1.0), (std::pair{value(17, 8), value(18, 9)}));
+  EXPECT_EQ(range(-9.0, 8.0), (std::pair{value(18, 7), value(19, 8)}));
+  EXPECT_EQ(range(1.0, 179.0), (std::pair{value(0, 8), value(35, 9)}));
+  // Beyond the pole the columns are those half-way round.
+  EXPECT_EQ(range(89.0, 1.0), (std::pair{value(0, 17), value(35, 17)}));
+  EXPECT_EQ(range(-89.0, -99.0), (std::pair{value(7, 0), value(26, 0)}));
+  values[planet.cell(17, 8)] = NAN;
+  EXPECT_TRUE(std::isnan(range(1.0, 1.0).first));
+  EXPECT_TRUE(std::isnan(range(1.0, 1.0).second));
+  EXPECT_FALSE(std::isnan(range(11.0, 1.0).first));  // of the cubic's 16, but not of the four
+}
+
 TEST(EqualArea, ProjectsThereAndBackAndKeepsAreas) {
   for (const double flattening : {0.0, 1.0 / 298.257}) {
     const Ellipsoid figure{6371e3, flattening};

@@ -13,18 +13,9 @@ namespace {
 
 double sampled(const Grid& source, std::span<const float> values, const Centre& place) {
   const CatmullRom cubic(source, place);
-  float least = INFINITY, most = -INFINITY;
-  for (const int j : {1, 2}) {
-    for (const int i : {1, 2}) {
-      const int shift = cubic.crossed[j] ? cubic.half_round : 0;
-      const float value =
-          values[source.cell((cubic.column[i] + shift) % source.nx(), cubic.row[j])];
-      if (std::isnan(value)) return NAN;
-      least = std::min(least, value);
-      most = std::max(most, value);
-    }
-  }
-  const double value = cubic.of(values);
+  const auto [least, most] = cubic.range(values);
+  if (std::isnan(least)) return NAN;
+  const double value = cubic.of(values);  // NaN where a cell farther out has no value
   return std::isnan(value) ? 0.5 * (least + most) : std::clamp<double>(value, least, most);
 }
 

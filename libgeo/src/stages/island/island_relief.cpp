@@ -59,6 +59,22 @@ int octaves_down_to(double cell_m, double wavelength_m) {
                     16);
 }
 
+/// The planet's relief at a place from Catmull-Rom, whose swings make no land between cells of sea,
+/// and no sea between cells of land: where all four cells round the place are on one side of the
+/// level of the sea, the cubic is bent where it has come half-way to that level from the nearest of
+/// them, so that it never gets there. With h the height half-way, h^2 / (2 h - z) joins z smoothly.
+double planet_height_m(const Grid& planet, std::span<const float> elevation_m, Centre place) {
+  const CatmullRom cubic(planet, place);
+  const double height_m = cubic.of(elevation_m);
+  const auto [least_m, most_m] = cubic.range(elevation_m);
+  const auto bent_m = [&](double half_way_m) {
+    return half_way_m * half_way_m / (2.0 * half_way_m - height_m);
+  };
+  if (most_m < 0.0F && height_m > 0.5 * most_m) return bent_m(0.5 * most_m);
+  if (least_m > 0.0F && height_m < 0.5 * least_m) return bent_m(0.5 * least_m);
+  return height_m;
+}
+
 /// The planet's relief from Catmull-Rom. Next to a shore, which would follow the sides of the
 /// planet's cells, it is read from a place nearby: bays and headlands shorter than two cells,
 /// with as much land in each.
@@ -92,7 +108,7 @@ void read_planet(const PlanetCells& cells, std::span<const float> planet_elevati
     const double right = reach * (east[c] - cells.interpolate(mean_east, i, j));
     const Centre there{std::clamp(here.latitude_deg + up, -90.0, 90.0),
                        here.longitude_deg + right / std::max(across, 1e-3)};
-    z[c] = static_cast<float>(CatmullRom(cells.planet(), there).of(planet_elevation_m));
+    z[c] = static_cast<float>(planet_height_m(cells.planet(), planet_elevation_m, there));
   });
 }
 
@@ -314,8 +330,8 @@ void raise_island(const PlanetCells& cells, const PlanetRelief& planet, const Is
                   const ExemplarLibrary* exemplars, std::uint64_t seed, std::span<float> planet_m,
                   std::span<float> elevation_m) {
   on_cells(cells.fine(), [&](int i, int j, Index c) {
-    const CatmullRom stencil(cells.planet(), cells.fine().position(i, j));
-    planet_m[c] = static_cast<float>(stencil.of(planet.elevation_m));
+    planet_m[c] = static_cast<float>(
+        planet_height_m(cells.planet(), planet.elevation_m, cells.fine().position(i, j)));
   });
   if (p.detail == "height") {
     std::copy(planet_m.begin(), planet_m.end(), elevation_m.begin());

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
+#include <utility>
 
 #include "geo/core/grid.hpp"
 
@@ -34,6 +37,21 @@ struct CatmullRom {
   [[nodiscard]] double of(std::span<const T> values, double beyond_pole = 1.0) const {
     return of([&](int i, int j) { return static_cast<double>(values[j * columns + i]); },
               beyond_pole);
+  }
+  /// Least and greatest of the four cells round the place; NaN where one of them is.
+  [[nodiscard]] std::pair<float, float> range(std::span<const float> values) const {
+    float least = INFINITY, most = -INFINITY;
+    for (const int j : {1, 2}) {
+      const int shift = crossed[j] ? half_round : 0;
+      for (const int i : {1, 2}) {
+        const int k = column[i] + shift;
+        const float value = values[row[j] * columns + (k < columns ? k : k - columns)];
+        if (std::isnan(value)) return {value, value};
+        least = std::min(least, value);
+        most = std::max(most, value);
+      }
+    }
+    return {least, most};
   }
   /// Cell that the place lies in.
   [[nodiscard]] Index nearest() const noexcept { return nearest_; }
