@@ -377,5 +377,40 @@ TEST(RiverCourses, LeaveNoDamAndRaiseNothing) {
   }
 }
 
+// Even sides are planes, on which brooks run side by side.
+TEST(RiverCourses, SidesOfCutsAreAsUnevenAsTheGroundAndNowhereSteeperThanWithoutIt) {
+  DiagonalRiver river;
+  std::vector<double> area(river.fine.size());
+  std::vector<float> inflow(river.fine.size());
+  const auto crossings = find_inflow(river.cells, river.water(), river.z, area, inflow);
+  const RiverCourses courses =
+      trace_river_courses(river.cells, river.water(), crossings, 1, river.z);
+  ASSERT_EQ(courses.side_slope.size(), river.z.size());
+  const auto [gentlest, steepest] =
+      std::minmax_element(courses.side_slope.begin(), courses.side_slope.end());
+  EXPECT_LE(*steepest, 0.15F);
+  EXPECT_LT(*gentlest, 0.5F * *steepest);
+  EXPECT_GT(*gentlest, 0.0F);
+
+  const auto opened = [&](std::vector<float> side_slope) {
+    RiverCourses with = courses;
+    with.side_slope = std::move(side_slope);
+    std::vector<float> z = river.z;
+    open_river_courses(river.fine, find_outlets(river.fine, z), with, z);
+    return z;
+  };
+  const auto even = opened({}), uneven = opened(courses.side_slope);
+  EXPECT_EQ(opened(std::vector<float>(river.z.size(), 0.15F)), even);
+  int sides = 0, gentler = 0;
+  for (Index c = 0; c < river.fine.size(); ++c) {
+    ASSERT_LE(uneven[c], even[c] + 1e-3F) << "cell " << c;
+    if (std::find(courses.cell.begin(), courses.cell.end(), c) != courses.cell.end()) continue;
+    sides += uneven[c] < river.z[c] ? 1 : 0;
+    gentler += uneven[c] < even[c] - 1.0F ? 1 : 0;
+  }
+  EXPECT_GT(sides, 20);
+  EXPECT_GT(gentler, sides / 2);
+}
+
 }  // namespace
 }  // namespace geo

@@ -162,7 +162,8 @@ std::vector<Index> lower_courses(const Grid& fine, std::span<const std::uint8_t>
 }
 
 /// Lays back the sides of cuts.
-void lay_back_sides(const Grid& fine, std::span<const Index> cells, std::span<float> z) {
+void lay_back_sides(const Grid& fine, std::span<const Index> cells,
+                    std::span<const float> side_slope, std::span<float> z) {
   constexpr double kSlope = 0.15;
   Front cut;
   for (const Index c : cells) cut.push({z[c], c});
@@ -173,7 +174,8 @@ void lay_back_sides(const Grid& fine, std::span<const Index> cells, std::span<fl
     for (int k = 0; k < kDirections; ++k) {
       const Index next = fine.neighbour(c, k);
       if (next == kNoCell || fine.is_open_edge(fine.column(next), fine.row(next))) continue;
-      const auto most_m = static_cast<float>(height_m + kSlope * fine.distances_m(fine.row(c))[k]);
+      const double slope = side_slope.empty() ? kSlope : side_slope[next];
+      const auto most_m = static_cast<float>(height_m + slope * fine.distances_m(fine.row(c))[k]);
       if (z[next] <= most_m) continue;
       z[next] = most_m;
       cut.push({most_m, next});
@@ -185,7 +187,8 @@ void lay_back_sides(const Grid& fine, std::span<const Index> cells, std::span<fl
 
 void open_river_courses(const Grid& fine, std::span<const std::uint8_t> outlets,
                         RiverCourses& courses, std::span<float> elevation_m) {
-  lay_back_sides(fine, lower_courses(fine, outlets, courses, elevation_m), elevation_m);
+  lay_back_sides(fine, lower_courses(fine, outlets, courses, elevation_m), courses.side_slope,
+                 elevation_m);
   // The sides of a deep cut may open a higher course beside it.
   lower_courses(fine, outlets, courses, elevation_m);
 }

@@ -315,6 +315,10 @@ RiverCourses trace_river_courses(const PlanetCells& cells, const PlanetWater& wa
     on_lake.resize(network.size(), beds.on_lake(from) && beds.on_lake(to) ? 1 : 0);
   }
   RiverCourses courses = network.take();
+  constexpr float kSteepest = 0.15F, kUneven = 0.8F;
+  courses.side_slope.resize(noise.size());
+  std::transform(noise.begin(), noise.end(), courses.side_slope.begin(),
+                 [](float n) { return kSteepest * std::exp(kUneven * std::min(0.0F, n)); });
   constexpr float kShare = 0.25F, kAnywhere_m = 30.0F;
   for (std::size_t k = 0; k < courses.cell.size(); ++k) {
     const float level_m = courses.level_m[k];

@@ -15,6 +15,8 @@ struct RiverCourses {
   std::vector<std::int32_t> next;  ///< place of the next cell downstream; kCourseEnds at the end
   std::vector<float> level_m;      ///< highest level of the water there
   std::vector<float> least_m;      ///< how far that may sink for the sake of hollows upstream
+  /// How steep the sides of cuts are, one for each fine cell; empty: 0.15 everywhere.
+  std::vector<float> side_slope;
 };
 inline constexpr std::int32_t kCourseEnds = -1;
 
@@ -43,10 +45,11 @@ RiverCourses trace_river_courses(const PlanetCells& cells, const PlanetWater& wa
 /// there would run out of the grid (`outlets`), into the sea, or into another course. It also sinks
 /// to the ground of the course upstream, though not below `least_m`, so that hollows of the detail
 /// become valleys instead of lakes. What rises
-/// above that level on the course is cut, with sides of a slope of at most 0.15; what lies below it
-/// stays. Nothing rises, nothing is cut below the level of the sea, and of the edge only cells on a
-/// course sink. `level_m` of the courses becomes the level found. Cost: n log n in the cells of
-/// courses and pools. Runs on one thread.
+/// above that level on the course is cut, with sides of a slope of at most 0.15, uneven as all
+/// ground is: on even ones brooks would run side by side. What lies below it stays. Nothing rises,
+/// nothing is cut below the level of the sea, and of the edge only cells on a course sink.
+/// `level_m` of the courses becomes the level found. Cost: n log n in the cells of courses and
+/// pools. Runs on one thread.
 void open_river_courses(const Grid& fine, std::span<const std::uint8_t> outlets,
                         RiverCourses& courses, std::span<float> elevation_m);
 
