@@ -86,6 +86,29 @@ struct StageJob {
 
 }  // namespace
 
+/// An island that was made by command and has the name of the run's own becomes a further one. Its
+/// files have both names until the manifest knows the new one.
+void RunSession::name_islands_anew() {
+  const std::string_view own = run_.name_of(plan_.first);
+  for (StageRecord& record : manifest_.stages) {
+    if (!record.on_command || record.name != own) continue;
+    record.name = manifest_.free_island_name(2);
+    const auto digests = std::exchange(record.file_digests, {});
+    for (std::string& file : record.files) {
+      const std::string before = file;
+      const auto extension = std::filesystem::path(before).extension().string();
+      const auto path = folder_.stage_file(numbers_[plan_.first], record.name, extension);
+      file = path.filename().string();
+      if (std::filesystem::exists(folder_.path() / before)) {
+        copy_whole_file(folder_.path() / before, path);
+      }
+      if (const auto known = digests.find(before); known != digests.end()) {
+        record.file_digests[file] = known->second;
+      }
+    }
+  }
+}
+
 void RunSession::clear_for_this_run() {
   folder_.open();
   const auto& build = build_info();
@@ -101,9 +124,10 @@ void RunSession::clear_for_this_run() {
   manifest_.files.clear();
   // From here on no stage that is about to be replaced counts as complete.
   const bool planet_stays = run_.pipeline.stages()[plan_.first]->info().own_grid;
+  if (planet_stays) name_islands_anew();
   std::erase_if(manifest_.stages, [&](const StageRecord& record) {
+    if (record.on_command) return !planet_stays;
     const int at = run_.pipeline.find(record.name);
-    if (at < 0 && is_island(record)) return !planet_stays;
     return at < plan_.begin || at >= plan_.first;
   });
   write_manifest(folder_.manifest(), manifest_);

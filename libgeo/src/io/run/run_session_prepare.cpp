@@ -163,8 +163,9 @@ int RunSession::count_complete_stages() const {
 /// is refused.
 bool RunSession::is_complete(int position) const {
   const auto record = std::find_if(
-      manifest_.stages.begin(), manifest_.stages.end(),
-      [&](const StageRecord& candidate) { return candidate.name == run_.name_of(position); });
+      manifest_.stages.begin(), manifest_.stages.end(), [&](const StageRecord& candidate) {
+        return candidate.name == run_.name_of(position) && !candidate.on_command;
+      });
   if (record == manifest_.stages.end()) return false;
   const Standing standing = standing_of(folder_.path(), *record);
   if (!standing.difference.empty()) {
