@@ -116,6 +116,8 @@ std::vector<Parameter> RunSettings::parameters() {
            "design"),
       integer("output.compression", compression, "1", 0, 9,
               "how hard NetCDF files are compressed; 0 stores them as they are", "design"),
+      integer("output.vtk_compression", vtk_compression, "1", 0, 9,
+              "how hard VTK files are compressed; 0 stores them as they are", "design"),
   };
 }
 

@@ -136,7 +136,7 @@ std::string IslandSession::execute(const RunEvents& events) {
     record.list(folder_.path(), netcdf.filename().string());
     if (settings_.vtk) {
       const auto vti = folder_.stage_file(stage_number_, name, ".vti");
-      write_vti(vti, snapshot, provenance);
+      write_vti(vti, snapshot, provenance, static_cast<int>(settings_.vtk_compression));
       record.list(folder_.path(), vti.filename().string());
     }
     record.budget = told.budget;

@@ -61,12 +61,12 @@ struct StageJob {
   std::vector<TextTable> tables;
   StageRecord record;
 
-  void write(bool vtk, int compression) {
-    write_netcdf(netcdf, snapshot, provenance, compression);
+  void write(const RunSettings& settings) {
+    write_netcdf(netcdf, snapshot, provenance, static_cast<int>(settings.compression));
     const auto folder = netcdf.parent_path();
     record.list(folder, netcdf.filename().string());
-    if (vtk) {
-      write_vti(vti, snapshot, provenance);
+    if (settings.vtk) {
+      write_vti(vti, snapshot, provenance, static_cast<int>(settings.vtk_compression));
       record.list(folder, vti.filename().string());
     }
     if (!steps.rows.empty()) write_table(csv, text_of(steps));
@@ -186,7 +186,7 @@ void RunSession::write_stage(BackgroundWriter& writer, FrameFiles& frames, int p
   job->record.events = context.event_records;
   job->record.warnings = context.warnings;
   writer.submit([this, job, &frames] {
-    job->write(run_.settings.vtk, static_cast<int>(run_.settings.compression));
+    job->write(run_.settings);
     for (const std::string& name : frames.take_written()) job->record.list(folder_.path(), name);
     manifest_.stages.push_back(job->record);
     write_manifest(folder_.manifest(), manifest_);
@@ -280,7 +280,8 @@ void RunSession::write_collections() {
     const auto vti = std::filesystem::path(netcdf).replace_extension(".vti");
     if (!std::filesystem::exists(vti)) {
       const auto all = [](const FieldSpec&) { return true; };
-      write_vti(vti, read_recorded(folder_.path(), record, all), read_provenance(netcdf));
+      write_vti(vti, read_recorded(folder_.path(), record, all), read_provenance(netcdf),
+                static_cast<int>(run_.settings.vtk_compression));
     }
     record.list(folder_.path(), vti.filename().string());
   }
@@ -294,7 +295,8 @@ void RunSession::write_summaries(const RunEvents& events) {
   check_stop();
   if (run_.settings.vtk) write_collections();
   if (run_.settings.globe &&
-      !write_globe_files(folder_, manifest_, run_.settings.globe_exaggeration)) {
+      !write_globe_files(folder_, manifest_, run_.settings.globe_exaggeration,
+                         static_cast<int>(run_.settings.vtk_compression))) {
     tell(events.warning, "output.globe: the run covers a part of a planet, there is no globe");
   }
   if (run_.settings.maps) {

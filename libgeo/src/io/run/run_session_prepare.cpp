@@ -23,7 +23,8 @@ constexpr std::string_view kFreeOnResume[] = {"run.to",
                                               "output.map_width_px",
                                               "output.map_projection",
                                               "output.map_center",
-                                              "output.compression"};
+                                              "output.compression",
+                                              "output.vtk_compression"};
 // The same where stages are computed again behind others that stay.
 constexpr std::string_view kFreeOnPartialOverwrite[] = {"run.from", "run.to"};
 
@@ -194,14 +195,16 @@ Prediction RunSession::prediction_on(const Grid& grid, const MachineSpeed& speed
   const RunSettings& settings = run_.settings;
   const auto cells = static_cast<double>(grid.size());
   const double map_width_px = settings.maps ? static_cast<double>(settings.map_width_px) : 0.0;
+  const double vtk_share = share_of_vtk(static_cast<int>(settings.vtk_compression));
   const auto predicted = [&](bool vtk) {
-    return predict(run_.pipeline, plan_.first, plan_.last, cells, speed, vtk, map_width_px);
+    return predict(run_.pipeline, plan_.first, plan_.last, cells, speed, vtk ? vtk_share : 0.0,
+                   map_width_px);
   };
   Prediction sum = predicted(settings.vtk);
   if (settings.globe) {
     constexpr double kSurface_bytes = 36.0;  // of a cell: corners and faces
     sum.disk_bytes += predicted(true).disk_bytes - predicted(false).disk_bytes +
-                      kSurface_bytes * cells * (plan_.last - plan_.first + 1);
+                      vtk_share * kSurface_bytes * cells * (plan_.last - plan_.first + 1);
   }
   return sum;
 }
