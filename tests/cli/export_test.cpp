@@ -61,13 +61,12 @@ TEST_F(Export, ComesInAgainAsAFieldByItsJsonOrByTheRangeThatIsGiven) {
   ASSERT_EQ(terrane({"export", run, "--format", "png16", "--field", "elevation", "-o", image}).code,
             0);
   const auto uplift_of = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments{"run",         "--preset",
-                                       "hypsography", "--grid",
-                                       "64x32",       "--to",
-                                       "erosion",     "--set",
-                                       "fields.uplift_rate=" + image.string(),
-                                       "-o",          folder / "out",
-                                       "--overwrite", "--no-maps"};
+    std::vector<std::string> arguments{
+        "run",      "--preset",     "hypsography",
+        "--grid",   "64x32",        "--to",
+        "erosion",  "--set",        "fields.uplift_rate=" + image.string(),
+        "-o",       folder / "out", "--overwrite",
+        "--no-maps"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return terrane(arguments);
   };

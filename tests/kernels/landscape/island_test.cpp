@@ -163,7 +163,8 @@ TEST(RegionScore, FindsTheCoastAndKeepsAwayFromThePoles) {
 }
 
 /// A rectangle of land, cells from the middle of a planet of 360 x 180.
-void raise_land(const Grid& planet, std::vector<float>& z, int west, int east, int south, int north) {
+void raise_land(const Grid& planet, std::vector<float>& z, int west, int east, int south,
+                int north) {
   for (int j = south; j <= north; ++j) {
     for (int i = west; i <= east; ++i) z[planet.cell(180 + i, 90 + j)] = 1000.0F;
   }

@@ -1,5 +1,4 @@
 #include "geo/io/input/dem.hpp"
-#include "geo/kernels/remapping/turned_planet.hpp"
 
 #include <fmt/format.h>
 
@@ -13,6 +12,7 @@
 #include "dem_variable.hpp"
 #include "geo/core/error.hpp"
 #include "geo/io/drawing/map_view.hpp"
+#include "geo/kernels/remapping/turned_planet.hpp"
 #include "geotiff.hpp"
 #include "image_relief.hpp"
 #include "io/drawing/map_projection.hpp"
