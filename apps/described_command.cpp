@@ -14,7 +14,8 @@
 namespace terrane {
 
 DescribedCommand describe(const CLI::App& command) {
-  DescribedCommand described{command.get_name(), command.get_description(), {}};
+  DescribedCommand described{
+      command.get_name(), command.get_description(), {}, command.get_footer()};
   for (const CLI::Option* option : command.get_options()) {
     DescribedOption row{{}, option->get_type_name(), option->get_description(), true};
     for (const auto& name : option->get_snames()) row.names.push_back("-" + name);

@@ -21,6 +21,8 @@ struct DescribedOption {
 struct DescribedCommand {
   std::string name, doc;
   std::vector<DescribedOption> options;
+  std::string
+      footer;  ///< what help says below them; lines that begin with a space stand as they are
 };
 
 [[nodiscard]] DescribedCommand describe(const CLI::App& command);

@@ -98,7 +98,6 @@ void run_program(int argc, char** argv) {
   CLI::App program("A whole planet's surface from physics.", "terrane");
   program.set_version_flag("--version", version_text, "Version, commit and library versions");
   program.set_help_flag("-h,--help", "This help");
-  program.footer("terrane COMMAND --help tells more.");
   terrane::Action action;
   terrane::add_run_command(program, action);
   terrane::add_island_command(program, action);
@@ -115,6 +114,8 @@ void run_program(int argc, char** argv) {
   terrane::add_presets_command(program, action);
   terrane::add_completion_command(program, action);
   terrane::add_manual_command(program, action);
+  program.footer(
+      "terrane COMMAND --help tells more.");  // behind its commands: they would inherit it
   program.allow_extras();
   // One: what follows it is a stage, a folder or a file, whatever its name.
   program.require_subcommand(0, 1);

@@ -5,6 +5,7 @@
 #include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -54,11 +55,25 @@ void print_options(const DescribedCommand& command) {
     for (const std::string& name : option.names) {
       head += fmt::format("{}\\fB{}\\fR", head.empty() ? "" : ", ", roff(name));
     }
-    if (option.takes_value) {
+    if (option.takes_value && !option.argument.empty()) {
       head += fmt::format("{}\\fI{}\\fR", head.empty() ? "" : " ", roff(option.argument));
     }
     fmt::print(".TP\n{}\n{}\n", head, roff(option.doc));
   }
+}
+
+void print_footer(const DescribedCommand& command) {
+  if (command.footer.empty()) return;
+  fmt::print(".SH NOTES\n");
+  bool is_filled = true;
+  std::istringstream lines(command.footer);
+  for (std::string line; std::getline(lines, line);) {
+    const bool fills = !line.starts_with(' ');
+    if (fills != is_filled) fmt::print("{}", fills ? ".fi\n" : ".nf\n");
+    is_filled = fills;
+    fmt::print("{}\n", line.empty() ? ".PP" : roff(line));
+  }
+  if (!is_filled) fmt::print(".fi\n");
 }
 
 void print_exit_codes() {
@@ -70,6 +85,7 @@ void print_exit_codes() {
       {3, "unusable input data"},
       {4, "a file could not be read or written"},
       {5, "a calibration did not converge, or not near its target"},
+      {6, "terrane diff: the two differ"},
       {130, "interrupted; terrane run --resume goes on"}};
   for (const auto& [code, words] : kCodes) fmt::print(".TP\n{}\n{}\n", code, roff(words));
 }
@@ -84,6 +100,7 @@ void print_page(const DescribedCommand& command) {
   fmt::print(".SH SYNOPSIS\n\\fBterrane {}\\fR [\\fIOPTIONS\\fR]{}\n", roff(command.name),
              arguments);
   print_options(command);
+  print_footer(command);
   print_exit_codes();
   fmt::print(".SH SEE ALSO\n\\fBterrane\\fR(1)\n");
 }
@@ -94,7 +111,9 @@ void print_program(const CLI::App& program, const std::vector<DescribedCommand>&
   for (const DescribedCommand& command : commands) {
     fmt::print(".TP\n\\fBterrane\\-{}\\fR(1)\n{}\n", roff(command.name), roff(command.doc));
   }
-  print_options(describe(program));
+  const DescribedCommand whole = describe(program);
+  print_options(whole);
+  print_footer(whole);
   print_exit_codes();
 }
 

@@ -39,6 +39,8 @@
 
   const NOTHING = 65535;
 
+  const OVER = 2;  // of a mask: what lies over the layer, such as ice, is seen
+
   /** Values of a layer, NaN where there is none, and which cells its map colours. */
   async function load(layer) {
     if (!layer.loaded) {
@@ -84,10 +86,10 @@
 
   function coloured(layer, { values, shown }, ground) {
     const pixels = new Uint8Array(4 * cells), colour = colouring(layer);
-    const sea = rgb(index.sea), land = rgb(index.land);
+    const sea = rgb(index.sea), land = rgb(index.land), over = layer.over && rgb(layer.over.colour);
     for (let cell = 0; cell < cells; ++cell) {
-      const hidden = shown && !shown[cell];
-      pixels.set(hidden ? (ground[cell] < 0 ? sea : land) : colour(values[cell]), 4 * cell);
+      const hidden = shown && !shown[cell], covered = over && shown[cell] === OVER;
+      pixels.set(covered ? over : hidden ? (ground[cell] < 0 ? sea : land) : colour(values[cell]), 4 * cell);
       pixels[4 * cell + 3] = 255;
     }
     return pixels;
@@ -344,22 +346,27 @@
   function tell(latitude, longitude) {
     if (!current) return;
     const cell = cellAt(latitude, longitude), [north, east] = placeOf(cell);
+    const over = layer.over && current.shown[cell] === OVER ? `, ${layer.over.name}` : "";
     part("value").textContent =
-      `${degrees(north, "NS")}, ${degrees(east, "EW")}: ${layer.title} ${words(layer, current.values[cell])}`;
+      `${degrees(north, "NS")}, ${degrees(east, "EW")}: ${layer.title} ${words(layer, current.values[cell])}${over}`;
   }
 
   function legend() {
     const box = part("legend");
     box.replaceChildren();
     if (layer.kind === "areas") return;
+    const add = (colour, name) => {
+      const item = document.createElement("span"), patch = document.createElement("i");
+      patch.style.background = colour;
+      item.append(patch, name.replaceAll("_", " "));
+      box.append(item);
+    };
     const shown = layer.names || layer.stops.map((stop) => String(+(stop * layer.factor).toPrecision(4)));
     shown.forEach((name, at) => {
       if (!layer.colours[at] || (layer.stops[at] < 0 && layer.stops[at] > -0.01)) return;
-      const item = document.createElement("span"), patch = document.createElement("i");
-      patch.style.background = layer.colours[at];
-      item.append(patch, name.replaceAll("_", " "));
-      box.append(item);
+      add(layer.colours[at], name);
     });
+    if (layer.over) add(layer.over.colour, layer.over.name);
     if (layer.shown_units) box.append(layer.shown_units);
   }
 

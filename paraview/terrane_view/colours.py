@@ -77,6 +77,11 @@ def look_of(field):
     return LOOKS.get(field, Look())
 
 
+def words_of(field):
+    """The name of a field as a caption has it."""
+    return field.replace("_", " ")
+
+
 def title_of(field, units):
     """Title of a legend with its units."""
     title = look_of(field).title

@@ -43,7 +43,7 @@ class Globe:
         self.go_to(self.times[-1])
         self.link = pipeline.link_exaggeration(f"exaggeration of {self.run.folder.name}", warped)
         self.field, self.bars = None, []
-        self.caption()
+        self.words = scene.caption(self.view, self.parts["relief"].shown, self.caption(), "caption")
         self.show_all()
         self.colour("elevation")
         self.look()
@@ -135,15 +135,14 @@ class Globe:
         bar.Visibility = int(self.parts["boundaries"].display.Visibility)
 
     def caption(self):
-        """Says which stage or which time is shown."""
+        """Says which stage or which time is shown, and of which field."""
         who = f"seed {self.run.seed}" if self.run.seed is not None else self.run.folder.name
+        what = colours.words_of(self.field) if self.field else "bare"
         if self.drift:
-            words = f"'{who}, after %g Myr' % time_value"
-        else:
-            # ParaView keeps braces for itself.
-            names = [(self.run.number(name), f"{who}, stage {name}") for name in self.run.stages]
-            words = f"dict({names!r}).get(int(time_value + 0.5), '')"
-        self.words = scene.caption(self.view, self.parts["relief"].shown, words, "caption")
+            return f"'{who}, {what} after %g Myr' % time_value"
+        # ParaView keeps braces for itself.
+        names = [(self.run.number(name), f"{who}, {what} after {name}") for name in self.run.stages]
+        return f"dict({names!r}).get(int(time_value + 0.5), '')"
 
     # What can be changed -----------------------------------------------------------------------
 
@@ -176,6 +175,7 @@ class Globe:
             other.Visibility = 0
         title = colours.title_of(field, self.run.units(field))
         self.bars = [scene.legend(self.view, lut, title)]
+        self.words.Expression = self.caption()
         self.explain_boundaries()
         return self
 

@@ -60,6 +60,7 @@ class IslandView:
             if part_name in ("lakes", "rivers"):
                 scene.plain(part.display, LAKE if part_name == "lakes" else RIVER)
         self.bar = None
+        self.words = scene.caption(self.view, self.parts["relief"].shown, "''", f"{name}: caption")
         self.colour("elevation")
         scene.look_obliquely(
             self.view, [0.0, 0.0, 0.0], [0, 0, 1], [0, 1, 0], max(width_m, height_m), 40.0
@@ -76,6 +77,7 @@ class IslandView:
         if self.bar:
             self.bar.Visibility = 0
         self.bar = scene.legend(self.view, lut, colours.title_of(field, ""))
+        self.words.Expression = repr(f"{self.name}: {colours.words_of(field)}")
         return self
 
     def exaggerate(self, times):

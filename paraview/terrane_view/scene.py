@@ -80,6 +80,8 @@ def legend(view, lut, title):
     bar.Orientation = "Vertical"
     bar.HorizontalTitle = 1
     bar.DrawNanAnnotation = 0
+    # Where the planet fills the view the legend lies on paper of its own.
+    bar.DrawBackground, bar.BackgroundColor, bar.BackgroundPadding = 1, [*PAPER, 0.85], 8
     bar.Enabled = bar.Visibility = 1
     if lut.InterpretValuesAsCategories:
         bar.ScalarBarLength, bar.Position = 0.74, [0.77, 0.22]
@@ -135,9 +137,10 @@ def look_at_place(view, latitude, longitude, radius_m, width_m, tilt_deg=50.0):
 
 def look_obliquely(view, target, out, north, width_m, tilt_deg):
     """Down on a target from the south, `tilt_deg` above the horizon."""
-    tilt, distance = np.radians(tilt_deg), 2.05 * width_m
+    tilt, distance = np.radians(tilt_deg), 2.25 * width_m
     towards = np.sin(tilt) * np.asarray(out) - np.cos(tilt) * np.asarray(north)
-    focus = np.asarray(target) + 0.13 * width_m * np.cross(north, out)
+    # The target stands left of the middle, beside the legend.
+    focus = np.asarray(target) + 0.17 * width_m * np.cross(north, out)
     view.CenterOfRotation, view.CameraFocalPoint = list(target), list(focus)
     view.CameraViewAngle = 30.0
     view.CameraPosition = list(focus + distance * towards)

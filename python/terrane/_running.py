@@ -85,7 +85,8 @@ def run(preset: str = "", *, seed: Optional[int] = None, grid: Union[str, Tuple[
         A file of elevations, ``FILE[:VARIABLE]``, in place of plates and isostasy.
     elevation
         The same from memory, metres: rows from south to north, columns from -180 degrees; a DataArray with ``lat``
-        ascending, or an array. Give ``from_stage`` to say where to begin (default: erosion).
+        ascending, or an array. Give ``from_stage`` to say where to begin (default: erosion). ``run.turn`` lays it
+        out with another pole.
     from_stage, to
         First and last stage.
     folder

@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 """Opens a report's globe in headless Chromium and holds its values against the files of the run.
 
-usage: check_globe.py RUN [PICTURES]
+usage: check_globe.py RUN DRIFT [PICTURES]
 
 Five places of each of several layers must show what netCDF4 reads there, to the step of the layer's codes;
-the canvas must show a globe and answer to keys, layers and hands; the console stays free of errors.
+the canvas must show a globe, soon, and answer to keys, layers and hands; the console stays free of errors. The
+report of DRIFT has frames under a slider. Without WebGL there is no globe, and the pictures are there.
 """
 
 import sys
@@ -18,6 +19,7 @@ from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.keys import Keys
 
 PLACES = [(12.3, -45.6), (-60.1, 170.2), (80.0, 0.5), (0.2, 99.9), (-33.3, -120.7)]
+SOON_MS = 1500
 failures = []
 
 
@@ -27,11 +29,11 @@ def expect(good, *words):
         print("FAIL", failures[-1], flush=True)
 
 
-def browser():
+def browser(*more):
     options = webdriver.ChromeOptions()
     options.binary_location = "/usr/bin/chromium"
     for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--hide-scrollbars",
-                     "--enable-unsafe-swiftshader", "--window-size=1280,1000"):
+                     "--window-size=1280,1000", *(more or ["--enable-unsafe-swiftshader"])):
         options.add_argument(argument)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
     driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
@@ -97,21 +99,78 @@ def pixels(driver):
       }));""")
 
 
-def main():
-    run = Path(sys.argv[1]).resolve()
+def first_frame_ms(driver, run):
+    """From the call of the page to the first picture of the globe; the best of some calls on a machine that others
+    may be using too."""
+    best = None
+    for _ in range(5):
+        driver.get(f"file://{run}/report.html")
+        ready = ask(driver, "terraneGlobe.ready.then(() => "
+                            "performance.getEntriesByName('globe-first-frame')[0].startTime)")
+        if not isinstance(ready, (int, float)):
+            expect(False, "is never ready:", ready)
+            return 0.0
+        best = ready if best is None else min(best, ready)
+        if best <= SOON_MS:
+            break
+    expect(best <= SOON_MS, "shows its first frame only after", best, "ms")
+    return best
+
+
+def check_errors(driver):
+    errors = [entry["message"] for entry in driver.get_log("browser") if entry["level"] == "SEVERE"]
+    expect(not errors, "console:", errors)
+
+
+def check_frames(run):
+    """Frames of drift: the slider shows each with its time, and today at its end."""
     driver = browser()
     driver.get(f"file://{run}/report.html")
-    ready = ask(driver, "terraneGlobe.ready.then(() => performance.getEntriesByName('globe-first-frame')[0].startTime)")
-    expect(isinstance(ready, (int, float)), "is never ready:", ready)
+    ask(driver, "terraneGlobe.ready")
+    frames = len(list((run / "frames").glob("plates-*.nc")))
+    slider = driver.find_element("css selector", "[data-part=frame]")
+    expect(frames > 1 and slider.get_attribute("max") == str(frames), "the slider has", slider.get_attribute("max"),
+           "frames, not", frames)
+    told, seen = [], []
+    for number in (0, 1, frames):
+        driver.execute_script("arguments[0].value = arguments[1]; arguments[0].dispatchEvent(new Event('input'))",
+                              slider, number)
+        ask(driver, "new Promise((done) => setTimeout(done, 500))")
+        told.append(driver.find_element("css selector", "[data-part=time]").text)
+        seen.append(pixels(driver))
+    expect(told[0].endswith("Myr") and told[1].endswith("Myr") and told[0] != told[1] and told[2] == "today",
+           "tells the times", told)
+    expect(seen[0] != seen[1] != seen[2], "frames look alike:", seen)
+    check_errors(driver)
+    driver.quit()
+
+
+def check_without_webgl(run):
+    """No globe and no word of it; the pictures are there."""
+    driver = browser("--disable-webgl", "--disable-3d-apis")
+    driver.get(f"file://{run}/report.html")
+    section = driver.find_element("css selector", "#globe")
+    expect(not section.is_displayed(), "stands empty where there is no WebGL")
+    expect(not driver.find_elements("css selector", "nav a[href='#globe']"), "is in the contents without WebGL")
+    pictures = [one for one in driver.find_elements("css selector", "img") if one.is_displayed()]
+    expect(len(pictures) > 5, "without WebGL there are only", len(pictures), "pictures")
+    check_errors(driver)
+    driver.quit()
+
+
+def main():
+    run, drift = (Path(word).resolve() for word in sys.argv[1:3])
+    driver = browser()
+    ready = first_frame_ms(driver, run)
     check_values(driver, run)
     share, mean = pixels(driver)
     expect(0.2 < share < 0.75, "covers", share, "of the canvas")
     expect(60 < mean < 220, "is as bright as", mean)
-    if len(sys.argv) > 2:
+    if len(sys.argv) > 3:
         for name in driver.execute_script("return terraneGlobe.layers"):
             ask(driver, f"terraneGlobe.show('{name}')")
             ask(driver, "new Promise((done) => setTimeout(done, 300))")
-            driver.save_screenshot(f"{sys.argv[2]}/globe-{name}.png")
+            driver.save_screenshot(f"{sys.argv[3]}/globe-{name}.png")
     canvas = driver.find_element("css selector", "#globe canvas")
     before = driver.execute_script("return terraneGlobe.view().longitude")
     canvas.send_keys(Keys.ARROW_RIGHT)
@@ -122,9 +181,10 @@ def main():
     before = driver.execute_script("return terraneGlobe.view().longitude")
     ActionChains(driver).click_and_hold(canvas).move_by_offset(120, 0).release().perform()
     expect(driver.execute_script("return terraneGlobe.view().longitude") != before, "does not turn by hand")
-    errors = [entry["message"] for entry in driver.get_log("browser") if entry["level"] == "SEVERE"]
-    expect(not errors, "console:", errors)
+    check_errors(driver)
     driver.quit()
+    check_frames(drift)
+    check_without_webgl(run)
     size = (run / "report.html").stat().st_size
     expect(size < 15e6, "report.html has", size, "bytes")
     print(f"globe: first frame after {ready:.0f} ms, page of {size / 1e6:.1f} MB, {len(failures)} failures")

@@ -75,11 +75,15 @@ TEST(Completion, IsSoundForShellsThatAreHere) {
 TEST(Manual, HasEveryCommandAndEveryOptionOfItsHelp) {
   const std::string all = told_by({"manual"}), help = told_by({"--help"});
   for (const std::string command :
-       {"run", "island", "score", "calibrate", "maps", "params", "fields", "info", "presets"}) {
+       {"run", "island", "sweep", "score", "calibrate", "maps", "view", "export", "diff", "params",
+        "fields", "info", "presets", "completion", "manual"}) {
     EXPECT_THAT(help, HasSubstr(command));
     EXPECT_THAT(all, HasSubstr("terrane\\-" + command));
     const std::string page = told_by({"manual", command});
     EXPECT_THAT(page, HasSubstr(".SH OPTIONS"));
+    for (const char* code : {"0", "1", "2", "3", "4", "5", "6", "130"}) {
+      EXPECT_THAT(page, HasSubstr(".TP\n" + std::string(code) + "\n"));
+    }
     std::istringstream words(told_by({command, "--help"}));
     for (std::string word; words >> word;) {
       if (!word.starts_with("--") || word.size() < 4) continue;
@@ -96,6 +100,15 @@ TEST(Manual, HasEveryCommandAndEveryOptionOfItsHelp) {
               0U);
   }
   EXPECT_EQ(terrane({"manual", "rum"}).code, 2);
+}
+
+TEST(Manual, HasWhatHelpSaysBelowTheOptions) {
+  const std::string maps = told_by({"manual", "maps"});
+  EXPECT_THAT(maps, HasSubstr(".SH NOTES"));
+  EXPECT_THAT(maps, HasSubstr("\n.nf\n  equirectangular"));
+  EXPECT_THAT(maps, HasSubstr(".fi\n.SH EXIT STATUS"));
+  EXPECT_THAT(told_by({"manual", "export"}), HasSubstr("value = offset + scale * sample."));
+  EXPECT_THAT(told_by({"manual", "score"}), testing::Not(HasSubstr(".SH NOTES")));
 }
 
 }  // namespace

@@ -56,6 +56,32 @@ TEST_F(Export, OfAFieldOfAnotherStageTakesItFromThere) {
             2 * json.at("width").get<int>() * json.at("height").get<int>());
 }
 
+TEST_F(Export, ComesInAgainAsAFieldByItsJsonOrByTheRangeThatIsGiven) {
+  const fs::path image = folder / "up.png";
+  ASSERT_EQ(terrane({"export", run, "--format", "png16", "--field", "elevation", "-o", image}).code,
+            0);
+  const auto uplift_of = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{
+        "run",      "--preset",     "hypsography",
+        "--grid",   "64x32",        "--to",
+        "erosion",  "--set",        "fields.uplift_rate=" + image.string(),
+        "-o",       folder / "out", "--overwrite",
+        "--no-maps"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return terrane(arguments);
+  };
+  fs::remove(folder / "up.json");
+  const Outcome untold = uplift_of({});
+  EXPECT_EQ(untold.code, 3);
+  EXPECT_THAT(untold.err, HasSubstr("give --dem-range MIN,MAX"));
+  const Outcome told = uplift_of({"--dem-range=0,0.002"});
+  ASSERT_EQ(told.code, 0) << told.err;
+  for (const auto& stage : manifest_of(folder / "out").at("stages")) {
+    if (stage.at("name") != "erosion") continue;
+    EXPECT_NEAR(stage.at("fields").at("uplift_rate").at("max").get<double>(), 0.002, 2e-4);
+  }
+}
+
 TEST_F(Export, RefusesInOneLineWhatDoesNotGoTogether) {
   std::ofstream(folder / "notes.txt") << "no planet\n";
   fs::create_directory(folder / "other.zarr");

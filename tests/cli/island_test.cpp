@@ -157,16 +157,29 @@ TEST_F(Island, TheSameAskedTwiceIsTheSame) {
   EXPECT_FALSE(fs::exists(out_ / "island.pvd"));
 }
 
-TEST_F(Island, LeavesTheRunsOwnNameToTheRun) {
+TEST_F(Island, TheFirstHasNoNumber) {
   run({"--to", "biomes"});
-  ASSERT_EQ(island().code, 0);
-  EXPECT_THAT(island_files(out_), ElementsAre("07-island-2.nc", "07-island-2.vti"));
+  ASSERT_EQ(island({"--center=10,20"}).code, 0);
+  EXPECT_THAT(island_files(out_), ElementsAre("07-island.nc", "07-island.vti"));
+  ASSERT_EQ(island({"--center=20,20"}).code, 0);
+  EXPECT_THAT(island_files(out_),
+              ElementsAre("07-island-2.nc", "07-island-2.vti", "07-island.nc", "07-island.vti"));
+}
+
+TEST_F(Island, GivesTheFirstNameToTheRunsOwn) {
+  run({"--to", "biomes"});
+  ASSERT_EQ(island({"--center=10,20"}).code, 0);
+  const std::string made = text_of(out_ / "07-island.nc");
   const Outcome resumed = terrane({"run", "--resume", "--to", "island", "-o", out_});
   EXPECT_EQ(resumed.code, 0) << resumed.err;
-  // The planet is the same: what was cut out of it stays.
+  // The planet is the same: what was cut out of it stays, as a further one.
   EXPECT_THAT(stages_of(out_), testing::IsSupersetOf({"island", "island-2"}));
   EXPECT_THAT(island_files(out_),
               ElementsAre("07-island-2.nc", "07-island-2.vti", "07-island.nc", "07-island.vti"));
+  EXPECT_TRUE(text_of(out_ / "07-island-2.nc") == made);
+  EXPECT_FALSE(text_of(out_ / "07-island.nc") == made);
+  const Outcome verified = terrane({"info", "--verify", out_});
+  EXPECT_EQ(verified.code, 0) << verified.err;
   const Outcome anew = terrane({"run", "--overwrite", "--from", "hydrology", "-o", out_});
   EXPECT_EQ(anew.code, 0) << anew.err;
   EXPECT_THAT(island_files(out_), ElementsAre("07-island.nc", "07-island.vti"));

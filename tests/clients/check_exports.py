@@ -4,12 +4,14 @@
 usage: check_exports.py TERRANE STAGE_FILES FOLDER
 
 STAGE_FILES is what make_client_files wrote; exports go to FOLDER. Each client is asked when it is
-installed: Pillow (its own PNG reader), GDAL, zarr and xarray for Python, healpy, assimp. Prints one
-line per failure and ends with 1 if there was any.
+installed: Pillow (its own PNG reader), GDAL, zarr and xarray for Python, healpy, assimp. Where CI is
+set all of them must be: scripts/install-deps --tests installs them. Prints one line per failure and
+ends with 1 if there was any.
 """
 
 import importlib
 import json
+import os
 import shutil
 import struct
 import subprocess
@@ -19,6 +21,7 @@ from pathlib import Path
 import netCDF4
 import numpy as np
 
+CLIENTS = {"PIL.Image", "osgeo.gdal", "zarr", "xarray", "healpy", "assimp"}
 failures = []
 asked = []
 
@@ -134,24 +137,36 @@ def check_masks(exports):
     expect(np.array_equal(total, np.where(np.isnan(biome), 0, 255)), "layers of biomes do not add up")
 
 
+def check_seams(what, size, tiles, wraps_east, wraps_north):
+    """Each tile ends with the samples with which its neighbours begin."""
+    across = 1 + max(x for x, _ in tiles)
+    down = 1 + max(y for _, y in tiles)
+    expect(len(tiles) == across * down and across > 1 and down > 1, what, "has", len(tiles), "tiles")
+    for (x, y), tile in tiles.items():
+        expect(tile.shape == (size, size), what, "tile of", tile.shape)
+        right = (x + 1, y) if x + 1 < across else (0, y) if wraps_east else None
+        below = (x, y + 1) if y + 1 < down else (x, 0) if wraps_north else None
+        if right:
+            expect(np.array_equal(tile[:, -1], tiles[right][:, 0]), what, "seam east of", x, y)
+        if below:
+            expect(np.array_equal(tile[-1], tiles[below][0]), what, "seam south of", x, y)
+
+
 def check_tiles(exports):
     """Neighbours share their samples to the bit, also across the date line."""
     for stage, size in (("sphere", 33), ("island", 22), ("torus", 17)):
         path = exports.write(stage, f"{stage}-tiles.png", "--format", "png16", "--tiles", str(size),
                              "--masks", "biomes")
         about = json.loads(path.with_suffix(".json").read_text())
-        tiles = {(t["tile"]["x"], t["tile"]["y"]): png_samples(exports.folder / t["file"]) for t in about["files"]}
-        across = 1 + max(x for x, _ in tiles)
-        down = 1 + max(y for _, y in tiles)
-        expect(len(tiles) == across * down and across > 1 and down > 1, stage, "has", len(tiles), "tiles")
-        for (x, y), tile in tiles.items():
-            expect(tile.shape == (size, size), stage, "tile of", tile.shape)
-            right = (x + 1, y) if x + 1 < across else (0, y) if stage != "island" else None
-            below = (x, y + 1) if y + 1 < down else (x, 0) if stage == "torus" else None
-            if right:
-                expect(np.array_equal(tile[:, -1], tiles[right][:, 0]), stage, "seam east of", x, y)
-            if below:
-                expect(np.array_equal(tile[-1], tiles[below][0]), stage, "seam south of", x, y)
+        places = [(entry["tile"]["x"], entry["tile"]["y"]) for entry in about["files"]]
+        layers = {"heights": [entry["file"] for entry in about["files"]],
+                  **{mask["name"]: mask["files"] for mask in about["masks"]}}
+        expect(len(layers) > 1, stage, "has no masks")
+        for name, files in layers.items():
+            check_seams(f"{stage}, {name}:", size, {place: png_samples(exports.folder / file)
+                                                    for place, file in zip(places, files, strict=True)},
+                        wraps_east=stage != "island", wraps_north=stage == "torus")
+        tiles = {place: png_samples(exports.folder / entry["file"]) for place, entry in zip(places, about["files"])}
         whole = stage_values(exports.stages / f"{stage}.nc", "elevation")
         if stage == "island":  # 63 x 31 steps are 3 x 21 and 31 -> 2 x 21: columns lie on cells
             values = about["offset"] + about["scale"] * tiles[0, 0][0]
@@ -173,20 +188,33 @@ def check_cube(exports):
     for options in ((), ("--tiles", "9")):
         path = exports.write("sphere", "cube.r16", "--format", "r16", "--layout", "cube", *options)
         about = json.loads(path.with_suffix(".json").read_text())
-        found = {}
-        for entry in about["files"]:
-            face = np.fromfile(exports.folder / entry["file"], "<u2").reshape(about["height"], about["width"])
-            for start, end, samples in edges_of(face, entry):
-                if end < start:
-                    start, end, samples = end, start, samples[::-1]
-                found.setdefault((start, end), []).append(samples)
-        if not options:
-            expect(len(about["files"]) == 6 and len(found) == 12, "cube has", len(found), "edges")
-        for ends, both in found.items():
-            expect(len(both) == 2 and np.array_equal(both[0], both[1]), "cube: edge", ends, "is not shared")
+        faces = [np.fromfile(exports.folder / entry["file"], "<u2").reshape(about["height"], about["width"])
+                 for entry in about["files"]]
+        check_cube_edges("cube:", about, faces, whole=not options)
+        if module("PIL.Image"):
+            path = exports.write("sphere", "masked-cube.png", "--format", "png16", "--layout", "cube", "--masks", "all",
+                                 *options)
+            about = json.loads(path.with_suffix(".json").read_text())
+            for mask in about["masks"]:
+                faces = [png_samples(exports.folder / file) for file in mask["files"]]
+                check_cube_edges(f"cube, {mask['name']}:", about, faces, whole=not options)
     truth = stage_values(exports.stages / "sphere.nc", "elevation")
     about = json.loads((exports.folder / "cube.json").read_text())
     expect(abs(about["min"] - np.nanmin(truth)) < 1e-3 and abs(about["max"] - np.nanmax(truth)) < 1e-3, "range of cube")
+
+
+def check_cube_edges(what, about, faces, whole):
+    """Each edge is there twice, with the same samples."""
+    found = {}
+    for entry, face in zip(about["files"], faces, strict=True):
+        for start, end, samples in edges_of(face, entry):
+            if end < start:
+                start, end, samples = end, start, samples[::-1]
+            found.setdefault((start, end), []).append(samples)
+    if whole:
+        expect(len(about["files"]) == 6 and len(found) == 12, what, len(found), "edges")
+    for ends, both in found.items():
+        expect(len(both) == 2 and np.array_equal(both[0], both[1]), what, "edge", ends, "is not shared")
 
 
 def check_geotiff(exports):
@@ -382,6 +410,8 @@ def main():
     check_zarr(exports)
     check_healpix(exports)
     check_glb(exports)
+    missing = CLIENTS - set(asked)
+    expect(not (missing and os.environ.get("CI")), "CI lacks the clients", *sorted(missing))
     print("asked:", ", ".join(sorted(set(asked))))
     return 1 if failures else 0
 

@@ -160,6 +160,8 @@ def check_stages(folder, pictures):
     for stage in globe.run.stages:
         globe.go_to(globe.times[-1]).colour("elevation").stage(stage)
         take(globe, pictures, f"stage-{stage}")
+        words = str(globe.words.Expression)
+        expect(f"after {stage}" in words and globe.field.replace("_", " ") in words, "the caption says", words)
     flat = take(globe.exaggerate(1.0), pictures, "flat")
     steep = take(globe.exaggerate(60.0), pictures, "steep")
     expect(np.abs(flat.astype(int) - steep).mean() > 1.0, "exaggeration changes nothing")

@@ -5,9 +5,11 @@
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkIdList.h>
+#include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
+#include <vtkXMLImageDataReader.h>
 #include <vtkXMLPolyDataReader.h>
 
 #include <cmath>
@@ -25,9 +27,10 @@ using Point = std::array<double, 3>;
 
 class Globe : public testing::Test {
  protected:
-  vtkPolyData& write_and_read(const Grid& grid, std::span<const float> elevation_m, double times) {
+  vtkPolyData& write_and_read(const Grid& grid, std::span<const float> elevation_m, double times,
+                              int compression = 0) {
     const auto path = folder_ / "a.vtp";
-    write_globe(path, sample_snapshot(grid), {}, elevation_m, times);
+    write_globe(path, sample_snapshot(grid), {}, elevation_m, times, compression);
     reader_->SetFileName(path.c_str());
     reader_->Modified();
     reader_->Update();
@@ -91,22 +94,54 @@ TEST_F(Globe, FacesLieWhereTheirCellsLieAndLookOutwards) {
   }
 }
 
-TEST_F(Globe, HoldsEveryValueOfEveryField) {
-  const Grid grid = Grid::sphere(32, 16);
-  auto& surface = write_and_read(grid, {}, 1.0);
-  const Snapshot snapshot = sample_snapshot(grid);
+/// Every field of the snapshot has its values in a data set, bit for bit.
+void expect_values(vtkDataSet& data, const Snapshot& snapshot) {
   for (const auto& [spec, values] : snapshot.fields) {
-    vtkDataArray* array = surface.GetCellData()->GetArray(std::string(spec->name).c_str());
+    vtkDataArray* array = data.GetCellData()->GetArray(std::string(spec->name).c_str());
     ASSERT_NE(array, nullptr) << spec->name;
     std::visit(
         [&](const auto& known) {
-          for (Index cell = 0; cell < grid.size(); ++cell) {
+          for (Index cell = 0; cell < snapshot.grid->size(); ++cell) {
             const auto read = array->GetComponent(cell, 0);
             const auto written = static_cast<double>(known[cell]);
             EXPECT_TRUE(read == written || (std::isnan(read) && std::isnan(written)));
           }
         },
         *values);
+  }
+}
+
+TEST_F(Globe, HoldsEveryValueOfEveryFieldAtAnyCompression) {
+  const Grid grid = Grid::sphere(96, 48);
+  std::uintmax_t plain = 0;
+  for (const int compression : {0, 1, 9}) {
+    expect_values(write_and_read(grid, {}, 1.0, compression), sample_snapshot(grid));
+    const auto size = std::filesystem::file_size(folder_ / "a.vtp");
+    if (compression == 0) {
+      plain = size;
+    } else {
+      EXPECT_LT(size, plain * 0.9);
+    }
+  }
+}
+
+TEST(Image, HoldsEveryValueOfEveryFieldAtAnyCompression) {
+  const TemporaryFolder folder;
+  const Snapshot snapshot = sample_snapshot(Grid::sphere(96, 48));
+  std::uintmax_t plain = 0;
+  for (const int compression : {0, 1, 9}) {
+    const auto path = folder / "a.vti";
+    write_vti(path, snapshot, {}, compression);
+    const vtkNew<vtkXMLImageDataReader> reader;
+    reader->SetFileName(path.c_str());
+    reader->Update();
+    expect_values(*reader->GetOutput(), snapshot);
+    const auto size = std::filesystem::file_size(path);
+    if (compression == 0) {
+      plain = size;
+    } else {
+      EXPECT_LT(size, plain * 0.9);
+    }
   }
 }
 

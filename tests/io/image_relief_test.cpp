@@ -107,6 +107,14 @@ TEST(ImageRelief, RangeAndWindowGiveSamplesTheirMeaning) {
   // A quantity with bounds has them.
   const Relief share = read_field((folder / "a.png").string(), field::river_intensity, {});
   EXPECT_FLOAT_EQ(share.elevation_m[15], 1.0F);
+  // An order without a unit runs from 0 to 1; others have the range that is given.
+  FieldSpec order = field::ranking;
+  order.units = "";
+  EXPECT_FLOAT_EQ(read_field((folder / "a.png").string(), order, {}).elevation_m[15], 1.0F);
+  const Relief uplift =
+      read_field((folder / "a.png").string(), field::uplift_rate, {}, {"0,0.01", "0,0,40,20"});
+  EXPECT_FLOAT_EQ(uplift.elevation_m[15], 0.01F);
+  EXPECT_NEAR(uplift.grid.window().east_deg, 40.0, 1e-9);
 }
 
 TEST(ImageRelief, AsciiGridsAreReadByTheirHeads) {

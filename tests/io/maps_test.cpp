@@ -192,6 +192,47 @@ TEST(Maps, FlatCategoriesShowTheColoursOfTheLegendAndNoOthers) {
   }
 }
 
+TEST(Maps, LandThatIsFrozenAllYearIsWhiteAmongBiomesAndNamed) {
+  const TemporaryFolder folder;
+  State state(small_sphere());
+  const Grid& grid = state.grid();
+  constexpr std::int8_t kTundra = 1;
+  std::vector<float> temperature(grid.size());
+  for (Index i = 0; i < grid.size(); ++i) {
+    temperature[i] = grid.latitude_deg(grid.row(i)) < -60.0 ? -30.0F : 4.0F;
+  }
+  state.set(field::elevation, one_continent(grid));
+  state.set(field::biome, std::vector<std::int8_t>(grid.size(), kTundra));
+  state.set(field::temperature, temperature);
+  state.set(field::temperature_range, std::vector<float>(grid.size(), 20.0F));
+  draw_maps(state, folder.path(), kWidth);
+  const MapLayout layout = map_layout(grid, kWidth);
+  const Picture picture(folder / "biomes.png", layout);
+  // Along 5 degrees east: the cold south, the rest, and the sea beside it.
+  const Colour south = picture.map(370, 340), north = picture.map(370, 100);
+  const Colour sea = picture.map(10, 340);
+  EXPECT_GT(south.r + south.g + south.b, north.r + north.g + north.b + 100);
+  EXPECT_EQ(sea, picture.map(10, 110)) << "no ice on the sea";
+  // The legend has one more patch, where there is such land.
+  const auto legend_has_ice = [&](const Picture& map) {
+    constexpr Colour kIce{244, 247, 251};
+    for (int y = layout.map_top + layout.map_height + 1; y < layout.height_px; ++y) {
+      for (int x = 0; x < layout.width_px; ++x) {
+        const Colour here = map.at(x, y);  // rounded by Cairo
+        if (std::abs(here.r - kIce.r) <= 1 && std::abs(here.g - kIce.g) <= 1 &&
+            std::abs(here.b - kIce.b) <= 1) {
+          return true;
+        }
+      }
+    }
+    return false;
+  };
+  EXPECT_TRUE(legend_has_ice(picture));
+  state.set(field::temperature, std::vector<float>(grid.size(), 4.0F));
+  draw_maps(state, folder / "warm", kWidth);
+  EXPECT_FALSE(legend_has_ice(Picture(folder / "warm/biomes.png", layout)));
+}
+
 // A river along the equator that crosses the date line from 170°E to 170°W.
 State date_line_river(bool flows) {
   State state(small_sphere());

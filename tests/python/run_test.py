@@ -58,6 +58,21 @@ class Memory(unittest.TestCase):
         with self.assertRaisesRegex(terrane.InputError, "southwards"):
             terrane.run("preview", elevation=elevation[::-1], from_stage="climate")
 
+    def test_an_elevation_is_laid_out_with_the_turn(self):
+        elevation = self.planet.stages["erosion"]["elevation"]
+        only = dict(from_stage="climate", to="climate", elevation=elevation)
+        grid = np.asarray(elevation)
+        turned = terrane.run("preview", parameters={"run.turn": "-90,0,0"}, **only)["temperature"]
+        plain = terrane.run("preview", **only)["temperature"]
+        self.assertGreater(float(abs(turned - plain).mean()), 1.0)
+        # The same file, read by the run itself, is laid out the same.
+        with tempfile.TemporaryDirectory() as scratch:
+            file = Path(scratch) / "relief.nc"
+            elevation.to_dataset(name="elevation").to_netcdf(file)
+            read = terrane.run("preview", dem=file, to="climate", from_stage="climate",
+                               grid=grid.shape[::-1], parameters={"run.turn": "-90,0,0"})["temperature"]
+        np.testing.assert_allclose(turned, read, rtol=1e-5, atol=1e-3)
+
     def test_an_island_is_cut_from_it(self):
         island = terrane.island(self.planet, center=(10.0, 20.0), size=(64, 32), cell_m=4000.0)
         self.assertEqual(island["elevation"].dims, ("y", "x"))

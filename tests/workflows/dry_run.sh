@@ -27,3 +27,5 @@ for how in "-j2" "--profile $source/workflows/profiles/local" \
 done
 plan -j2 --config 'sweep_seeds=[3, 4, 5]'
 expect before 6
+! (plan -j2 --config to=islands) >"$work/refused.txt"
+grep -q "must be one of isostasy" "$work/refused.txt"

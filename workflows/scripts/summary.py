@@ -2,7 +2,7 @@
 """The summary figure of a sweep: curves, distances to the target, and parameters of each preset.
 
 Reads RESULTS/PRESET/fit/{calibration.json,hypsometry.csv} and the planets in
-RESULTS/PRESET/{before,after}/seed-N/03-erosion.nc, and writes a figure and a table.
+RESULTS/PRESET/{before,after}/seed-N, as the last stage left them, and writes a figure and a table.
 """
 import argparse
 import csv
@@ -20,8 +20,15 @@ import numpy as np
 INK, GREY, RED = "#20262d", "#8c949e", "#bd3829"
 
 
-def bin_means(path, bins):
+def relief_of(folder):
+    """The file of the last stage that changed the elevation."""
+    files = (folder / name for name in ("05-hydrology.nc", "03-erosion.nc", "02-isostasy.nc"))
+    return next(file for file in files if file.exists())
+
+
+def bin_means(folder, bins):
     """Mean elevation of equal shares of a planet's area, from the lowest to the highest."""
+    path = relief_of(folder)
     with netCDF4.Dataset(path) as file:
         elevation = np.asarray(file["elevation"][:], dtype=float).ravel()
         area = np.asarray(file["cell_area"][:], dtype=float)
@@ -51,7 +58,7 @@ class Sweep:
         self.fit = json.loads((folder / "fit" / "calibration.json").read_text())
         self.quantile, self.target = read_target(folder / "fit" / "hypsometry.csv")
         self.curves = {
-            when: [bin_means(folder / when / f"seed-{seed}" / "03-erosion.nc", self.target.size)
+            when: [bin_means(folder / when / f"seed-{seed}", self.target.size)
                    for seed in seeds]
             for when in ("before", "after")
         }

@@ -182,6 +182,67 @@ TEST(RegionScore, FindsTheCoastAndKeepsAwayFromThePoles) {
   EXPECT_GE(near, 7);
 }
 
+/// A rectangle of land, cells from the middle of a planet of 360 x 180.
+void raise_land(const Grid& planet, std::vector<float>& z, int west, int east, int south,
+                int north) {
+  for (int j = south; j <= north; ++j) {
+    for (int i = west; i <= east; ++i) z[planet.cell(180 + i, 90 + j)] = 1000.0F;
+  }
+}
+
+TEST(RegionLand, TellsIslandsFromCoastsAndStraits) {
+  const Grid planet = Grid::sphere(360, 180);
+  const double cell_m = planet.step_north_m();
+  const Index centre = planet.cell(180, 90);
+  const auto land = [&](auto... rectangles) {
+    std::vector<float> z(planet.size(), -3000.0F);
+    (raise_land(planet, z, rectangles[0], rectangles[1], rectangles[2], rectangles[3]), ...);
+    return region_land(planet, z, centre, 21 * cell_m, 11 * cell_m);  // columns +-10, rows +-5
+  };
+  using Box = std::array<int, 4>;
+  const RegionLand island = land(Box{-6, 4, -3, 3});
+  EXPECT_DOUBLE_EQ(island.whole, 1.0);
+  EXPECT_DOUBLE_EQ(island.weight(), 1.0);
+  const RegionLand coast = land(Box{0, 40, -20, 20});
+  EXPECT_DOUBLE_EQ(coast.main, 1.0);
+  EXPECT_DOUBLE_EQ(coast.weight(), 0.85);
+  const RegionLand strait = land(Box{3, 40, -20, 20}, Box{-40, -3, -20, 20});
+  EXPECT_NEAR(strait.main, 0.5, 1e-9);
+  EXPECT_NEAR(strait.others, 0.5, 1e-9);
+  EXPECT_DOUBLE_EQ(strait.weight(), 0.0);
+  // Lands that hang together beyond the window are two in it; those that touch at a corner one.
+  const RegionLand bay = land(Box{3, 40, -20, 20}, Box{-40, -3, -20, 20}, Box{-40, 40, 15, 20});
+  EXPECT_NEAR(bay.others, 0.5, 1e-9);
+  EXPECT_DOUBLE_EQ(land(Box{1, 40, 1, 20}, Box{-40, 0, -20, 0}).main, 1.0);
+  // An island off a coast.
+  const RegionLand both = land(Box{5, 40, -20, 20}, Box{-6, -3, -2, 2});
+  EXPECT_NEAR(both.whole, 20.0 / 86.0, 1e-3);
+  EXPECT_DOUBLE_EQ(both.others, 0.0);
+  EXPECT_DOUBLE_EQ(land().weight(), 1.0);
+}
+
+TEST(RegionScore, LooksForLandThatIsWhole) {
+  const Grid planet = Grid::sphere(512, 256);
+  const double width_m = 1.6e6, height_m = 0.8e6;
+  double whole = 0.0, by_figures = 0.0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const Noise noise(seed, "land");
+    std::vector<float> z(planet.size());
+    for (Index c = 0; c < planet.size(); ++c) {
+      const auto place = planet.unit_vector(planet.column(c), planet.row(c));
+      z[c] = 8000.0F * noise.fbm(place, 3.0, 6) - 700.0F;
+    }
+    const auto weight_by = [&](RegionRule rule) {
+      const Index best = best_region(planet, z, {}, width_m, height_m, seed, rule);
+      return region_land(planet, z, best, width_m, height_m).weight();
+    };
+    EXPECT_GT(weight_by(RegionRule::whole), 0.8) << "seed " << seed;
+    whole += weight_by(RegionRule::whole) / 8.0;
+    by_figures += weight_by(RegionRule::figures) / 8.0;
+  }
+  EXPECT_GT(whole, by_figures + 0.15);
+}
+
 TEST(RegionScore, WindowsOfOneCellStandOnLandAtTheShore) {
   const Grid planet = Grid::sphere(128, 64);
   std::vector<float> z(planet.size());

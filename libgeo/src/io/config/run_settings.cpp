@@ -48,12 +48,12 @@ std::vector<Parameter> RunSettings::parameters() {
       text("dem.variable", dem_variable,
            "variable of that file; empty is the one that looks like relief", "design"),
       text("dem.range", dem_range,
-           "MIN,MAX, heights of black and white in an image, m; empty is what the JSON beside it "
-           "says",
+           "MIN,MAX, values of black and white in an image, of a relief in m; empty is what the "
+           "JSON beside it says; without dem.file it is that of images in fields.* that have none",
            "design"),
       text("dem.window", dem_window,
-           "W,S,E,N, where the edges of an image lie, degrees; empty is the whole planet, or what "
-           "the JSON beside it says",
+           "W,S,E,N, where the edges of images lie, degrees; empty is the whole planet, or what "
+           "the JSON beside them says",
            "design"),
       choice("dem.sea_level", dem_sea_level, {"datum", "fraction"},
              "where the sea stands: at the relief's own zero, or where planet.ocean_fraction of "
@@ -116,6 +116,8 @@ std::vector<Parameter> RunSettings::parameters() {
            "design"),
       integer("output.compression", compression, "1", 0, 9,
               "how hard NetCDF files are compressed; 0 stores them as they are", "design"),
+      integer("output.vtk_compression", vtk_compression, "1", 0, 9,
+              "how hard VTK files are compressed; 0 stores them as they are", "design"),
   };
 }
 

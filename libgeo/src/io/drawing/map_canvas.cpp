@@ -143,12 +143,13 @@ void MapCanvas::stroke(const PageLines& lines) {
   cairo_stroke(pen());
 }
 
-void MapCanvas::text_on_map(double x, double y, const std::string& text, Align align, Rgb rgb) {
+void MapCanvas::text_on_map(double x, double y, const std::string& text, Align align, Rgb rgb,
+                            double edge_alpha) {
   const double shift = align == Align::left ? 0.0 : align == Align::centre ? 0.5 : 1.0;
   cairo_move_to(pen(), x - shift * text_width(text), y);
   cairo_text_path(pen(), text.c_str());
-  colour({1, 1, 1}, 0.75);
-  cairo_set_line_width(pen(), 3.5 * unit_);
+  colour({1, 1, 1}, edge_alpha);
+  cairo_set_line_width(pen(), (edge_alpha < 1.0 ? 3.5 : 6.0) * unit_);
   cairo_set_line_join(pen(), CAIRO_LINE_JOIN_ROUND);
   cairo_stroke_preserve(pen());
   colour(rgb);

@@ -83,8 +83,9 @@ class MapCanvas : public Canvas {
   void frame();
   /// Strokes lines of the map, as they stand in its pixels.
   void stroke(const PageLines& lines);
-  /// Text with a pale edge, to be read on any ground.
-  void text_on_map(double x, double y, const std::string& text, Align align, Rgb rgb);
+  /// Text with a pale edge, to be read on any ground; over lines the edge is solid.
+  void text_on_map(double x, double y, const std::string& text, Align align, Rgb rgb,
+                   double edge_alpha = 0.75);
 
   /// Colour bar below the map: the stops of the colour maps one after the other, equally wide.
   void colour_bar(std::span<const ColourMap* const> maps, bool classed);

@@ -100,6 +100,14 @@ void write_text_file(const fs::path& path, const std::string& text) {
   file.commit();
 }
 
+void copy_whole_file(const fs::path& from, const fs::path& to) {
+  AtomicFile file(to);
+  std::error_code error;
+  fs::copy_file(from, file.temporary(), fs::copy_options::overwrite_existing, error);
+  if (error) file.fail(error.message());
+  file.commit();
+}
+
 void remove_leftovers(const fs::path& folder) {
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(folder, ignored)) {

@@ -372,19 +372,20 @@ Relief read_relief_with_gaps(const std::string& file_and_variable, const Planet&
   return read_raster(file_and_variable, "", "m", Gaps::nan, planet);
 }
 
-Relief read_field(const std::string& file_and_variable, const FieldSpec& spec,
-                  const Planet& planet) {
+Relief read_field(const std::string& file_and_variable, const FieldSpec& spec, const Planet& planet,
+                  const ImageWords& image) {
   return within_bounds(
       read_raster(file_and_variable, std::string(spec.name), std::string(spec.units), Gaps::refused,
-                  planet, {}, bounds_of(spec)),
+                  planet, image, bounds_of(spec)),
       spec);
 }
 
 Relief read_field_with_gaps(const std::string& file_and_variable, const FieldSpec& spec,
-                            const Planet& planet) {
-  return within_bounds(read_raster(file_and_variable, std::string(spec.name),
-                                   std::string(spec.units), Gaps::nan, planet, {}, bounds_of(spec)),
-                       spec);
+                            const Planet& planet, const ImageWords& image) {
+  return within_bounds(
+      read_raster(file_and_variable, std::string(spec.name), std::string(spec.units), Gaps::nan,
+                  planet, image, bounds_of(spec)),
+      spec);
 }
 
 std::vector<float> resample(const Relief& relief, const Grid& target) {

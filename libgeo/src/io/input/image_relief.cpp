@@ -156,9 +156,8 @@ Meaning meaning_of(const fs::path& path, const ImageMeaning& given, double great
     take(given.least, given.most);
   } else {
     throw InputError(
-        "does not say what its samples mean: a relief takes --dem-range MIN,MAX, the heights of "
-        "black "
-        "and white, and any the JSON that terrane export writes beside it");
+        "does not say what its samples mean: give --dem-range MIN,MAX, the values of black and "
+        "white, or the JSON that terrane export writes beside it");
   }
   if (given.window) {
     meaning.window = given.window;

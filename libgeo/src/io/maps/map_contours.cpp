@@ -18,9 +18,12 @@ namespace {
 constexpr Rgb kContour{0.40F, 0.27F, 0.15F};
 constexpr double kLines = 14.0;  // about so many between sea level and the highest ground
 constexpr int kIndexLine = 5;    // every fifth is heavier
+constexpr double kType = 18.0;   // of the heights on them, px
 
 // Points of a line that lie nearer to the one before are left out: no eye sees them.
 constexpr double kStepPx = 1.2;
+
+void set_font(MapCanvas& canvas) { canvas.font(kType * canvas.unit(), true); }
 
 /// The lines of one height on a raster, pixels from its upper left corner.
 PageLines contour(const Raster& height_m, double level_m) {
@@ -56,25 +59,20 @@ PageLines contour(const Raster& height_m, double level_m) {
   return out;
 }
 
-/// Heights along index contours, apart from each other, upright.
-class ContourLabels {
+/// Finds where heights stand along index contours: apart from each other, upright.
+class Places {
  public:
-  explicit ContourLabels(MapCanvas& canvas) : canvas_(canvas) { canvas.font(13 * canvas.unit()); }
+  explicit Places(MapCanvas& canvas) : canvas_(canvas) { set_font(canvas); }
 
   void label(const std::vector<PagePoint>& line, const std::string& text) {
-    const double width = canvas_.text_width(text) + 6 * canvas_.unit();
+    const double width = canvas_.text_width(text) + 8 * canvas_.unit();
     const auto best = straightest(line, width);
     if (!best) return;
-    taken_.push_back(best->middle);
-    cairo_t* pen = canvas_.pen();
     double angle = std::atan2(best->down, best->right);
     if (std::cos(angle) < 0.0) angle += M_PI;
-    cairo_save(pen);
-    cairo_translate(pen, best->middle.x, best->middle.y);
-    cairo_rotate(pen, angle);
-    canvas_.text_on_map(0.0, 4.6 * canvas_.unit(), text, Align::centre, kContour);
-    cairo_restore(pen);
+    labels_.push_back({best->middle, angle, text});
   }
+  [[nodiscard]] std::vector<ContourLabel> take() { return std::move(labels_); }
 
  private:
   struct Stretch {
@@ -88,8 +86,8 @@ class ContourLabels {
         at.y > canvas_.layout().map_height - edge) {
       return false;
     }
-    return std::none_of(taken_.begin(), taken_.end(), [&](const PagePoint& other) {
-      return std::hypot(at.x - other.x, at.y - other.y) < 150 * canvas_.unit();
+    return std::none_of(labels_.begin(), labels_.end(), [&](const ContourLabel& other) {
+      return std::hypot(at.x - other.middle.x, at.y - other.middle.y) < 170 * canvas_.unit();
     });
   }
 
@@ -117,19 +115,20 @@ class ContourLabels {
   }
 
   MapCanvas& canvas_;
-  std::vector<PagePoint> taken_;
+  std::vector<ContourLabel> labels_;
 };
 
 }  // namespace
 
-void draw_contours(MapCanvas& canvas, const MapFrame& frame, std::span<const float> elevation_m) {
+std::vector<ContourLabel> draw_contours(MapCanvas& canvas, const MapFrame& frame,
+                                        std::span<const float> elevation_m) {
   const Raster height = sample_mean(frame, Filter::smooth, [&](Index i) { return elevation_m[i]; });
   float highest = 0.0F;
   for (const float value : height.values) highest = std::max(highest, value);
-  if (highest < 1.0F) return;
+  if (highest < 1.0F) return {};
   const double step = round_down_nicely(highest / kLines);
+  Places places(canvas);
   canvas.inside([&] {
-    ContourLabels labels(canvas);
     cairo_set_line_join(canvas.pen(), CAIRO_LINE_JOIN_ROUND);
     for (int k = 1; k * step < highest; ++k) {
       const bool index = k % kIndexLine == 0;
@@ -138,7 +137,23 @@ void draw_contours(MapCanvas& canvas, const MapFrame& frame, std::span<const flo
       cairo_set_line_width(canvas.pen(), (index ? 1.2 : 0.7) * canvas.unit());
       canvas.stroke(lines);
       if (!index) continue;
-      for (const auto& line : lines) labels.label(line, label_of(k * step));
+      for (const auto& line : lines) places.label(line, label_of(k * step));
+    }
+  });
+  return places.take();
+}
+
+void draw_contour_labels(MapCanvas& canvas, std::span<const ContourLabel> labels) {
+  set_font(canvas);
+  canvas.inside([&] {
+    cairo_t* pen = canvas.pen();
+    for (const ContourLabel& label : labels) {
+      cairo_save(pen);
+      cairo_translate(pen, label.middle.x, label.middle.y);
+      cairo_rotate(pen, label.angle);
+      canvas.text_on_map(0.0, 0.36 * kType * canvas.unit(), label.text, Align::centre, kContour,
+                         1.0);
+      cairo_restore(pen);
     }
   });
 }

@@ -1,14 +1,25 @@
 #pragma once
 
 #include <span>
+#include <string>
+#include <vector>
 
 #include "io/drawing/map_canvas.hpp"
 #include "io/drawing/map_raster.hpp"
 
 namespace geo::io {
 
-/// Draws the contours of the land of a relief (m, a value for each cell): every fifth line heavier,
-/// with its height where it runs straight for a while.
-void draw_contours(MapCanvas& canvas, const MapFrame& frame, std::span<const float> elevation_m);
+/// The height of a contour where it runs straight for a while, pixels of the map.
+struct ContourLabel {
+  PagePoint middle;
+  double angle;  ///< clockwise from the right
+  std::string text;
+};
+
+/// Draws the contours of the land of a relief (m, a value for each cell), every fifth line heavier.
+/// Returns the heights that belong on these, to be drawn once all other lines are.
+std::vector<ContourLabel> draw_contours(MapCanvas& canvas, const MapFrame& frame,
+                                        std::span<const float> elevation_m);
+void draw_contour_labels(MapCanvas& canvas, std::span<const ContourLabel> labels);
 
 }  // namespace geo::io

@@ -12,7 +12,7 @@ namespace geo::io {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-constexpr Rgb kRiver{0.16F, 0.39F, 0.62F}, kIce{0.955F, 0.97F, 0.985F};
+constexpr Rgb kRiver{0.16F, 0.39F, 0.62F};
 
 constexpr std::array<FieldMap, 6> kFieldMaps{{
     {&field::temperature, "temperature", "Temperature", "annual mean near the surface, °C",
@@ -35,8 +35,8 @@ constexpr std::array<FieldMap, 6> kFieldMaps{{
 }};
 
 constexpr std::array<CategoryMap, 3> kCategoryMaps{{
-    {&field::biome, "biomes", "Biomes", "after Whittaker", "Biomes by temperature and moisture.",
-     0.0F},
+    {&field::biome, "biomes", "Biomes", "after Whittaker",
+     "Biomes by temperature and moisture, and land that is frozen all year.", 0.0F, true},
     {&field::koppen_class, "koppen", "Climate classes", "after Köppen and Geiger",
      "Climate classes after Köppen and Geiger.", 0.0F},
     {&field::rock_type, "rock_type", "Rocks", "at the surface, paler under the sea",
@@ -106,6 +106,22 @@ Raster sample_extent(const FieldMap& map, const Scene& scene) {
   return where([](Index) { return true; });
 }
 
+/// Share of each pixel that is frozen all year; empty where that is not known.
+Raster sample_ice(const Scene& scene) {
+  const FrozenGround frozen(scene.state);
+  if (!frozen.is_known()) return {};
+  return sample_mean(scene.frame, Filter::linear,
+                     [&](Index c) { return frozen.at(c) ? 1.0F : 0.0F; });
+}
+
+/// Whether any land on a map is mostly ice.
+bool shows_ice(const MapBase& base, const Raster& ice) {
+  for (std::size_t k = 0; k < ice.values.size(); ++k) {
+    if (base.land_cover.values[k] > 0.5F && ice.values[k] > 0.5F) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 void draw_elevation(const Scene& scene, MapCanvas& canvas) {
@@ -155,13 +171,16 @@ void draw_categories(const CategoryMap& map, const Scene& scene, MapCanvas& canv
   }
   const auto colour_of = [&](int value) { return of_bytes[value + 128]; };
   const Raster category = sample_majority(scene.frame, scene.state.read(*map.field));
+  const Raster ice = map.has_ice ? sample_ice(scene) : Raster();
   const MapBase& base = scene.base;
   canvas.paint_rows([&](int y, ColourRow& row) {
     for (int x = 0; x < category.width; ++x) {
       if (!scene.frame.shows(x, y)) continue;
       const float cover = base.land_cover.at(x, y);
       const Rgb colour = colour_of(static_cast<int>(category.at(x, y)));
-      row.set(x, mix(colour, kPaleSea, map.pale_sea * (1.0F - cover)), 0.34F * cover);
+      const Rgb faded = mix(colour, kPaleSea, map.pale_sea * (1.0F - cover));
+      row.set(x, ice.values.empty() ? faded : mix(faded, kIce, cover * ice.at(x, y)),
+              0.34F * cover);
     }
     shade(row, base, y);
     draw_coast(row, base, y, 0.4F);
@@ -173,26 +192,14 @@ void draw_categories(const CategoryMap& map, const Scene& scene, MapCanvas& canv
     std::replace(name.begin(), name.end(), '_', ' ');
     items.emplace_back(colour_of(flag.value), name);
   }
+  if (shows_ice(base, ice)) items.emplace_back(kIce, kIceName);
   canvas.category_legend(items);
-}
-
-/// Whether any land on a map is mostly ice.
-bool shows_ice(const MapBase& base, const Raster& ice) {
-  for (std::size_t k = 0; k < ice.values.size(); ++k) {
-    if (base.land_cover.values[k] > 0.5F && ice.values[k] > 0.5F) return true;
-  }
-  return false;
 }
 
 void draw_river_map(const Scene& scene, MapCanvas& canvas) {
   const ColourMap sea("sea_depth"), heights("land_elevation");
   const MapBase& base = scene.base;
-  const FrozenGround frozen(scene.state);
-  Raster ice;
-  if (frozen.is_known()) {
-    ice = sample_mean(scene.frame, Filter::linear,
-                      [&](Index c) { return frozen.at(c) ? 1.0F : 0.0F; });
-  }
+  const Raster ice = sample_ice(scene);
   canvas.paint_rows([&](int y, ColourRow& row) {
     for (int x = 0; x < base.shade.width; ++x) {
       const float cover = base.land_cover.at(x, y);
@@ -215,7 +222,7 @@ void draw_river_map(const Scene& scene, MapCanvas& canvas) {
   draw_rivers(canvas, rivers, kRiver);
   canvas.frame();
   std::vector<std::pair<Rgb, std::string>> areas{{kLake, "lakes"}};
-  if (shows_ice(base, ice)) areas.emplace_back(kIce, "frozen all year");
+  if (shows_ice(base, ice)) areas.emplace_back(kIce, kIceName);
   canvas.line_legend(kRiver, river_key(rivers, scene.state), areas);
 }
 
@@ -239,8 +246,9 @@ void draw_wind(const Scene& scene, MapCanvas& canvas) {
 void draw_island(const Scene& scene, MapCanvas& canvas) {
   const ColourMap land("land_elevation"), sea("sea_depth");
   paint_relief(scene, canvas, sea, land);
-  draw_contours(canvas, scene.frame, scene.state.read(field::elevation));
+  const auto heights = draw_contours(canvas, scene.frame, scene.state.read(field::elevation));
   if (has_rivers(scene.state)) draw_rivers(canvas, trace_rivers(scene.frame, scene.state), kRiver);
+  draw_contour_labels(canvas, heights);
   canvas.frame();
   const std::array<const ColourMap*, 2> maps{&sea, &land};
   canvas.colour_bar(maps, false);

@@ -110,6 +110,7 @@ std::vector<const FieldSpec*> map_fields() {
                                        &field::continental_fraction,
                                        &field::wind_east,
                                        &field::wind_north,
+                                       &field::temperature_range,
                                        &field::flow_receiver,
                                        &field::drainage_area,
                                        &field::discharge};
@@ -119,9 +120,9 @@ std::vector<const FieldSpec*> map_fields() {
 }
 
 std::vector<const FieldSpec*> island_map_fields() {
-  std::vector<const FieldSpec*> fields{&field::elevation,     &field::lake_depth,
-                                       &field::flow_receiver, &field::drainage_area,
-                                       &field::discharge,     &field::temperature};
+  std::vector<const FieldSpec*> fields{
+      &field::elevation, &field::lake_depth,  &field::flow_receiver,    &field::drainage_area,
+      &field::discharge, &field::temperature, &field::temperature_range};
   for (const auto& map : category_maps()) fields.push_back(map.field);
   return fields;
 }

@@ -29,7 +29,7 @@ void FrameFiles::write(BackgroundWriter& writer, Frame frame, Provenance provena
     write_netcdf(netcdf, *snapshot, provenance, static_cast<int>(settings_.compression));
     written_.push_back("frames/" + netcdf.filename().string());
     if (!settings_.vtk) return;
-    write_vti(vti, *snapshot, provenance);
+    write_vti(vti, *snapshot, provenance, static_cast<int>(settings_.vtk_compression));
     written_.push_back("frames/" + vti.filename().string());
     listed_.push_back(vti);
     times_.push_back(time_myr);

@@ -327,6 +327,31 @@ double centre_of(const State& state) {
   return rounded(std::atan2(east, north) * 180.0 / M_PI);
 }
 
+/// 2 where land is frozen all year, 1 elsewhere; empty where none is.
+std::vector<std::uint8_t> frozen_cells(const State& state, const Thinning& thinning) {
+  const FrozenGround frozen(state);
+  const Grid& grid = state.grid();
+  const auto elevation = state.read(field::elevation);
+  std::vector<std::uint8_t> cells;
+  cells.reserve(static_cast<std::size_t>(thinning.nx) * thinning.ny);
+  for (int j = 0; j < thinning.ny; ++j) {
+    for (int i = 0; i < thinning.nx; ++i) {
+      const Index cell = grid.cell(thinning.column(i), thinning.row(j));
+      cells.push_back(elevation[cell] >= 0.0F && frozen.at(cell) ? 2 : 1);
+    }
+  }
+  if (std::find(cells.begin(), cells.end(), 2) == cells.end()) cells.clear();
+  return cells;
+}
+
+void add_categories(const CategoryMap& map, const State& state, const Thinning& thinning,
+                    Layers& layers) {
+  auto entry = categories_entry(*map.field, map.title);
+  const auto cells = map.has_ice ? frozen_cells(state, thinning) : std::vector<std::uint8_t>();
+  if (!cells.empty()) entry["over"] = {{"colour", hex(kIce)}, {"name", kIceName}};
+  layers.add(*map.field, std::move(entry), cells);
+}
+
 void add_layers(const State& state, const Thinning& thinning, const MapFrame& frame,
                 Layers& layers) {
   layers.add(field::elevation, relief_entry());
@@ -335,7 +360,7 @@ void add_layers(const State& state, const Thinning& thinning, const MapFrame& fr
     layers.add(*map.field, classes_entry(map), shown_cells(map, state, thinning));
   }
   for (const CategoryMap& map : category_maps()) {
-    if (state.has(*map.field)) layers.add(*map.field, categories_entry(*map.field, map.title));
+    if (state.has(*map.field)) add_categories(map, state, thinning, layers);
   }
   if (state.has(field::plate_id)) layers.add(field::plate_id, plates_entry(state, frame));
   if (state.has(field::wind_east) && state.has(field::wind_north)) {

@@ -86,15 +86,6 @@ State IslandSession::read_planet() const {
   return std::move(*state);
 }
 
-std::string IslandSession::next_name() const {
-  for (int number = 2;; ++number) {
-    const std::string name = island_name(number);
-    const bool taken = std::any_of(manifest_.stages.begin(), manifest_.stages.end(),
-                                   [&](const StageRecord& record) { return record.name == name; });
-    if (!taken) return name;
-  }
-}
-
 std::string IslandSession::execute(const RunEvents& events) {
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
@@ -103,7 +94,7 @@ std::string IslandSession::execute(const RunEvents& events) {
     throw ConfigurationError(fmt::format(
         "{} holds a part of a planet: an island needs the whole of one", folder_.path().string()));
   }
-  const std::string name = next_name();
+  const std::string name = manifest_.free_island_name(manifest_.complete ? 1 : 2);
   const auto seed = static_cast<std::uint64_t>(settings_.seed);
   const auto& build = build_info();
   const Provenance provenance{
@@ -125,6 +116,7 @@ std::string IslandSession::execute(const RunEvents& events) {
   context.stop = events.stop;
   StageRecord record;
   record.name = name;
+  record.on_command = true;
   record.builder = this_builder();
   FieldsAtHand at_hand;
   Pipeline::Observer observer;
@@ -144,7 +136,7 @@ std::string IslandSession::execute(const RunEvents& events) {
     record.list(folder_.path(), netcdf.filename().string());
     if (settings_.vtk) {
       const auto vti = folder_.stage_file(stage_number_, name, ".vti");
-      write_vti(vti, snapshot, provenance);
+      write_vti(vti, snapshot, provenance, static_cast<int>(settings_.vtk_compression));
       record.list(folder_.path(), vti.filename().string());
     }
     record.budget = told.budget;

@@ -47,6 +47,7 @@ Json to_json(const StageRecord& stage) {
   Json fields = Json::object();
   for (const FieldRecord& field : stage.fields) fields[field.name] = to_json(field);
   Json json{{"name", stage.name}, {"seconds", stage.seconds}, {"budget", stage.budget}};
+  if (stage.on_command) json["on_command"] = true;
   if (!stage.events.empty()) {
     json["events"] = Json::array();
     for (const EventRecord& event : stage.events) json["events"].push_back(to_json(event));
@@ -91,6 +92,8 @@ EventRecord event_from(const Json& json) {
 StageRecord stage_from(const Json& json) {
   StageRecord stage;
   json.at("name").get_to(stage.name);
+  // Earlier versions did not tell, and left the first name to the run.
+  stage.on_command = json.value("on_command", stage.name.starts_with("island-"));
   json.at("seconds").get_to(stage.seconds);
   for (const auto& [name, value] : json.at("budget").items()) {
     stage.budget[name] = number_or_nan(value);
@@ -168,7 +171,7 @@ Manifest read_manifest(const std::filesystem::path& path) {
 }
 
 std::string disagreement(const StageRecord& record, const Snapshot& file) {
-  if (record.name != file.stage) {
+  if (record.name != file.stage && !(is_island(record) && file.stage == island_name(1))) {
     return fmt::format("stage is {}, manifest says {}", file.stage, record.name);
   }
   for (const FieldRecord& field : record.fields) {
@@ -236,6 +239,15 @@ void Manifest::check_builders(std::string_view asked_by, const std::filesystem::
                     otherwise));
   }
   if (!was_allowed) allowed.emplace_back(kOtherBuild);
+}
+
+std::string Manifest::free_island_name(int first) const {
+  for (int number = first;; ++number) {
+    const std::string name = island_name(number);
+    const bool taken = std::any_of(stages.begin(), stages.end(),
+                                   [&](const StageRecord& record) { return record.name == name; });
+    if (!taken) return name;
+  }
 }
 
 void StageRecord::list(const std::filesystem::path& folder, const std::string& file) {

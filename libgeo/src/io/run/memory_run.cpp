@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "geo/core/error.hpp"
+#include "geo/io/drawing/map_view.hpp"
+#include "geo/io/input/dem.hpp"
 #include "geo/io/run/run_inputs.hpp"
 
 namespace geo::io {
@@ -81,12 +83,40 @@ State state_for(const StageInfo& stage, const std::vector<Snapshot>& planet) {
   return std::move(*state);
 }
 
+/// What is given of a planet, laid out with the turn of the run.
+State laid_out(const State& given, const RunConfiguration& run) {
+  const Grid& grid = given.grid();
+  const std::string& turn = run.settings.turn;
+  if (grid.topology() != Topology::sphere) {
+    throw ConfigurationError(
+        fmt::format("run.turn = {}: a part of a planet cannot be turned: must be empty", turn));
+  }
+  State out(std::make_shared<const Grid>(
+      Grid::sphere(grid.nx(), grid.ny(), grid.figure(), parse_turn("run.turn", turn))));
+  for (const FieldSpec* spec : given.present()) {
+    const auto* values = std::get_if<std::vector<float>>(given.values(*spec).get());
+    if (values == nullptr) {
+      throw ConfigurationError(
+          fmt::format("run.turn = {}: {} has no means: must be empty", turn, spec->name));
+    }
+    const Relief as_given{.elevation_m = *values,
+                          .grid = grid,
+                          .source = std::string(spec->name),
+                          .variable = {},
+                          .raster = {},
+                          .raster_m = {}};
+    out.share(*spec, std::make_shared<const Values>(resample(as_given, out.grid())));
+  }
+  return out;
+}
+
 }  // namespace
 
 std::vector<StageInMemory> run_in_memory(const RunConfiguration& run, const std::string& from,
                                          const std::string& to, const RunEvents& events,
                                          std::optional<State> initial) {
   RunPlan plan = plan_run(run, from, to);
+  if (initial && !run.settings.turn.empty()) initial = laid_out(*initial, run);
   RunInputs inputs = read_inputs(run, plan, std::move(initial), {});
   run.pipeline.check(inputs.state->present(), plan.first, plan.last);
   if (!plan.note.empty()) tell(events.info, plan.note);

@@ -196,13 +196,23 @@ class Reader {
     inputs_.state->set(field::elevation, std::move(elevation_m));
   }
 
+  /// What images of fields mean: where they lie is told of all, their range of those that have no
+  /// JSON beside them, unless it is that of a relief.
+  [[nodiscard]] ImageWords image_words(const std::string& given) const {
+    auto described = split_dem(given).first;
+    described.replace_extension(".json");
+    const bool has_range = settings_.dem_file.empty() && !std::filesystem::exists(described);
+    return {has_range ? settings_.dem_range : "", settings_.dem_window};
+  }
+
   void read_given_fields() {
     State& state = *inputs_.state;
     const auto read = [&](const Field<float>& spec, const std::string& given) {
       if (given.empty() || state.has(spec) || !is_still_read(run_.pipeline, plan_, spec)) return;
       FieldSpec read_as = spec;
       if (&spec == &field::ranking) read_as.units = "";  // an order has no unit
-      state.set(spec, resample(read_field(given, read_as, run_.planet), grid()));
+      state.set(spec,
+                resample(read_field(given, read_as, run_.planet, image_words(given)), grid()));
     };
     read(field::erodibility, settings_.erodibility);
     read(field::uplift_rate, settings_.uplift_rate);
@@ -245,12 +255,14 @@ class Reader {
     if (settings_.initial_elevation.empty()) return refuse_missing_elevation();
     constexpr GridSize kCells{2160, 1080};
     GivenRelief given{Grid::sphere(kCells.nx, kCells.ny, run_.planet.figure()), {}, {}};
-    const Relief relief = read_relief(settings_.initial_elevation, run_.planet);
+    const Relief relief = read_relief(settings_.initial_elevation, run_.planet,
+                                      image_words(settings_.initial_elevation));
     check_whole_planet(relief, "fields.initial_elevation");
     check_heights(relief);
     given.elevation_m = resample(relief, given.grid);
     if (!settings_.initial_age.empty()) {
-      const Relief age = read_field_with_gaps(settings_.initial_age, field::crust_age, run_.planet);
+      const Relief age = read_field_with_gaps(settings_.initial_age, field::crust_age, run_.planet,
+                                              image_words(settings_.initial_age));
       check_whole_planet(age, "fields.initial_age");
       given.age_myr = resample(age, given.grid);
     }

@@ -31,6 +31,7 @@ constexpr StageCost kUnknownStage{"", 0.0, 500.0, 150.0};
 constexpr double kBaseMemory_bytes = 120e6;  // program and libraries
 constexpr double kWriting_ns = 15.0;         // per value: what is not written beside the stages
 constexpr double kCompression = 0.55;        // NetCDF values after deflate
+constexpr double kVtkCompression = 0.51;     // the same without shuffling, in VTK files
 constexpr double kMaps_s = 2.6;              // all maps at their default width, one thread
 constexpr double kMaps_bytes = 12e6;
 constexpr double kMapWidth_px = 1800.0;
@@ -66,8 +67,10 @@ std::optional<double> cells_of_own_grid(Stage& stage) {
 
 }  // namespace
 
+double share_of_vtk(int compression) { return compression > 0 ? kVtkCompression : 1.0; }
+
 Prediction predict(const Pipeline& pipeline, int first, int last, double cells,
-                   const MachineSpeed& speed, bool vtk, double map_width_px) {
+                   const MachineSpeed& speed, double vtk_share, double map_width_px) {
   Prediction sum;
   for (int at = first; at <= last; ++at) {
     const StageInfo& info = pipeline.stages()[at]->info();
@@ -81,7 +84,7 @@ Prediction predict(const Pipeline& pipeline, int first, int last, double cells,
     for (const FieldSpec* spec : info.writes) bytes += value_bytes(*spec);
     const double writing_ns = kWriting_ns * static_cast<double>(info.writes.size());
     sum.seconds += cost->seconds + (cost->nanoseconds + writing_ns) * 1e-9 * own_cells;
-    sum.disk_bytes += bytes * own_cells * (kCompression + (vtk ? 1.0 : 0.0));
+    sum.disk_bytes += bytes * own_cells * (kCompression + vtk_share);
   }
   const double map_area = std::pow(map_width_px / kMapWidth_px, 2);
   sum.seconds += map_area * kMaps_s;

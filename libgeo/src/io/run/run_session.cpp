@@ -61,12 +61,12 @@ struct StageJob {
   std::vector<TextTable> tables;
   StageRecord record;
 
-  void write(bool vtk, int compression) {
-    write_netcdf(netcdf, snapshot, provenance, compression);
+  void write(const RunSettings& settings) {
+    write_netcdf(netcdf, snapshot, provenance, static_cast<int>(settings.compression));
     const auto folder = netcdf.parent_path();
     record.list(folder, netcdf.filename().string());
-    if (vtk) {
-      write_vti(vti, snapshot, provenance);
+    if (settings.vtk) {
+      write_vti(vti, snapshot, provenance, static_cast<int>(settings.vtk_compression));
       record.list(folder, vti.filename().string());
     }
     if (!steps.rows.empty()) write_table(csv, text_of(steps));
@@ -86,6 +86,29 @@ struct StageJob {
 
 }  // namespace
 
+/// An island that was made by command and has the name of the run's own becomes a further one. Its
+/// files have both names until the manifest knows the new one.
+void RunSession::name_islands_anew() {
+  const std::string_view own = run_.name_of(plan_.first);
+  for (StageRecord& record : manifest_.stages) {
+    if (!record.on_command || record.name != own) continue;
+    record.name = manifest_.free_island_name(2);
+    const auto digests = std::exchange(record.file_digests, {});
+    for (std::string& file : record.files) {
+      const std::string before = file;
+      const auto extension = std::filesystem::path(before).extension().string();
+      const auto path = folder_.stage_file(numbers_[plan_.first], record.name, extension);
+      file = path.filename().string();
+      if (std::filesystem::exists(folder_.path() / before)) {
+        copy_whole_file(folder_.path() / before, path);
+      }
+      if (const auto known = digests.find(before); known != digests.end()) {
+        record.file_digests[file] = known->second;
+      }
+    }
+  }
+}
+
 void RunSession::clear_for_this_run() {
   folder_.open();
   const auto& build = build_info();
@@ -101,9 +124,10 @@ void RunSession::clear_for_this_run() {
   manifest_.files.clear();
   // From here on no stage that is about to be replaced counts as complete.
   const bool planet_stays = run_.pipeline.stages()[plan_.first]->info().own_grid;
+  if (planet_stays) name_islands_anew();
   std::erase_if(manifest_.stages, [&](const StageRecord& record) {
+    if (record.on_command) return !planet_stays;
     const int at = run_.pipeline.find(record.name);
-    if (at < 0 && is_island(record)) return !planet_stays;
     return at < plan_.begin || at >= plan_.first;
   });
   write_manifest(folder_.manifest(), manifest_);
@@ -162,7 +186,7 @@ void RunSession::write_stage(BackgroundWriter& writer, FrameFiles& frames, int p
   job->record.events = context.event_records;
   job->record.warnings = context.warnings;
   writer.submit([this, job, &frames] {
-    job->write(run_.settings.vtk, static_cast<int>(run_.settings.compression));
+    job->write(run_.settings);
     for (const std::string& name : frames.take_written()) job->record.list(folder_.path(), name);
     manifest_.stages.push_back(job->record);
     write_manifest(folder_.manifest(), manifest_);
@@ -256,7 +280,8 @@ void RunSession::write_collections() {
     const auto vti = std::filesystem::path(netcdf).replace_extension(".vti");
     if (!std::filesystem::exists(vti)) {
       const auto all = [](const FieldSpec&) { return true; };
-      write_vti(vti, read_recorded(folder_.path(), record, all), read_provenance(netcdf));
+      write_vti(vti, read_recorded(folder_.path(), record, all), read_provenance(netcdf),
+                static_cast<int>(run_.settings.vtk_compression));
     }
     record.list(folder_.path(), vti.filename().string());
   }
@@ -270,7 +295,8 @@ void RunSession::write_summaries(const RunEvents& events) {
   check_stop();
   if (run_.settings.vtk) write_collections();
   if (run_.settings.globe &&
-      !write_globe_files(folder_, manifest_, run_.settings.globe_exaggeration)) {
+      !write_globe_files(folder_, manifest_, run_.settings.globe_exaggeration,
+                         static_cast<int>(run_.settings.vtk_compression))) {
     tell(events.warning, "output.globe: the run covers a part of a planet, there is no globe");
   }
   if (run_.settings.maps) {

@@ -23,7 +23,8 @@ constexpr std::string_view kFreeOnResume[] = {"run.to",
                                               "output.map_width_px",
                                               "output.map_projection",
                                               "output.map_center",
-                                              "output.compression"};
+                                              "output.compression",
+                                              "output.vtk_compression"};
 // The same where stages are computed again behind others that stay.
 constexpr std::string_view kFreeOnPartialOverwrite[] = {"run.from", "run.to"};
 
@@ -163,8 +164,9 @@ int RunSession::count_complete_stages() const {
 /// is refused.
 bool RunSession::is_complete(int position) const {
   const auto record = std::find_if(
-      manifest_.stages.begin(), manifest_.stages.end(),
-      [&](const StageRecord& candidate) { return candidate.name == run_.name_of(position); });
+      manifest_.stages.begin(), manifest_.stages.end(), [&](const StageRecord& candidate) {
+        return candidate.name == run_.name_of(position) && !candidate.on_command;
+      });
   if (record == manifest_.stages.end()) return false;
   const Standing standing = standing_of(folder_.path(), *record);
   if (!standing.difference.empty()) {
@@ -192,14 +194,16 @@ std::optional<State> RunSession::load_complete_stages() const {
 Prediction RunSession::prediction_on(double cells, const MachineSpeed& speed) const {
   const RunSettings& settings = run_.settings;
   const double map_width_px = settings.maps ? static_cast<double>(settings.map_width_px) : 0.0;
+  const double vtk_share = share_of_vtk(static_cast<int>(settings.vtk_compression));
   const auto predicted = [&](bool vtk) {
-    return predict(run_.pipeline, plan_.first, plan_.last, cells, speed, vtk, map_width_px);
+    return predict(run_.pipeline, plan_.first, plan_.last, cells, speed, vtk ? vtk_share : 0.0,
+                   map_width_px);
   };
   Prediction sum = predicted(settings.vtk);
   if (settings.globe) {
     constexpr double kSurface_bytes = 36.0;  // of a cell: corners and faces
     sum.disk_bytes += predicted(true).disk_bytes - predicted(false).disk_bytes +
-                      kSurface_bytes * cells * (plan_.last - plan_.first + 1);
+                      vtk_share * kSurface_bytes * cells * (plan_.last - plan_.first + 1);
   }
   return sum;
 }

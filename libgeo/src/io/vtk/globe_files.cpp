@@ -22,7 +22,7 @@ std::shared_ptr<const Values> heights_of(const Snapshot& snapshot) {
 
 }  // namespace
 
-bool write_globe_files(const RunFolder& folder, Manifest& manifest, double times) {
+bool write_globe_files(const RunFolder& folder, Manifest& manifest, double times, int compression) {
   std::vector<std::filesystem::path> files;
   std::shared_ptr<const Values> heights;
   for (StageRecord& record : manifest.stages) {
@@ -35,7 +35,7 @@ bool write_globe_files(const RunFolder& folder, Manifest& manifest, double times
     std::span<const float> elevation_m;
     if (heights) elevation_m = std::get<std::vector<float>>(*heights);
     const auto vtp = std::filesystem::path(netcdf).replace_extension(".vtp");
-    write_globe(vtp, snapshot, read_provenance(netcdf), elevation_m, times);
+    write_globe(vtp, snapshot, read_provenance(netcdf), elevation_m, times, compression);
     files.push_back(vtp);
     record.list(folder.path(), vtp.filename().string());
   }

@@ -50,14 +50,14 @@ void add_place(vtkImageData& image, const Grid& grid) {
 }  // namespace
 
 void write_vti(const std::filesystem::path& path, const Snapshot& snapshot,
-               const Provenance& provenance) {
+               const Provenance& provenance, int compression) {
   const vtkNew<vtkImageData> image;
   set_geometry(*image, *snapshot.grid);
   add_fields(*image, snapshot);
   add_provenance(*image, provenance);
   add_place(*image, *snapshot.grid);
   const vtkNew<vtkXMLImageDataWriter> writer;
-  write_whole(*writer, *image, path);
+  write_whole(*writer, *image, path, compression);
 }
 
 void write_pvd(const std::filesystem::path& path, const std::vector<std::filesystem::path>& files,

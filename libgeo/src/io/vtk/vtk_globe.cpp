@@ -138,7 +138,8 @@ void set_faces(vtkPolyData& surface, const Grid& grid, const Corners& corners) {
 }  // namespace
 
 void write_globe(const std::filesystem::path& path, const Snapshot& snapshot,
-                 const Provenance& provenance, std::span<const float> elevation_m, double times) {
+                 const Provenance& provenance, std::span<const float> elevation_m, double times,
+                 int compression) {
   const Grid& grid = *snapshot.grid;
   if (grid.topology() != Topology::sphere) {
     throw Bug(path.string() + ": only a grid round the whole planet is a globe");
@@ -159,7 +160,7 @@ void write_globe(const std::filesystem::path& path, const Snapshot& snapshot,
   add_fields(*surface, snapshot);
   add_provenance(*surface, provenance);
   const vtkNew<vtkXMLPolyDataWriter> writer;
-  write_whole(*writer, *surface, path);
+  write_whole(*writer, *surface, path, compression);
 }
 
 }  // namespace geo::io

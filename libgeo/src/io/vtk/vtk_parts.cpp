@@ -17,6 +17,7 @@
 #include <vtkSmartPointer.h>
 #include <vtkStringArray.h>
 #include <vtkXMLWriter.h>
+#include <vtkZLibDataCompressor.h>
 
 #include <string>
 
@@ -97,7 +98,8 @@ void add_provenance(vtkDataSet& data, const Provenance& provenance) {
   add_text(data, "seed", std::to_string(provenance.seed));
 }
 
-void write_whole(vtkXMLWriter& writer, vtkDataSet& data, const std::filesystem::path& path) {
+void write_whole(vtkXMLWriter& writer, vtkDataSet& data, const std::filesystem::path& path,
+                 int compression) {
   AtomicFile whole(path);
   silence(writer);
   silence(*writer.GetExecutive());
@@ -107,6 +109,11 @@ void write_whole(vtkXMLWriter& writer, vtkDataSet& data, const std::filesystem::
   writer.EncodeAppendedDataOff();
   writer.SetHeaderTypeToUInt64();
   writer.SetCompressorTypeToNone();
+  const vtkNew<vtkZLibDataCompressor> compressor;
+  if (compression > 0) {
+    compressor->SetCompressionLevel(compression);
+    writer.SetCompressor(compressor);
+  }
   if (writer.Write() == 0 || writer.GetErrorCode() != vtkErrorCode::NoError) {
     whole.fail(vtkErrorCode::GetStringFromErrorCode(writer.GetErrorCode()));
   }

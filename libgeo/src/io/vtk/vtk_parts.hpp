@@ -14,7 +14,9 @@ namespace geo::io {
 void add_fields(vtkDataSet& data, const Snapshot& snapshot);
 /// Says in a data set where it comes from.
 void add_provenance(vtkDataSet& data, const Provenance& provenance);
-/// Writes a data set as XML with appended raw data: temporary name, flush, rename. Throws IoError.
-void write_whole(vtkXMLWriter& writer, vtkDataSet& data, const std::filesystem::path& path);
+/// Writes a data set as XML with appended raw data, deflated unless `compression` is 0: temporary
+/// name, flush, rename. Throws IoError.
+void write_whole(vtkXMLWriter& writer, vtkDataSet& data, const std::filesystem::path& path,
+                 int compression);
 
 }  // namespace geo::io

@@ -94,6 +94,115 @@ void check_sphere(const Grid& planet) {
   throw InputError("the choice of an island needs a whole planet, this grid is a part of one");
 }
 
+/// The land of a window in pieces that hang together within it.
+class Pieces {
+ public:
+  Pieces(const Grid& planet, std::span<const float> z, Index centre, const Reach& reach)
+      : stride_(std::max({1, reach.columns / 64, reach.rows / 64})),
+        across_(2 * (reach.columns / stride_) + 1),
+        up_(2 * (reach.rows / stride_) + 1),
+        area_m2_(static_cast<std::size_t>(across_) * up_, 0.0),
+        parent_(area_m2_.size(), -1),
+        is_cut_(area_m2_.size(), 0) {
+    for (int v = 0; v < up_; ++v) {
+      const int j = planet.row(centre) + (v - up_ / 2) * stride_;
+      if (j < 0 || j >= planet.ny()) continue;
+      for (int u = 0; u < across_; ++u) {
+        const int column = planet.column(centre) + (u - across_ / 2) * stride_;
+        const int i = ((column % planet.nx()) + planet.nx()) % planet.nx();
+        if (z[planet.cell(i, j)] >= 0.0F) add(u, v, planet.area_m2(j));
+      }
+    }
+  }
+
+  /// Calls `take(area_m2, is_cut)` for each piece.
+  template <class Take>
+  void for_each(const Take& take) const {
+    for (int at = 0; at < static_cast<int>(parent_.size()); ++at) {
+      if (parent_[at] == at) take(area_m2_[at], is_cut_[at] != 0);
+    }
+  }
+
+ private:
+  void add(int u, int v, double area_m2) {
+    const int at = v * across_ + u;
+    parent_[at] = at;
+    area_m2_[at] = area_m2;
+    is_cut_[at] = u == 0 || v == 0 || u == across_ - 1 || v == up_ - 1 ? 1 : 0;
+    if (u > 0) join(at, at - 1);
+    for (int before = u - 1; v > 0 && before <= u + 1; ++before) {
+      if (before >= 0 && before < across_) join(at, (v - 1) * across_ + before);
+    }
+  }
+  int root(int at) {
+    while (parent_[at] != at) at = parent_[at] = parent_[parent_[at]];
+    return at;
+  }
+  void join(int at, int other) {
+    if (parent_[other] < 0) return;
+    const int a = root(at), b = root(other);
+    if (a == b) return;
+    const int first = std::min(a, b), second = std::max(a, b);
+    parent_[second] = first;
+    area_m2_[first] += area_m2_[second];
+    is_cut_[first] |= is_cut_[second];
+  }
+
+  int stride_, across_, up_;
+  std::vector<double> area_m2_;
+  std::vector<int> parent_;
+  std::vector<std::int8_t> is_cut_;
+};
+
+RegionLand land_of(const Pieces& pieces) {
+  RegionLand land;
+  double cut = 0.0;
+  pieces.for_each([&](double area_m2, bool is_cut) {
+    (is_cut ? cut : land.whole) += area_m2;
+    if (is_cut) land.main = std::max(land.main, area_m2);
+  });
+  const double all = land.whole + cut;
+  if (all == 0.0) return {};
+  return {land.whole / all, land.main / all, (cut - land.main) / all};
+}
+
+/// A window that may be chosen.
+struct Candidate {
+  bool has_land;
+  double score;
+  Index cell;
+};
+
+bool is_better(const Candidate& a, const Candidate& b) {
+  return std::tie(b.has_land, b.score, a.cell) < std::tie(a.has_land, a.score, b.cell);
+}
+
+void keep_best(std::vector<Candidate>& candidates) {
+  constexpr std::size_t kMost = 64;
+  const auto count = std::min(kMost, candidates.size());
+  std::partial_sort(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(count),
+                    candidates.end(), is_better);
+  candidates.resize(count);
+}
+
+/// The best of windows, in the order of their scores, once scores are weighed by how whole their
+/// land is. A weight is 1 at most.
+Index wholest(std::span<const Candidate> candidates, const Grid& planet, std::span<const float> z,
+              double width_m, double height_m) {
+  Candidate best = candidates.front();
+  best.score = -std::numeric_limits<double>::infinity();
+  for (Candidate here : candidates) {
+    if (here.has_land < best.has_land || here.score <= best.score) break;
+    const Reach reach = reach_at(planet, planet.row(here.cell), width_m, height_m);
+    const bool is_small = reach.columns < 1 || reach.rows < 1;
+    if (here.score > 0.0 && !is_small) {
+      here.score *= land_of(Pieces(planet, z, here.cell, reach)).weight();
+    }
+    if (here.score > best.score) best = here;
+  }
+  return best.cell;
+}
+
 }  // namespace
 
 double RegionFigures::score(double noise) const {
@@ -126,9 +235,21 @@ double region_noise(const Grid& planet, Index centre, double width_m, std::uint6
                                  static_cast<float>(p[2] * frequency));
 }
 
+double RegionLand::weight() const {
+  constexpr double kCut = 0.15, kOthers = 3.0;
+  return std::clamp(1.0 - kCut * main - kOthers * others, 0.0, 1.0);
+}
+
+RegionLand region_land(const Grid& planet, std::span<const float> elevation_m, Index centre,
+                       double width_m, double height_m) {
+  check_sphere(planet);
+  return land_of(
+      Pieces(planet, elevation_m, centre, reach_at(planet, planet.row(centre), width_m, height_m)));
+}
+
 Index best_region(const Grid& planet, std::span<const float> elevation_m,
                   std::span<const std::int8_t> boundary_type, double width_m, double height_m,
-                  std::uint64_t seed) {
+                  std::uint64_t seed, RegionRule rule) {
   check_sphere(planet);
   const int ny = planet.ny(), middle = ny / 2;
   const int tenth = static_cast<int>(std::ceil(0.1 * ny));
@@ -140,15 +261,7 @@ Index best_region(const Grid& planet, std::span<const float> elevation_m,
   }
   if (rows.empty()) rows.push_back(middle);
 
-  struct Best {
-    bool has_land = false;
-    double score = -std::numeric_limits<double>::infinity();
-    Index cell = 0;
-    [[nodiscard]] bool operator<(const Best& other) const {
-      return std::tie(has_land, score) < std::tie(other.has_land, other.score);
-    }
-  };
-  std::vector<Best> best_of_row(rows.size());
+  std::vector<std::vector<Candidate>> of_row(rows.size());
   ParallelErrors errors;
 #pragma omp parallel for schedule(dynamic, 1)
   for (std::size_t at = 0; at < rows.size(); ++at) {
@@ -159,18 +272,23 @@ Index best_region(const Grid& planet, std::span<const float> elevation_m,
       add_rows(planet, elevation_m, boundary_type, std::max(0, j - reach.rows),
                std::min(ny - 1, j + reach.rows), 0, planet.nx(), sums);
       const int count = 2 * reach.columns + 1;
+      std::vector<Candidate>& candidates = of_row[at];
       for (int i = 0; i < planet.nx(); i += std::max(1, count / 8)) {
         const Index cell = planet.cell(i, j);
         const RegionFigures figures = figures_of(sums, i - reach.columns, count);
         const bool is_small = reach.columns == 1 || reach.rows == 1;
-        const Best here{is_small ? elevation_m[cell] >= 0.0F : figures.land_fraction > 0.0,
-                        figures.score(region_noise(planet, cell, width_m, seed)), cell};
-        if (best_of_row[at] < here) best_of_row[at] = here;
+        candidates.push_back({is_small ? elevation_m[cell] >= 0.0F : figures.land_fraction > 0.0,
+                              figures.score(region_noise(planet, cell, width_m, seed)), cell});
       }
+      keep_best(candidates);
     });
   }
   errors.rethrow();
-  return std::max_element(best_of_row.begin(), best_of_row.end())->cell;
+  std::vector<Candidate> all;
+  for (const auto& candidates : of_row) all.insert(all.end(), candidates.begin(), candidates.end());
+  std::sort(all.begin(), all.end(), is_better);
+  return rule == RegionRule::figures ? all.front().cell
+                                     : wholest(all, planet, elevation_m, width_m, height_m);
 }
 
 }  // namespace geo

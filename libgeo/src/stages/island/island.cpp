@@ -109,7 +109,8 @@ class IslandStage final : public Stage {
     const Grid& planet = io.grid();
     const Index best =
         best_region(planet, io.read(field::elevation), io.read_optional(field::boundary_type),
-                    p_.nx * p_.cell_m, p_.ny * p_.cell_m, context.seed);
+                    p_.nx * p_.cell_m, p_.ny * p_.cell_m, context.seed,
+                    p_.choose_by == "whole" ? RegionRule::whole : RegionRule::figures);
     return planet.position(planet.column(best), planet.row(best));
   }
 

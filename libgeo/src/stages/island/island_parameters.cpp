@@ -7,6 +7,10 @@ std::vector<Parameter> IslandParameters::declarations() {
       text("island.center", center,
            "LAT,LON of the island's centre in degrees; auto takes the best score of the planet",
            "tectonica2026"),
+      choice("island.choose_by", choose_by, {"whole", "figures"},
+             "what auto looks for: windows that hold islands whole or one coast, of those the best "
+             "land, coast, relief and boundaries; or these figures alone",
+             "tectonica2026"),
       integer("island.nx", nx, "1", 32, 8192, "columns of the island's grid", "tectonica2026"),
       integer("island.ny", ny, "1", 32, 8192, "rows of the island's grid", "tectonica2026"),
       real("island.cell_m", cell_m, "m", 10.0, 20000.0, "size of the island's cells",

@@ -29,6 +29,9 @@ class AtomicFile {
 /// Writes a short text file whole or not at all. Throws IoError.
 void write_text_file(const std::filesystem::path& path, const std::string& text);
 
+/// Copies a file whole or not at all. Throws IoError.
+void copy_whole_file(const std::filesystem::path& from, const std::filesystem::path& to);
+
 /// Removes temporary files that a killed run left in a folder.
 void remove_leftovers(const std::filesystem::path& folder);
 

@@ -45,14 +45,14 @@ Relief read_relief(const std::string& file_and_variable, const Planet& planet,
 Relief read_relief_with_gaps(const std::string& file_and_variable, const Planet& planet);
 /// The same for any other field that is given as a raster (`elevation_m` then holds its values in
 /// the units of the vocabulary, or of the file where those are empty). Without VARIABLE the one
-/// named as the field, else the only raster. An image without a JSON has the bounds of the
-/// quantity.
-Relief read_field(const std::string& file_and_variable, const FieldSpec& spec,
-                  const Planet& planet);
+/// named as the field, else the only raster. An image of which neither `image` nor a JSON tells has
+/// the bounds of the quantity, from 0 to 1 where an order without a unit has none.
+Relief read_field(const std::string& file_and_variable, const FieldSpec& spec, const Planet& planet,
+                  const ImageWords& image = {});
 
 /// The same where cells may be missing: they are NaN.
 Relief read_field_with_gaps(const std::string& file_and_variable, const FieldSpec& spec,
-                            const Planet& planet);
+                            const Planet& planet, const ImageWords& image = {});
 
 /// Area-weighted mean of a relief on another grid (conservative where coarser, bilinear where
 /// finer). On a sphere with a turn the relief is laid out with that turn, by way of cells half as

@@ -39,16 +39,19 @@ struct Snapshot {
 /// stores. Throws IoError (which names the path and the reason).
 void write_netcdf(const std::filesystem::path& path, const Snapshot& snapshot,
                   const Provenance& provenance, int compression = 1);
-/// Writes a snapshot as VTK XML ImageData: cell data, appended raw. Temporary name, flush, rename.
+/// Writes a snapshot as VTK XML ImageData: cell data, appended raw; deflated at levels 1 to 9, as
+/// it lies in memory at 0. Temporary name, flush, rename.
 void write_vti(const std::filesystem::path& path, const Snapshot& snapshot,
-               const Provenance& provenance);
+               const Provenance& provenance, int compression = 0);
 /// Writes a snapshot of a whole planet as a closed surface, VTK XML PolyData: a face for each cell
 /// in the order of the cells, quadrilaterals and at the poles triangles, that share their corners,
 /// so that there is no seam and no hole. Fields are cell data. Corners lie on the ellipsoid, raised
 /// by `times` the mean elevation around them (m, point data `relief`); an empty `elevation_m` is
-/// flat. 32 bytes a cell besides the fields. Temporary name, flush, rename.
+/// flat. 32 bytes a cell besides the fields. Compression as of write_vti. Temporary name, flush,
+/// rename.
 void write_globe(const std::filesystem::path& path, const Snapshot& snapshot,
-                 const Provenance& provenance, std::span<const float> elevation_m, double times);
+                 const Provenance& provenance, std::span<const float> elevation_m, double times,
+                 int compression = 0);
 /// A ParaView collection that lists files with a time step each, in order: 0, 1, 2 and so on, or
 /// the times given.
 void write_pvd(const std::filesystem::path& path, const std::vector<std::filesystem::path>& files,

@@ -18,9 +18,10 @@ namespace geo::io {
 /// islands (none when there is none). Lists the VTK files of the manifest.
 void write_collection_files(const RunFolder& folder, const Manifest& manifest);
 
-/// One more island from the files of a finished planet: 07-island-2.nc and .vti, then -3 and so on,
-/// each with an entry of its own in the manifest, in island.pvd, on maps and in the report. The
-/// run's own configuration and files stay as they are.
+/// One more island from the files of a finished planet: 07-island.nc and .vti if there is none yet,
+/// then 07-island-2.nc and so on, each with an entry of its own in the manifest, in island.pvd, on
+/// maps and in the report. The run's own configuration and files stay as they are. A run that has
+/// not come to its end keeps the first name for itself.
 class IslandSession {
  public:
   /// `parameters` are all declarations, set to the configuration of the folder and then to what is
@@ -38,7 +39,6 @@ class IslandSession {
 
  private:
   [[nodiscard]] State read_planet() const;
-  [[nodiscard]] std::string next_name() const;
 
   const Pipeline& pipeline_;
   int stage_number_;

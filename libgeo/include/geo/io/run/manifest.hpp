@@ -35,6 +35,7 @@ struct StageRecord {
   std::map<std::string, std::string> file_digests;  ///< of their bytes
   std::vector<FieldRecord> fields;
   Builder builder;
+  bool on_command = false;  ///< an island that `terrane island` made, not the run's own
 
   /// Adds a file of the run's folder with its digest, once. Throws IoError.
   void list(const std::filesystem::path& folder, const std::string& file);
@@ -64,6 +65,8 @@ struct Manifest {
   /// word. Throws ConfigurationError.
   void check_builders(std::string_view asked_by, const std::filesystem::path& folder, bool allow,
                       std::string_view otherwise);
+  /// The first name of an island that no stage has, of this number or a higher one.
+  [[nodiscard]] std::string free_island_name(int first) const;
 };
 
 /// Writes manifest.json whole or not at all. Throws IoError.
@@ -79,10 +82,10 @@ std::string disagreement(const StageRecord& record, const FieldSpec& spec, const
 
 /// Name of the NetCDF file of a stage, relative to the folder. Throws InputError if it has none.
 std::string netcdf_of(const StageRecord& record);
-/// Whether the record is that of an island: the run's own ("island") or a further one
-/// ("island-2"), whose file lies on a grid of its own.
+/// Whether the record is that of an island, "island" or "island-2", whose file lies on a grid of
+/// its own.
 bool is_island(const StageRecord& record);
-/// "island" of the run's own, "island-2" of the second.
+/// "island" of the first, "island-2" of the second.
 std::string island_name(int number);
 
 /// Versions of the libraries that this program runs with.

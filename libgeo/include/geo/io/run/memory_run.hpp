@@ -23,8 +23,9 @@ struct StageInMemory {
 
 /// Runs the pipeline from stage `from` to `to` (as configured where empty) and keeps what each
 /// stage writes; no file is written. `initial` holds fields to begin with, such as an elevation in
-/// place of that of `dem.file`. The same bits as in the files of a `RunSession`. Throws
-/// ConfigurationError, InputError, IoError, and Interrupted when `events.stop` was set.
+/// place of that of `dem.file`; like that one they are laid out with `run.turn`. The same bits as
+/// in the files of a `RunSession`. Throws ConfigurationError, InputError, IoError, and Interrupted
+/// when `events.stop` was set.
 std::vector<StageInMemory> run_in_memory(const RunConfiguration& run, const std::string& from,
                                          const std::string& to, const RunEvents& events,
                                          std::optional<State> initial = {});

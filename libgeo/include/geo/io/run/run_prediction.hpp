@@ -13,9 +13,11 @@ struct Prediction {
 };
 
 /// Predicts stages first..last of a pipeline on `cells` cells from costs per cell, one table in the
-/// source, scaled to the speed of this machine. `vtk` as in RunSettings; `map_width_px` is 0 where
-/// no maps are drawn.
+/// source, scaled to the speed of this machine. `vtk_share` is 0 where no VTK files are written,
+/// else share_of_vtk; `map_width_px` is 0 where no maps are drawn.
 Prediction predict(const Pipeline& pipeline, int first, int last, double cells,
-                   const MachineSpeed& speed, bool vtk, double map_width_px);
+                   const MachineSpeed& speed, double vtk_share, double map_width_px);
+/// What VTK files take of the bytes of their values, by RunSettings::vtk_compression.
+double share_of_vtk(int compression);
 
 }  // namespace geo::io

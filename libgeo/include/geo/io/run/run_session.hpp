@@ -77,6 +77,7 @@ class RunSession {
   [[nodiscard]] std::string resolved_config() const;
   [[nodiscard]] std::filesystem::path file_of(int position, std::string_view extension) const;
 
+  void name_islands_anew();
   void clear_for_this_run();
   void compute(const RunEvents& events);
   void write_stage(BackgroundWriter& writer, FrameFiles& frames, int position, const State& state,

@@ -12,6 +12,7 @@ namespace geo {
 /// Settings of the island stage, section "island".
 struct IslandParameters {
   std::string center = "auto";
+  std::string choose_by = "whole";
   std::int64_t nx = 1024;
   std::int64_t ny = 512;
   double cell_m = 400.0;
