@@ -51,6 +51,7 @@ struct RunSettings {
   std::string map_projection = "equirectangular";
   std::string map_center;  ///< "LAT,LON"; empty: 0,0
   std::int64_t compression = 1;
+  bool monthly = false;
 
   std::vector<Event> events;
 
