@@ -134,7 +134,8 @@ TEST(Climate, SlowPlanetsHaveWideCellsAndRetrogradeOnesTradesFromTheWest) {
     }
     return 90.0;
   };
-  EXPECT_GT(trades_to_deg(zonal_wind(72.0, false)), trades_to_deg(zonal_wind(23.934, false)) + 10.0);
+  EXPECT_GT(trades_to_deg(zonal_wind(72.0, false)),
+            trades_to_deg(zonal_wind(23.934, false)) + 10.0);
   EXPECT_LT(zonal_wind(23.934, false)[grid->cell(0, 18)], 0.0F);
   EXPECT_GT(zonal_wind(23.934, true)[grid->cell(0, 18)], 0.0F);
 }

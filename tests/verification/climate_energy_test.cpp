@@ -33,8 +33,8 @@ double second_legendre(double obliquity_deg) {
   double sum = 0.0;
   for (int row = 0; row < kRows; ++row) {
     const double x = (row + 0.5) / kRows;
-    const double q =
-        annual_insolation_w_m2(std::asin(x) / kRadians, {obliquity_deg, 0.0, 0.0}, 4.0);  // S0/4 = 1
+    const double q = annual_insolation_w_m2(std::asin(x) / kRadians, {obliquity_deg, 0.0, 0.0},
+                                            4.0);  // S0/4 = 1
     sum += q * 0.5 * (3 * x * x - 1) / kRows;
   }
   return 5.0 * sum;
@@ -175,8 +175,7 @@ TEST(EnergyBalance, SeaWindsMakeWesternCoastsMild) {
   const auto range = [&](bool retrograde, int column) {
     std::vector<double> blowing(wind);
     if (retrograde) std::fill(blowing.begin(), blowing.end(), -5.0);
-    const auto year =
-        solve_energy_balance(grid, model, retrograde, latitude, blowing, land, flat);
+    const auto year = solve_energy_balance(grid, model, retrograde, latitude, blowing, land, flat);
     const Index cell = grid.cell(column, 34);  // 50 N
     return 2.0 * std::abs(year.harmonic(1)[cell]);
   };

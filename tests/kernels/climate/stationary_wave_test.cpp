@@ -95,16 +95,17 @@ TEST(StationaryWave, WithoutRotationIsTheExactAnswer) {
   for (const int ny : {30, 60, 120}) {
     const Response r(2 * ny, ny, model, 0.0, 0.0, harmonic, kNothing);
     const double e = 1.0 / (3.0 * 86400), e_t = 1.0 / (10.0 * 86400);
-    const double p = -model.heating_m4_s3_w * 100.0 /
-                     (e_t + 40.0 * 40.0 * 2.0 / (e * kRadius_m * kRadius_m));
+    const double p =
+        -model.heating_m4_s3_w * 100.0 / (e_t + 40.0 * 40.0 * 2.0 / (e * kRadius_m * kRadius_m));
     double worst = 0.0;
     for (int j = 1; j + 1 < ny; ++j) {
       for (int i = 0; i < 2 * ny; ++i) {
         const double lat = r.grid.latitude_deg(j) * kRadians,
                      lon = r.grid.longitude_deg(i) * kRadians;
         const Index c = r.grid.cell(i, j);
-        worst = std::max({worst, std::abs(r.east[c] - p * std::sin(lon) / kRadius_m / e),
-                          std::abs(r.north[c] - p * std::sin(lat) * std::cos(lon) / kRadius_m / e)});
+        worst =
+            std::max({worst, std::abs(r.east[c] - p * std::sin(lon) / kRadius_m / e),
+                      std::abs(r.north[c] - p * std::sin(lat) * std::cos(lon) / kRadius_m / e)});
       }
     }
     const double size = std::abs(p) / kRadius_m / e;

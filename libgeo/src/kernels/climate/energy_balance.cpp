@@ -45,14 +45,14 @@ class HeatOperator {
       : grid_(grid), carried_w_k_(grid.ny()) {
     if (grid.topology() == Topology::plane) throw Bug("energy balance: the grid has edges");
     for (int j = 0; j < grid.ny(); ++j) {
-      carried_w_k_[j] = advected_heat_j_m2_k * zonal_wind_m_s[j] / grid.spacing_east_m(j) *
-                        grid.area_m2(j);
+      carried_w_k_[j] =
+          advected_heat_j_m2_k * zonal_wind_m_s[j] / grid.spacing_east_m(j) * grid.area_m2(j);
     }
   }
 
   /// (loss + conductances + wind) T = source, loss in W K-1 per cell.
   [[nodiscard]] RowPreconditioner::Matrix matrix(std::span<const double> diffusivity_w_m2_k,
-                                                    std::span<const Complex> loss) const {
+                                                 std::span<const Complex> loss) const {
     const double radius2 = grid_.figure().radius_m * grid_.figure().radius_m;
     std::vector<Eigen::Triplet<Complex>> entries;
     entries.reserve(loss.size() * 9);
@@ -129,8 +129,8 @@ class Surface {
       insolation_.push_back(
           monthly_insolation_w_m2(latitude_deg[j], model.orbit, model.solar_constant_w_m2));
       const double sine = std::sin(latitude_deg[j] * kRadians);
-      bare_.push_back(
-          std::clamp(model.coalbedo + model.coalbedo_p2 * 0.5 * (3.0 * sine * sine - 1.0), 0.0, 1.0));
+      bare_.push_back(std::clamp(
+          model.coalbedo + model.coalbedo_p2 * 0.5 * (3.0 * sine * sine - 1.0), 0.0, 1.0));
     }
   }
 
@@ -151,12 +151,11 @@ class Surface {
     const double ice = frozen_share(warmest_c, 0.0, model_.ice_width_k);
     const double land = land_[cell], bare = bare_[row];
     const double snowy = model_.snow_coalbedo + ice * (model_.ice_coalbedo - model_.snow_coalbedo);
-    const double sea =
-        bare + sea_ice(temperature.mean_c(cell)) * (model_.sea_ice_coalbedo - bare);
+    const double sea = bare + sea_ice(temperature.mean_c(cell)) * (model_.sea_ice_coalbedo - bare);
     const double melting = (1.0 - land) * sea_ice(temperature.mean_c(cell)) * model_.melt_w_m2_k;
     for (int m = 0; m < kMonths; ++m) {
-      const double snow = std::max(
-          ice, frozen_share(ground_c[m], model_.snow_temperature_c, model_.ice_width_k));
+      const double snow =
+          std::max(ice, frozen_share(ground_c[m], model_.snow_temperature_c, model_.ice_width_k));
       const double share = land * (bare + snow * (snowy - bare)) + (1.0 - land) * sea;
       absorbed[m] = insolation_[row][m] * share -
                     melting * std::max(0.0, temperature.month_c(cell, m) - kMelting_c);
@@ -167,8 +166,9 @@ class Surface {
   /// Sea ice cuts the air off from the water's heat, but melts.
   [[nodiscard]] double capacity_w_yr_m2_k(double annual_mean_c, Index cell) const {
     const double ice = sea_ice(annual_mean_c);
-    const double sea = model_.ocean_heat_capacity_w_yr_m2_k +
-                       ice * (model_.ice_heat_capacity_w_yr_m2_k - model_.ocean_heat_capacity_w_yr_m2_k);
+    const double sea =
+        model_.ocean_heat_capacity_w_yr_m2_k +
+        ice * (model_.ice_heat_capacity_w_yr_m2_k - model_.ocean_heat_capacity_w_yr_m2_k);
     return land_[cell] * model_.land_heat_capacity_w_yr_m2_k + (1.0 - land_[cell]) * sea;
   }
 

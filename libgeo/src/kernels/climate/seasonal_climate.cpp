@@ -93,8 +93,8 @@ void SeasonalYear::warm() {
   const int ny = grid_.ny();
   std::vector<double> zonal_wind(ny);
   for (int j = 0; j < ny; ++j) {
-    zonal_wind[j] = three_cell_zonal_wind_m_s(latitude_deg_[j], model_.circulation,
-                                              grid_.figure().radius_m);
+    zonal_wind[j] =
+        three_cell_zonal_wind_m_s(latitude_deg_[j], model_.circulation, grid_.figure().radius_m);
   }
   const TemperatureCycle temperature =
       solve_energy_balance(grid_, model_.energy, model_.circulation.retrograde, latitude_deg_,
@@ -117,11 +117,11 @@ void SeasonalYear::warm() {
 void SeasonalYear::begin_month(int m, const TemperatureCycle& temperature) {
   Month& month = months_[m];
   const int nx = grid_.nx();
-  for (auto* values : {&month.temperature_c, &month.pressure_hpa, &month.wind_east,
-                       &month.wind_north, &month.descent_1_s, &month.open_flow, &month.mixing,
-                       &month.diffusivity, &month.eddies, &month.activity, &month.saturated_mm,
-                       &month.open_water_1_d, &month.potential_evaporation_mm_d,
-                       &month.land_evaporation_mm_d, &month.heating_w_m2}) {
+  for (auto* values :
+       {&month.temperature_c, &month.pressure_hpa, &month.wind_east, &month.wind_north,
+        &month.descent_1_s, &month.open_flow, &month.mixing, &month.diffusivity, &month.eddies,
+        &month.activity, &month.saturated_mm, &month.open_water_1_d,
+        &month.potential_evaporation_mm_d, &month.land_evaporation_mm_d, &month.heating_w_m2}) {
     values->assign(size_, 0.0F);
   }
   month.column_mm.resize(size_);
@@ -134,8 +134,8 @@ void SeasonalYear::begin_month(int m, const TemperatureCycle& temperature) {
   const std::vector<double> annual_mean_c = row_means<double>(grid_, annual_c);
   const std::vector<double> zonal_c = row_means<float>(grid_, month.temperature_c);
   month.zonal_wind_m_s = thermal_wind_m_s(grid_, model_.circulation, latitude_deg_, zonal_c);
-  const std::vector<double> trough_deg =
-      trough_latitudes_deg(grid_, latitude_deg_, month.temperature_c, zonal_c, model_.itcz_locality);
+  const std::vector<double> trough_deg = trough_latitudes_deg(
+      grid_, latitude_deg_, month.temperature_c, zonal_c, model_.itcz_locality);
   const std::vector<float> eddies =
       eddy_strength(grid_, latitude_deg_, month.temperature_c, zonal_c,
                     model_.eddy_gradient_k_1000km, model_.eddy_locality);
@@ -149,16 +149,16 @@ void SeasonalYear::begin_month(int m, const TemperatureCycle& temperature) {
       const double at_sea_c = month.temperature_c[here];
       const double surface_c = at_sea_c - model_.energy.lapse_k_m * height_m_[here];
       const double warmer_k = at_sea_c - annual_mean_c[j];
-      month.pressure_hpa[here] = static_cast<float>(
-          three_cell_pressure_hpa(latitude_deg_[j], model_.circulation,
-                                  model_.itcz_share * trough_deg[i]) -
-          model_.circulation.thermal_low_hpa_k * warmer_k *
-              (warmer_k > 0.0 ? 1.0 : model_.circulation.cold_high_share));
+      month.pressure_hpa[here] =
+          static_cast<float>(three_cell_pressure_hpa(latitude_deg_[j], model_.circulation,
+                                                     model_.itcz_share * trough_deg[i]) -
+                             model_.circulation.thermal_low_hpa_k * warmer_k *
+                                 (warmer_k > 0.0 ? 1.0 : model_.circulation.cold_high_share));
       const double relative = height_m_[here] / model_.blocking_height_m;
       month.open_flow[here] = static_cast<float>(1.0 / (1.0 + relative * relative));
-      month.diffusivity[here] = static_cast<float>(
-          month.open_flow[here] *
-          (model_.base_diffusivity_m2_s + model_.eddy_diffusivity_m2_s * eddies[here]));
+      month.diffusivity[here] =
+          static_cast<float>(month.open_flow[here] * (model_.base_diffusivity_m2_s +
+                                                      model_.eddy_diffusivity_m2_s * eddies[here]));
       month.eddies[here] = static_cast<float>(1.0 + model_.eddy_rain * eddies[here]);
       const double lifted_c =
           at_sea_c - model_.energy.lapse_k_m * model_.orographic_share * height_m_[here];
@@ -186,8 +186,7 @@ void SeasonalYear::heat_air(Month& month) const {
         month.temperature_c[cell] - zonal_c[grid_.row(static_cast<Index>(cell))];
     const double heating = kWattsPerMillimetreADay * month.rain_mm_d[cell] +
                            model_.sensible_w_m2_k * land_[cell] * warmer_k;
-    month.heating_w_m2[cell] +=
-        static_cast<float>(kRelaxed * (heating - month.heating_w_m2[cell]));
+    month.heating_w_m2[cell] += static_cast<float>(kRelaxed * (heating - month.heating_w_m2[cell]));
   }
 }
 
@@ -225,8 +224,8 @@ std::vector<float> SeasonalYear::convective_excess_k(const Month& month) const {
     const double surface_c = at_sea_c - model_.energy.lapse_k_m * height_m;
     const double humidity = 0.622 * saturation_pressure_pa(surface_c) / kSurfacePressure_pa *
                             std::min(1.0, month.column_mm[cell] / month.saturated_mm[cell]);
-    energy_k[cell] = static_cast<float>(surface_c + kDryLapse_k_m * height_m +
-                                        kLatentOverHeat_k * humidity);
+    energy_k[cell] =
+        static_cast<float>(surface_c + kDryLapse_k_m * height_m + kLatentOverHeat_k * humidity);
   }
   const std::vector<double> around_k =
       smooth_rows(latitude_deg_, row_means<float>(grid_, energy_k), kReach_deg);
@@ -246,16 +245,17 @@ void SeasonalYear::activate(Month& month) const {
   constexpr double kMost = 2.0;
   std::vector<float> rising = convergence(grid_, month.wind_east, month.wind_north);
   for (std::size_t cell = 0; cell < size_; ++cell) {
-    rising[cell] = static_cast<float>(
-        kSecondsPerDay * (model_.ascent_time_d * rising[cell] -
-                          model_.descent_time_d * month.descent_1_s[cell]));
+    rising[cell] =
+        static_cast<float>(kSecondsPerDay * (model_.ascent_time_d * rising[cell] -
+                                             model_.descent_time_d * month.descent_1_s[cell]));
   }
   smooth(grid_, rising, 1000.0 * model_.ascent_smoothing_km);
   const std::vector<float> excess_k = convective_excess_k(month);
   for (std::size_t cell = 0; cell < size_; ++cell) {
     const double lighter = model_.convection_1_k * excess_k[cell];
-    month.activity[cell] = static_cast<float>(month.eddies[cell] * ascent_[cell] *
-                                              std::exp(std::clamp(rising[cell] + lighter, -kMost, kMost)));
+    month.activity[cell] =
+        static_cast<float>(month.eddies[cell] * ascent_[cell] *
+                           std::exp(std::clamp(rising[cell] + lighter, -kMost, kMost)));
   }
 }
 

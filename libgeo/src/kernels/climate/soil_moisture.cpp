@@ -21,8 +21,7 @@ std::array<double, kMonths> soil_evaporation_mm(const SoilMoisture& model,
           std::min(snow_mm, model.melt_mm_k_month * std::max(0.0, temperature_c[m]));
       snow_mm = std::min(snow_mm - melt_mm, kMostSnow_mm);
       const double water_mm = soil_mm + rain_share * precipitation_mm[m] + melt_mm;
-      const double wetness =
-          std::min(1.0, water_mm / (model.stressed_share * model.capacity_mm));
+      const double wetness = std::min(1.0, water_mm / (model.stressed_share * model.capacity_mm));
       evaporation[m] = std::min(water_mm, wetness * potential_mm[m]);
       soil_mm = std::min(model.capacity_mm, water_mm - evaporation[m]);
     }

@@ -59,8 +59,8 @@ class Wave {
       centre_.push_back(parallel(latitude_deg[j] * kRadians, zonal_wind_m_s[j]));
     }
     for (int j = 0; j + 1 < rows_; ++j) {
-      face_.push_back(parallel(-0.5 * kPi + (j + 1) * step,
-                               0.5 * (zonal_wind_m_s[j] + zonal_wind_m_s[j + 1])));
+      face_.push_back(
+          parallel(-0.5 * kPi + (j + 1) * step, 0.5 * (zonal_wind_m_s[j] + zonal_wind_m_s[j + 1])));
     }
     mirror_ = number % 2 == 0 ? 1.0 : -1.0;  // of P beyond a pole
   }
@@ -79,7 +79,8 @@ class Wave {
     const Parallel& at = centre_[j];
     const Complex north = j + 1 < rows_ ? values[j + 1] : mirror_ * values[j];
     const Complex south = j > 0 ? values[j - 1] : mirror_ * values[j];
-    const Complex slope_east = at.wave_number * values[j], slope_north = (north - south) / (2.0 * step_m_);
+    const Complex slope_east = at.wave_number * values[j],
+                  slope_north = (north - south) / (2.0 * step_m_);
     return {-(at.drag * slope_east + at.coriolis * slope_north) / at.inertia(),
             (at.coriolis * slope_east - at.drag * slope_north) / at.inertia()};
   }
@@ -141,8 +142,7 @@ void stationary_wave(const Grid& grid, const StationaryWave& model, double rotat
   const int waves = std::min(model.waves, nx / 2 - 1);
   const bool mountains = model.mountain_share > 0.0;
   Eigen::FFT<double> fourier;
-  std::vector<std::vector<Complex>> heating(ny), height(ny), east(ny), north(ny),
-      descent(ny);
+  std::vector<std::vector<Complex>> heating(ny), height(ny), east(ny), north(ny), descent(ny);
   std::vector<double> line(nx);
   const auto analyse = [&](int j, std::span<const float> values, std::vector<Complex>& spectrum) {
     const auto row = values.subspan(static_cast<std::size_t>(j) * nx, nx);
@@ -164,8 +164,8 @@ void stationary_wave(const Grid& grid, const StationaryWave& model, double rotat
     };
     const Wave wave = wave_of(model.internal);
     const auto smoothed = [&](int j) {
-      const double scale = 1000.0 * model.smoothing_km * m /
-                           (radius_m * std::cos(latitude_deg[j] * kRadians));
+      const double scale =
+          1000.0 * model.smoothing_km * m / (radius_m * std::cos(latitude_deg[j] * kRadians));
       return 1.0 / (1.0 + scale * scale);
     };
     for (int j = 0; j < ny; ++j) {

@@ -58,11 +58,10 @@ std::vector<double> smooth_rows(std::span<const double> latitude_deg,
 
 double three_cell_zonal_wind_m_s(double latitude_deg, const Circulation& model, double radius_m) {
   constexpr double kStep_deg = 1.0;
-  const double slope_pa_m =
-      100.0 *
-      (three_cell_pressure_hpa(latitude_deg + 0.5 * kStep_deg, model) -
-       three_cell_pressure_hpa(latitude_deg - 0.5 * kStep_deg, model)) /
-      (kStep_deg * kRadians * radius_m);
+  const double slope_pa_m = 100.0 *
+                            (three_cell_pressure_hpa(latitude_deg + 0.5 * kStep_deg, model) -
+                             three_cell_pressure_hpa(latitude_deg - 0.5 * kStep_deg, model)) /
+                            (kStep_deg * kRadians * radius_m);
   const double coriolis = 2.0 * model.rotation_rad_s() * std::sin(latitude_deg * kRadians);
   const double drag = model.drag_ocean_s;
   return -coriolis * slope_pa_m / model.air_density_kg_m3 / (drag * drag + coriolis * coriolis);
@@ -80,9 +79,7 @@ std::vector<double> thermal_wind_m_s(const Grid& grid, const Circulation& model,
     const int south = std::max(0, j - 2), north = std::min(ny - 1, j + 2);
     const double across_m = (latitude_deg[north] - latitude_deg[south]) * kRadians * radius_m;
     const double slope_k_m =
-        across_m > 0.0
-            ? (zonal_temperature_c[north] - zonal_temperature_c[south]) / across_m
-            : 0.0;
+        across_m > 0.0 ? (zonal_temperature_c[north] - zonal_temperature_c[south]) / across_m : 0.0;
     const double turning = 2.0 * model.rotation_rad_s();
     const double coriolis = turning * std::sin(latitude_deg[j] * kRadians);
     const double least = turning * std::sin(kTropics_deg * kRadians);
@@ -128,7 +125,8 @@ std::vector<float> eddy_strength(const Grid& grid, std::span<const double> latit
   for (int j = 0; j < ny; ++j) {
     const int south = std::max(0, j - reach), north = std::min(ny - 1, j + reach);
     const double distance = (latitude_deg[north] - latitude_deg[south]) * kRadians * radius_1000km;
-    const double zonal = std::abs(zonal_temperature_c[north] - zonal_temperature_c[south]) / distance;
+    const double zonal =
+        std::abs(zonal_temperature_c[north] - zonal_temperature_c[south]) / distance;
     const double across = 1.0e-6 * grid.spacing_east_m(j);
     const int sideways =
         std::clamp(static_cast<int>(std::lround(0.5 * distance / across)), 1, nx / 4);

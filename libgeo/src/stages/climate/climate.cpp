@@ -9,7 +9,6 @@
 #include "climate_events.hpp"
 #include "climate_frame.hpp"
 #include "climatology_rows.hpp"
-#include "relief_ascent.hpp"
 #include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/climate/circulation.hpp"
 #include "geo/kernels/climate/distance_to_coast.hpp"
@@ -20,6 +19,7 @@
 #include "geo/kernels/numerics/area_sum.hpp"
 #include "geo/kernels/remapping/conservative_remapping.hpp"
 #include "geo/kernels/water/water_balance.hpp"
+#include "relief_ascent.hpp"
 
 namespace geo {
 namespace {
@@ -203,8 +203,8 @@ class SeasonsOfRows {
     std::fill(evaporation.begin(), evaporation.end(), 0.0F);
     std::fill(seasonality.begin(), seasonality.end(), 0.0F);
     const double latitude = frame_.latitudes_deg()[j];
-    const auto sun_w_m2 = monthly_insolation_w_m2(latitude, model_.energy.orbit,
-                                                  model_.energy.solar_constant_w_m2);
+    const auto sun_w_m2 =
+        monthly_insolation_w_m2(latitude, model_.energy.orbit, model_.energy.solar_constant_w_m2);
     for (int m = 0; m < kMonths; ++m) {
       const auto degrees = month_c(m), share = month_mm(m);
       rows_.temperature_departure(m, j, degrees, scratch);
@@ -212,8 +212,8 @@ class SeasonsOfRows {
       // Oudin's formula is linear in T + 5 degC above its threshold.
       const auto per_kelvin =
           static_cast<float>(oudin_evaporation_mm_d(sun_w_m2[m], -4.0) * kDaysPerMonth);
-      const auto summer = static_cast<float>((latitude < 0.0 ? -2.0 : 2.0) *
-                                             std::cos((m - 6) * 30.0 * kRadians));
+      const auto summer =
+          static_cast<float>((latitude < 0.0 ? -2.0 : 2.0) * std::cos((m - 6) * 30.0 * kRadians));
       for (std::size_t i = 0; i < nx; ++i) {
         degrees[i] += temperature[i];
         evaporation[i] += per_kelvin * std::max(0.0F, degrees[i] + 5.0F);
@@ -253,31 +253,31 @@ class SeasonsOfRows {
 /// Months on the stage's grid, for who writes them.
 MonthlyFields months_of(std::shared_ptr<const ClimateFrame> frame,
                         std::shared_ptr<const Climatology> year) {
-  return [frame = std::move(frame), year = std::move(year)](
-             const FieldSpec& field, int month, std::span<const float> annual,
-             std::span<float> out) {
-    const bool is_temperature = &field == &field::temperature_monthly;
-    const bool is_rain = &field == &field::precipitation_monthly;
-    const auto& coarse = is_temperature                        ? year->temperature_departure_k
-                         : is_rain                             ? year->precipitation_share
-                         : &field == &field::wind_east_monthly ? year->wind_east
-                                                               : year->wind_north;
-    const Interpolator values(frame->on_planet(), coarse[month],
-                              is_temperature || is_rain ? Interpolator::Kind::scalar
-                                                        : Interpolator::Kind::vector_component);
-    const Grid& grid = frame->on_planet().fine();
-    const auto nx = static_cast<std::size_t>(grid.nx());
-    std::vector<float> scratch(values.scratch_size());
-    for (int j = 0; j < grid.ny(); ++j) {
-      const std::size_t begin = static_cast<std::size_t>(j) * nx;
-      const auto row = out.subspan(begin, nx);
-      values.row(j, row, scratch);
-      for (std::size_t i = 0; i < nx; ++i) {
-        if (is_temperature) row[i] += annual[begin + i];
-        if (is_rain) row[i] *= annual[begin + i];
-      }
-    }
-  };
+  return
+      [frame = std::move(frame), year = std::move(year)](
+          const FieldSpec& field, int month, std::span<const float> annual, std::span<float> out) {
+        const bool is_temperature = &field == &field::temperature_monthly;
+        const bool is_rain = &field == &field::precipitation_monthly;
+        const auto& coarse = is_temperature                        ? year->temperature_departure_k
+                             : is_rain                             ? year->precipitation_share
+                             : &field == &field::wind_east_monthly ? year->wind_east
+                                                                   : year->wind_north;
+        const Interpolator values(frame->on_planet(), coarse[month],
+                                  is_temperature || is_rain ? Interpolator::Kind::scalar
+                                                            : Interpolator::Kind::vector_component);
+        const Grid& grid = frame->on_planet().fine();
+        const auto nx = static_cast<std::size_t>(grid.nx());
+        std::vector<float> scratch(values.scratch_size());
+        for (int j = 0; j < grid.ny(); ++j) {
+          const std::size_t begin = static_cast<std::size_t>(j) * nx;
+          const auto row = out.subspan(begin, nx);
+          values.row(j, row, scratch);
+          for (std::size_t i = 0; i < nx; ++i) {
+            if (is_temperature) row[i] += annual[begin + i];
+            if (is_rain) row[i] *= annual[begin + i];
+          }
+        }
+      };
 }
 
 class ClimateStage final : public Stage {
@@ -337,10 +337,10 @@ class ClimateStage final : public Stage {
  private:
   /// Brings the coarse year to the stage's own cells. `on_relief` is the ascent over single ranges,
   /// or, with closed formulas, their rain.
-  void finish(const std::shared_ptr<const ClimateFrame>& shared_frame, const SeasonalClimate& model, const SeasonalFields& fields,
-              std::span<const float> planet_ascent, std::span<const float> on_relief,
-              std::span<const float> elevation, const DimmedSun& dimmed, Context& context,
-              const Outputs& out) const {
+  void finish(const std::shared_ptr<const ClimateFrame>& shared_frame, const SeasonalClimate& model,
+              const SeasonalFields& fields, std::span<const float> planet_ascent,
+              std::span<const float> on_relief, std::span<const float> elevation,
+              const DimmedSun& dimmed, Context& context, const Outputs& out) const {
     const ClimateFrame& frame = *shared_frame;
     const Grid& grid = frame.on_planet().fine();
     const bool closed_formulas = p_.model == "blueprint";

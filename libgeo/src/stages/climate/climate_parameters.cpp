@@ -119,7 +119,7 @@ std::vector<Parameter> ClimateParameters::declarations() {
            "wavelength over 2 pi at which half of the heating is smoothed away", "design"),
       real("climate.sensible_w_m2_k", seasonal.sensible_w_m2_k, "W m-2 K-1", 0.0, 50.0,
            "heating of the air over land per kelvin that it is warmer than its parallel",
-           "rodwell2001"),      // Moisture
+           "rodwell2001"),  // Moisture
       real("climate.rain_time_d", m.rain_time_d, "day", 0.1, 50.0,
            "rain-out time of a saturated column of air", "bretherton2004"),
       integer("climate.humidity_exponent", m.humidity_exponent, "1", 0, 12,

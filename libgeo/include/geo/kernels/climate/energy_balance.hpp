@@ -15,28 +15,28 @@ namespace geo {
 struct EnergyBalance {
   double solar_constant_w_m2 = 1361.0;
   Orbit orbit;
-  double outgoing_w_m2 = 204.6;         ///< A at 0 degC
-  double outgoing_slope_w_m2_k = 2.09;  ///< B
-  double diffusivity_w_m2_k = 0.53;     ///< D at 15 degC, on the unit sphere
-  double moist_transport = 1.0;         ///< share of latent heat in D's change with temperature
-  double advected_heat_j_m2_k = 1.0e6;  ///< of the air that the zonal wind moves
-  double coalbedo = 0.697;              ///< mean absorbed share without snow and ice
-  double coalbedo_p2 = -0.0779;         ///< its second Legendre coefficient in latitude
-  double snow_coalbedo = 0.5;           ///< of snow that melts in summer
-  double ice_coalbedo = 0.27;           ///< of land whose snow stays
-  double sea_ice_coalbedo = 0.55;       ///< of sea ice, broken and wet in summer
-  double snow_temperature_c = -2.0;     ///< monthly mean at which half the land is under snow
-  double ice_temperature_c = -16.0;     ///< annual mean at which half the sea is ice
-  double ice_width_k = 3.0;             ///< width of both transitions; 0: no ice and snow at all
-  double land_heat_capacity_w_yr_m2_k = 0.27;
-  double ocean_heat_capacity_w_yr_m2_k = 5.4;
-  double ice_heat_capacity_w_yr_m2_k = 0.5;  ///< of sea ice that does not melt
-  double melt_w_m2_k = 8.0;  ///< heat that melting sea ice takes for each kelvin above -1 degC
-  double gyre_heat_w_m2 = 120.0;  ///< heat that gyres release along a western coast of an ocean
-  double gyre_reach_km = 3200.0;  ///< e-folding distance of a coast's influence
-  double lapse_k_m = 0.0057;
-  double dry_warming_k_m2_w = 0.02;   ///< by which dry ground is warmer for each W m-2 of sunlight
-  double dry_warming_from_w_m2 = 200.0;  ///< above this
+  double outgoing_w_m2 = 198.0;         ///< A at 0 degC
+  double outgoing_slope_w_m2_k = 2.36;  ///< B
+  double diffusivity_w_m2_k = 0.552;    ///< D at 15 degC, on the unit sphere
+  double moist_transport = 1.15;        ///< share of latent heat in D's change with temperature
+  double advected_heat_j_m2_k = 9.5e6;  ///< of the air that the zonal wind moves
+  double coalbedo = 0.682;              ///< mean absorbed share without snow and ice
+  double coalbedo_p2 = -0.0788;         ///< its second Legendre coefficient in latitude
+  double snow_coalbedo = 0.66;          ///< of snow that melts in summer
+  double ice_coalbedo = 0.232;          ///< of land whose snow stays
+  double sea_ice_coalbedo = 0.65;       ///< of sea ice, broken and wet in summer
+  double snow_temperature_c = -4.14;    ///< monthly mean at which half the land is under snow
+  double ice_temperature_c = -9.68;     ///< annual mean at which half the sea is ice
+  double ice_width_k = 2.45;            ///< width of both transitions; 0: no ice and snow at all
+  double land_heat_capacity_w_yr_m2_k = 0.104;
+  double ocean_heat_capacity_w_yr_m2_k = 6.73;
+  double ice_heat_capacity_w_yr_m2_k = 0.532;  ///< of sea ice that does not melt
+  double melt_w_m2_k = 10.1;      ///< heat that melting sea ice takes for each kelvin above -1 degC
+  double gyre_heat_w_m2 = 41.9;   ///< heat that gyres release along a western coast of an ocean
+  double gyre_reach_km = 1030.0;  ///< e-folding distance of a coast's influence
+  double lapse_k_m = 0.00498;
+  double dry_warming_k_m2_w = 0.0268;  ///< by which dry ground is warmer for each W m-2 of sunlight
+  double dry_warming_from_w_m2 = 160.0;  ///< above this
 };
 
 /// Heat that wind-driven gyres bring to the sea, W m-2: trades push warm water west and let cold

@@ -8,21 +8,21 @@ namespace geo {
 
 /// Waves of one vertical structure.
 struct WaveMode {
-  double speed_m_s;            ///< c of free gravity waves
-  double momentum_damping_d;   ///< 1 / e
-  double thermal_damping_d;    ///< 1 / e_T
-  double wind_share;           ///< of the given zonal wind that carries the waves along
+  double speed_m_s;           ///< c of free gravity waves
+  double momentum_damping_d;  ///< 1 / e
+  double thermal_damping_d;   ///< 1 / e_T
+  double wind_share;          ///< of the given zonal wind that carries the waves along
 };
 
 /// Constants of the response of an atmosphere to heating and mountains that do not move.
 struct StationaryWave {
   /// What heating sets up: the first baroclinic mode, whose winds turn with height.
-  WaveMode internal{100.0, 3.8, 30.0, 0.1};
-  double heating_m4_s3_w = 1.0e-4;  ///< fall of the lower geopotential by 1 W m-2
+  WaveMode internal{99.9, 1.27, 18.8, 0.215};
+  double heating_m4_s3_w = 0.000149;  ///< fall of the lower geopotential by 1 W m-2
   /// What mountains set up: the external mode, nearly the same at all heights.
-  WaveMode external{200.0, 5.0, 20.0, 1.0};
-  double mountain_share = 0.0;    ///< of the height of mountains that the flow goes over
-  double smoothing_km = 420.0;    ///< waves shorter than this are damped out of both
+  WaveMode external{200.0, 9.33, 20.0, 1.47};
+  double mountain_share = 0.073;  ///< of the height of mountains that the flow goes over
+  double smoothing_km = 185.0;    ///< waves shorter than this are damped out of both
   int waves = 24;                 ///< zonal wave numbers 1 to this
 };
 
