@@ -87,6 +87,59 @@ double rain_m3_s(const State& state) {
          (365.25 * 86400.0);
 }
 
+TEST(Climate, MonthsAddUpToTheYear) {
+  const auto grid = std::make_shared<Grid>(Grid::sphere(96, 48));
+  Context context;
+  const State state = run(grid, relief(*grid), quick(), context);
+  ASSERT_TRUE(context.monthly_fields);
+  const auto size = static_cast<std::size_t>(grid->size());
+  std::vector<float> values(size);
+  std::vector<double> rain(size), warmth(size), east(size);
+  std::vector<float> warmest(size, -1e9F), coldest(size, 1e9F);
+  for (int m = 0; m < kMonths; ++m) {
+    context.monthly_fields(field::precipitation_monthly, m, state.read(field::precipitation),
+                           values);
+    for (std::size_t c = 0; c < size; ++c) rain[c] += values[c];
+    context.monthly_fields(field::temperature_monthly, m, state.read(field::temperature), values);
+    for (std::size_t c = 0; c < size; ++c) {
+      warmth[c] += values[c] / 12.0;
+      warmest[c] = std::max(warmest[c], values[c]);
+      coldest[c] = std::min(coldest[c], values[c]);
+    }
+    context.monthly_fields(field::wind_east_monthly, m, {}, values);
+    for (std::size_t c = 0; c < size; ++c) east[c] += values[c] / 12.0;
+  }
+  for (std::size_t c = 0; c < size; ++c) {
+    ASSERT_NEAR(rain[c], state.read(field::precipitation)[c],
+                1e-5 * state.read(field::precipitation)[c] + 1e-3);
+    ASSERT_NEAR(warmth[c], state.read(field::temperature)[c], 1e-4);
+    ASSERT_NEAR(east[c], state.read(field::wind_east)[c], 1e-4);
+    ASSERT_NEAR(warmest[c] - coldest[c], state.read(field::temperature_range)[c], 1e-4);
+  }
+}
+
+TEST(Climate, SlowPlanetsHaveWideCellsAndRetrogradeOnesTradesFromTheWest) {
+  const auto grid = std::make_shared<Grid>(Grid::sphere(64, 32));
+  const std::vector<float> sea(static_cast<std::size_t>(grid->size()), -3000.0F);
+  const auto zonal_wind = [&](double hours, bool retrograde) {
+    ClimateParameters p = quick();
+    p.seasonal.circulation.rotation_period_h = hours;
+    p.seasonal.circulation.retrograde = retrograde;
+    return std::vector<float>(run(grid, sea, p).read(field::wind_east).begin(),
+                              run(grid, sea, p).read(field::wind_east).end());
+  };
+  const auto trades_to_deg = [&](const std::vector<float>& wind) {
+    for (int j = 17; j < 32; ++j) {
+      if (wind[grid->cell(0, j)] > 0.0F) return grid->latitude_deg(j);
+    }
+    return 90.0;
+  };
+  EXPECT_GT(trades_to_deg(zonal_wind(72.0, false)),
+            trades_to_deg(zonal_wind(23.934, false)) + 10.0);
+  EXPECT_LT(zonal_wind(23.934, false)[grid->cell(0, 18)], 0.0F);
+  EXPECT_GT(zonal_wind(23.934, true)[grid->cell(0, 18)], 0.0F);
+}
+
 TEST(Climate, AllThatEvaporatesRains) {
   const double precise = 1e-6;  // floats hold each cell's rain to 6e-8
   for (const double lift_height_m : {300.0, 1450.0, 1e6}) {

@@ -13,16 +13,17 @@ namespace geo {
 namespace {
 
 constexpr double kRadians = std::numbers::pi / 180.0;
+constexpr Orbit kCircle{23.44, 0.0, 0.0};
 
 TEST(Insolation, AnnualMeansMatchExactValues) {
   // Exact orbit integrals at obliquity 23.44, S0 = 1361, no eccentricity.
   const std::pair<double, double> kExact[] = {
       {0, 415.54}, {30, 365.16}, {45, 306.90}, {60, 236.29}};
   for (const auto& [latitude, expected] : kExact) {
-    EXPECT_NEAR(insolation_cycle(latitude, 23.44, 1361.0).mean_w_m2, expected, 0.01) << latitude;
-    EXPECT_NEAR(insolation_cycle(-latitude, 23.44, 1361.0).mean_w_m2, expected, 0.01) << latitude;
+    EXPECT_NEAR(annual_insolation_w_m2(latitude, kCircle, 1361.0), expected, 0.01) << latitude;
+    EXPECT_NEAR(annual_insolation_w_m2(-latitude, kCircle, 1361.0), expected, 0.01) << latitude;
   }
-  EXPECT_NEAR(insolation_cycle(90, 23.44, 1361.0).mean_w_m2,
+  EXPECT_NEAR(annual_insolation_w_m2(90, kCircle, 1361.0),
               1361.0 * std::sin(23.44 * kRadians) / std::numbers::pi, 0.01);
 }
 
@@ -32,8 +33,8 @@ double second_legendre(double obliquity_deg) {
   double sum = 0.0;
   for (int row = 0; row < kRows; ++row) {
     const double x = (row + 0.5) / kRows;
-    const double q =
-        insolation_cycle(std::asin(x) / kRadians, obliquity_deg, 4.0).mean_w_m2;  // S0/4 = 1
+    const double q = annual_insolation_w_m2(std::asin(x) / kRadians, {obliquity_deg, 0.0, 0.0},
+                                            4.0);  // S0/4 = 1
     sum += q * 0.5 * (3 * x * x - 1) / kRows;
   }
   return 5.0 * sum;
@@ -44,8 +45,8 @@ TEST(Insolation, BeyondNinetyDegreesIsThatOfTheSupplement) {
   for (const double obliquity : {0.0, 23.44, 60.0, 90.0}) {
     for (const double latitude : {-80.0, -35.0, 0.0, 50.0, 89.0}) {
       for (double longitude = 0.0; longitude < 360.0; longitude += 15.0) {
-        EXPECT_NEAR(daily_insolation_w_m2(latitude, longitude, 180.0 - obliquity, 1361.0),
-                    daily_insolation_w_m2(latitude, longitude, obliquity, 1361.0), 1e-9)
+        EXPECT_NEAR(daily_insolation_w_m2(latitude, {longitude, 1.0}, 180.0 - obliquity, 1361.0),
+                    daily_insolation_w_m2(latitude, {longitude, 1.0}, obliquity, 1361.0), 1e-9)
             << obliquity << ", " << latitude << ", " << longitude;
       }
     }
@@ -61,26 +62,41 @@ TEST(Insolation, SecondLegendreCoefficientFollowsObliquity) {
   EXPECT_NEAR(second_legendre(23.44), -0.47665, 1e-4);
 }
 
-TEST(Insolation, HarmonicIsAntisymmetricAboutTheEquator) {
-  const auto north = insolation_cycle(50, 23.44, 1361.0),
-             south = insolation_cycle(-50, 23.44, 1361.0);
-  EXPECT_NEAR(std::abs(north.harmonic_w_m2 + south.harmonic_w_m2), 0.0, 1e-9);
-  EXPECT_LT(north.harmonic_w_m2.imag(), -100.0) << "most sun at the northern solstice, L = 90 deg";
+// Kepler: a year's mean nearness is 1 / sqrt(1 - e^2), and at its ends (1 -+ e)^-2.
+TEST(Insolation, EccentricOrbitsFollowKepler) {
+  const Orbit orbit{23.44, 0.3, 282.9};
+  double mean = 0.0, nearest = 0.0, farthest = 9.0;
+  constexpr int kSteps = 20000;
+  for (int k = 0; k < kSteps; ++k) {
+    const Sun sun = sun_at(orbit, (k + 0.5) / kSteps);
+    mean += sun.nearness / kSteps;
+    nearest = std::max(nearest, sun.nearness);
+    farthest = std::min(farthest, sun.nearness);
+  }
+  EXPECT_NEAR(mean, 1.0 / std::sqrt(1.0 - 0.09), 1e-6);
+  EXPECT_NEAR(nearest, 1.0 / (0.7 * 0.7), 1e-5);
+  EXPECT_NEAR(farthest, 1.0 / (1.3 * 1.3), 1e-5);
+  EXPECT_NEAR(sun_at(orbit, 79.0 / 365.25).longitude_deg, 0.0, 1e-6) << "the equinox is kept";
 }
 
-struct Solution {
-  std::vector<double> mean;
-  std::vector<std::complex<double>> harmonic;
-};
+TEST(Insolation, OfMonthsIsOppositeInTheHemispheres) {
+  const auto north = monthly_insolation_w_m2(50, kCircle, 1361.0);
+  const auto january = north[0], july = north[6];
+  EXPECT_GT(july, january + 300.0);
+  // Half a year on, the other hemisphere has the same sun.
+  for (double t : {0.0, 0.1, 0.37}) {
+    EXPECT_NEAR(daily_insolation_w_m2(50, sun_at(kCircle, t), 23.44, 1361.0),
+                daily_insolation_w_m2(-50, sun_at(kCircle, t + 0.5), 23.44, 1361.0), 1e-6);
+  }
+}
 
-Solution solve(const Grid& grid, const EnergyBalance& model, float land) {
+TemperatureCycle solve(const Grid& grid, const EnergyBalance& model, float land,
+                       float height_m = 0.0F) {
   std::vector<double> latitude;
   for (int j = 0; j < grid.ny(); ++j) latitude.push_back(grid.latitude_deg(j));
   const auto size = static_cast<std::size_t>(grid.size());
-  Solution s{std::vector<double>(size), std::vector<std::complex<double>>(size)};
-  solve_energy_balance(grid, model, latitude, std::vector<float>(size, land),
-                       std::vector<float>(size, 0.0F), s.mean, s.harmonic);
-  return s;
+  return solve_energy_balance(grid, model, false, latitude, std::vector<double>(grid.ny(), 0.0),
+                              std::vector<float>(size, land), std::vector<float>(size, height_m));
 }
 
 EnergyBalance constant_albedo() {
@@ -93,6 +109,7 @@ EnergyBalance constant_albedo() {
   model.coalbedo = 0.7;
   model.coalbedo_p2 = 0.0;
   model.ice_width_k = 0.0;
+  model.orbit = kCircle;
   model.gyre_heat_w_m2 = 0.0;
   return model;
 }
@@ -106,8 +123,8 @@ TEST(EnergyBalance, ConstantAlbedoMatchesLegendreSolution) {
   for (int j = 0; j < grid.ny(); ++j) {
     const double x = std::sin(grid.latitude_deg(j) * kRadians);
     const double share = grid.area_m2(j) * grid.nx() / grid.total_area_m2();
-    mean += share * s.mean[grid.cell(0, j)];
-    second += 5.0 * share * s.mean[grid.cell(0, j)] * 0.5 * (3 * x * x - 1);
+    mean += share * s.mean_c(grid.cell(0, j));
+    second += 5.0 * share * s.mean_c(grid.cell(0, j)) * 0.5 * (3 * x * x - 1);
   }
   EXPECT_NEAR(mean, 14.000, 0.005);
   EXPECT_NEAR(second / -0.47665 * -0.48, -21.5547, 0.03) << "second order in the spacing of 2 deg";
@@ -122,28 +139,48 @@ TEST(EnergyBalance, HarmonicSolvesTheStoringPlanet) {
   std::complex<double> temperature = 0.0, insolation = 0.0;
   for (int j = 0; j < grid.ny(); ++j) {
     const double x = std::sin(grid.latitude_deg(j) * kRadians);
-    temperature += grid.area_m2(j) * x * s.harmonic[grid.cell(0, j)];
-    insolation +=
-        grid.area_m2(j) * x * insolation_cycle(grid.latitude_deg(j), 23.44, 1360.0).harmonic_w_m2;
+    temperature += grid.area_m2(j) * x * s.harmonic(1)[grid.cell(0, j)];
+    for (int m = 0; m < kMonths; ++m) {
+      insolation += grid.area_m2(j) * x * 2.0 / kMonths *
+                    monthly_insolation_w_m2(grid.latitude_deg(j), kCircle, 1360.0)[m] *
+                    std::polar(1.0, -2 * std::numbers::pi * (m + 0.5) / kMonths);
+    }
   }
   const std::complex<double> expected =
       insolation * 0.7 / std::complex<double>(2 * 0.55 + 2.0, 2 * std::numbers::pi * 3.0);
   EXPECT_NEAR(std::abs(temperature / expected - 1.0), 0.0, 1e-3);
 }
 
-TEST(EnergyBalance, HeightsOnlyMatterThroughIce) {
+TEST(EnergyBalance, HeightsOnlyMatterThroughSnowAndIce) {
   const Grid grid = Grid::sphere(60, 30);
-  std::vector<double> latitude;
-  for (int j = 0; j < grid.ny(); ++j) latitude.push_back(grid.latitude_deg(j));
-  const auto size = static_cast<std::size_t>(grid.size());
-  std::vector<double> low(size), high(size);
-  std::vector<std::complex<double>> harmonic(size);
-  const std::vector<float> land(size, 1.0F);
   const EnergyBalance model;
-  solve_energy_balance(grid, model, latitude, land, std::vector<float>(size, 0.0F), low, harmonic);
-  solve_energy_balance(grid, model, latitude, land, std::vector<float>(size, 3000.0F), high,
-                       harmonic);
-  EXPECT_LT(high[grid.cell(0, 3)], low[grid.cell(0, 3)]) << "a high plateau near the pole is icier";
+  const Index cell = grid.cell(0, 3);
+  EXPECT_LT(solve(grid, model, 1.0F, 3000.0F).mean_c(cell), solve(grid, model, 1.0F).mean_c(cell))
+      << "a high plateau near the pole is icier";
+  EnergyBalance without = model;
+  without.ice_width_k = 0.0;
+  EXPECT_NEAR(solve(grid, without, 1.0F, 3000.0F).mean_c(cell),
+              solve(grid, without, 1.0F).mean_c(cell), 1e-6);
+}
+
+TEST(EnergyBalance, SeaWindsMakeWesternCoastsMild) {
+  const Grid grid = Grid::sphere(90, 45);
+  std::vector<double> latitude, wind(grid.ny(), 5.0);
+  for (int j = 0; j < grid.ny(); ++j) latitude.push_back(grid.latitude_deg(j));
+  std::vector<float> land(grid.size());
+  for (Index c = 0; c < grid.size(); ++c) land[c] = grid.column(c) < 30 ? 1.0F : 0.0F;
+  EnergyBalance model;
+  model.gyre_heat_w_m2 = 0.0;
+  const std::vector<float> flat(land.size(), 0.0F);
+  const auto range = [&](bool retrograde, int column) {
+    std::vector<double> blowing(wind);
+    if (retrograde) std::fill(blowing.begin(), blowing.end(), -5.0);
+    const auto year = solve_energy_balance(grid, model, retrograde, latitude, blowing, land, flat);
+    const Index cell = grid.cell(column, 34);  // 50 N
+    return 2.0 * std::abs(year.harmonic(1)[cell]);
+  };
+  EXPECT_LT(range(false, 1), range(false, 28)) << "the western coast has the smaller range";
+  EXPECT_NEAR(range(true, 28), range(false, 1), 1e-3) << "mirrored on a planet that turns back";
 }
 
 TEST(Budyko, SpotValueAndLimits) {

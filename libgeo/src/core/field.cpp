@@ -381,6 +381,33 @@ const Field<float> settlement_suitability{
      .least = 0.0,
      .most = 1.0}};
 
+const Field<float> temperature_monthly{{.name = "temperature_monthly",
+                                        .units = "degC",
+                                        .standard_name = "air_temperature",
+                                        .doc = "mean temperature near the ground of each month",
+                                        .type = Type::float32}};
+const Field<float> precipitation_monthly{{.name = "precipitation_monthly",
+                                          .units = "mm month-1",
+                                          .doc = "precipitation of each month",
+                                          .type = Type::float32,
+                                          .least = 0}};
+const Field<float> wind_east_monthly{{.name = "wind_east_monthly",
+                                      .units = "m s-1",
+                                      .standard_name = "eastward_wind",
+                                      .doc = "eastward wind near the ground of each month",
+                                      .type = Type::float32}};
+const Field<float> wind_north_monthly{{.name = "wind_north_monthly",
+                                       .units = "m s-1",
+                                       .standard_name = "northward_wind",
+                                       .doc = "northward wind near the ground of each month",
+                                       .type = Type::float32}};
+
+std::span<const FieldSpec* const> monthly() {
+  static constexpr std::array<const FieldSpec*, 4> kMonthly{
+      &temperature_monthly, &precipitation_monthly, &wind_east_monthly, &wind_north_monthly};
+  return kMonthly;
+}
+
 std::span<const FieldSpec* const> all() {
   static const auto kAll = std::to_array<const FieldSpec*>({&plate_id,
                                                             &continental_fraction,

@@ -26,14 +26,17 @@ TEST(ThreeCellWind, BlowsWhereTheAirGoes) {
   EXPECT_NEAR(std::abs(three_cell_wind(90).north), 0.35, 1e-12);
 }
 
-TEST(ThermalWinds, CellsGiveTradesAndWesterlies) {
+TEST(BalancedWinds, CellsGiveTradesAndWesterlies) {
   const Grid grid = Grid::sphere(72, 36);
   std::vector<double> latitude;
   for (int j = 0; j < grid.ny(); ++j) latitude.push_back(grid.latitude_deg(j));
   const auto size = static_cast<std::size_t>(grid.size());
   const std::vector<float> none(size, 0.0F);
-  std::vector<float> east(size), north(size);
-  thermal_winds(grid, {}, latitude, 0.0, none, none, east, north);
+  std::vector<float> pressure(size), east(size), north(size);
+  for (Index c = 0; c < grid.size(); ++c) {
+    pressure[c] = static_cast<float>(three_cell_pressure_hpa(latitude[grid.row(c)], {}));
+  }
+  balanced_winds(grid, {}, latitude, none, pressure, east, north);
   for (int j = 0; j < grid.ny(); ++j) {
     const double distance = std::abs(latitude[j]);
     const double poleward = north[grid.cell(0, j)] * (latitude[j] > 0 ? 1 : -1);
@@ -47,21 +50,19 @@ TEST(ThermalWinds, CellsGiveTradesAndWesterlies) {
   }
 }
 
-TEST(ThermalWinds, AirFlowsIntoAHeatLowAndTurnsCyclonic) {
+TEST(BalancedWinds, AirFlowsIntoALowAndTurnsCyclonic) {
   const Grid grid = Grid::sphere(72, 36);
   std::vector<double> latitude;
   for (int j = 0; j < grid.ny(); ++j) latitude.push_back(grid.latitude_deg(j));
   const auto size = static_cast<std::size_t>(grid.size());
   const std::vector<float> land(size, 1.0F);
-  std::vector<float> heat(size), east(size), north(size);
+  std::vector<float> pressure(size), east(size), north(size);
   const int row = 24, column = 36;  // 32.5 N
   for (Index c = 0; c < grid.size(); ++c) {
     const double dx = grid.column(c) - column, dy = grid.row(c) - row;
-    heat[c] = static_cast<float>(10.0 * std::exp(-(dx * dx + dy * dy) / 8.0));
+    pressure[c] = static_cast<float>(-8.0 * std::exp(-(dx * dx + dy * dy) / 8.0));
   }
-  Circulation still;
-  still.subtropical_high_hpa = still.subpolar_low_hpa = still.polar_high_hpa = 0.0;
-  thermal_winds(grid, still, latitude, 0.0, land, heat, east, north);
+  balanced_winds(grid, {}, latitude, land, pressure, east, north);
   EXPECT_GT(east[grid.cell(column - 2, row)], 0.0F) << "towards the low from the west";
   EXPECT_LT(east[grid.cell(column + 2, row)], 0.0F);
   EXPECT_LT(north[grid.cell(column - 2, row)], 0.0F) << "anticlockwise in the north";

@@ -85,7 +85,12 @@ extern const Field<std::int8_t> stream_order;
 extern const Field<std::int8_t> biome, koppen_class;
 extern const Field<float> net_primary_productivity, settlement_suitability;
 
-/// All of the above, in the order in which files list them.
+/// Twelve rasters each, never in a state: made month by month as they are written.
+extern const Field<float> temperature_monthly, precipitation_monthly;
+extern const Field<float> wind_east_monthly, wind_north_monthly;
+/// These four.
+std::span<const FieldSpec* const> monthly();
+/// All that come before, in the order in which files list them.
 std::span<const FieldSpec* const> all();
 /// The row of that name, or nullptr.
 const FieldSpec* find(std::string_view name);

@@ -14,6 +14,8 @@ struct Planet {
   double flattening = 0.0;
   double gravity_m_s2 = 9.81;
   double obliquity_deg = 23.44;
+  double eccentricity = 0.0167;
+  double perihelion_deg = 282.9;
   double pressure_bar = 1.0;
   std::string sea_level = "fraction";
   double ocean_fraction = 0.71;

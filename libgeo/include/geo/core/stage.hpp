@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "geo/core/checkpoint.hpp"
+#include "geo/core/climatology.hpp"
 #include "geo/core/event.hpp"
 #include "geo/core/field.hpp"
 #include "geo/core/initial_conditions.hpp"
@@ -79,6 +80,10 @@ struct Context {
   std::function<void(Frame frame)> on_frame;
   /// What such a stage goes on from; empty: from its beginning.
   std::shared_ptr<const Checkpoint> checkpoint;
+  /// How the months go, once a stage has made them; empty before.
+  std::shared_ptr<const Climatology> climatology;
+  /// What makes its months on the state's grid; may be empty.
+  MonthlyFields monthly_fields;
   /// Set by a signal handler; stages look at it between steps.
   const std::atomic<bool>* stop = nullptr;
   /// Budgets of the stage that runs now.

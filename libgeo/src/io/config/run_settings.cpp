@@ -114,6 +114,8 @@ std::vector<Parameter> RunSettings::parameters() {
            "LAT,LON of the middle of the maps; empty is 0,0; only azimuthal projections take a "
            "latitude",
            "design"),
+      flag("output.monthly", monthly,
+           "also write temperature, precipitation and winds of the twelve months", "design"),
       integer("output.compression", compression, "1", 0, 9,
               "how hard NetCDF files are compressed; 0 stores them as they are", "design"),
       integer("output.vtk_compression", vtk_compression, "1", 0, 9,

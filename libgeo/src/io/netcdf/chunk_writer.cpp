@@ -62,7 +62,7 @@ int leading_dimensions(hid_t dataset) {
 
 template <class T>
 void write_chunks(hid_t dataset, const std::vector<T>& values, int ny, int nx, ChunkShape chunk,
-                  int level) {
+                  int level, int slice) {
   const std::size_t cells = chunk.rows * chunk.columns, bytes = cells * sizeof(T);
   std::vector<T> raw(cells);
   std::vector<unsigned char> shuffled(bytes);
@@ -85,7 +85,7 @@ void write_chunks(hid_t dataset, const std::vector<T>& values, int ny, int nx, C
       const std::size_t size = libdeflate_zlib_compress(compressor.get(), shuffled.data(), bytes,
                                                         packed.data(), packed.size());
       require(size > 0);
-      const hsize_t offset[3] = {0, row, column};
+      const hsize_t offset[3] = {static_cast<hsize_t>(slice), row, column};
       require(H5Dwrite_chunk(dataset, H5P_DEFAULT, 0, offset + 1 - leading, size, packed.data()) >=
               0);
     }
@@ -112,11 +112,12 @@ ChunkWriter::~ChunkWriter() {
 }
 
 void ChunkWriter::write(std::string_view variable, const Values& values, int ny, int nx,
-                        ChunkShape chunk) const {
+                        ChunkShape chunk, int slice) const {
   const Dataset dataset(implementation_->file, variable);
   const int level = implementation_->level;
-  std::visit([&](const auto& array) { write_chunks(dataset.id(), array, ny, nx, chunk, level); },
-             values);
+  std::visit(
+      [&](const auto& array) { write_chunks(dataset.id(), array, ny, nx, chunk, level, slice); },
+      values);
 }
 
 void ChunkWriter::close() { require(H5Fclose(std::exchange(implementation_->file, -1)) >= 0); }

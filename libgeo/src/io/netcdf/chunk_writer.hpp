@@ -25,8 +25,9 @@ class ChunkWriter {
   ChunkWriter(const ChunkWriter&) = delete;
   ChunkWriter& operator=(const ChunkWriter&) = delete;
 
-  void write(std::string_view variable, const Values& values, int ny, int nx,
-             ChunkShape chunk) const;
+  /// `slice`: which raster of a variable that has a leading dimension.
+  void write(std::string_view variable, const Values& values, int ny, int nx, ChunkShape chunk,
+             int slice = 0) const;
   /// Reports what only closing reveals.
   void close();
 

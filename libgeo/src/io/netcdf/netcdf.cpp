@@ -20,6 +20,8 @@ namespace {
 
 constexpr int kDeflateLevel = 1;  // what the header says; chunks come compressed
 constexpr int kChunk = 512;
+constexpr int kMonths = Climatology::kMonths;
+constexpr const char *kMonth = "month", *kClimatologyBounds = "climatology_bounds";
 
 /// Chunk length near `kChunk` that leaves the last chunk nearly full.
 std::size_t chunk_length(int cells) {
@@ -102,17 +104,65 @@ int define_time(const nc::File& file) {
 }
 
 void define_field(const nc::File& file, const Grid& grid, const GridVariables& ids,
-                  const FieldSpec& spec, const Values& values, std::optional<int> time) {
+                  const FieldSpec& spec, const Values& values, std::optional<int> time,
+                  const std::string& cell_methods) {
   const int variable = define_raster(file, grid, ids, spec.name, nc::type_of(spec.type), time);
   std::visit([&]<class T>(const std::vector<T>&) { put_typed_attributes<T>(file, variable, spec); },
              values);
   file.put(variable, "standard_name", spec.standard_name);
   file.put(variable, "long_name", spec.doc);
   if (spec.flags.empty()) file.put(variable, "units", spec.units);
-  file.put(variable, "cell_methods", spec.cell_methods);
+  file.put(variable, "cell_methods", cell_methods);
   file.put(variable, "cell_measures", "area: cell_area");
   if (ids.has_mapping) file.put(variable, "grid_mapping", kMapping);
   if (ids.has_coordinates) file.put(variable, "coordinates", "lat lon");
+}
+
+/// A climatological year (CF 7.4): the middles of twelve equal months and their bounds, in days of
+/// a year of 365. Returns the dimension.
+int define_months(const nc::File& file) {
+  const int dimension = file.define_dimension(kMonth, kMonths);
+  const int bounds = file.define_dimension("month_bounds", 2);
+  const int month = file.define_variable(kMonth, NC_DOUBLE, std::array{dimension});
+  file.put(month, "standard_name", "time");
+  file.put(month, "long_name", "month of the climatological year");
+  file.put(month, "units", "days since 2001-01-01");
+  file.put(month, "calendar", "365_day");
+  file.put(month, "axis", "T");
+  file.put(month, "climatology", kClimatologyBounds);
+  file.define_variable(kClimatologyBounds, NC_DOUBLE, std::array{dimension, bounds});
+  return dimension;
+}
+
+void write_months(const nc::File& file) {
+  constexpr double kDays = 365.0 / kMonths;
+  std::array<double, kMonths> middle{};
+  std::array<double, 2 * kMonths> bounds{};
+  for (int m = 0; m < kMonths; ++m) {
+    middle[m] = (m + 0.5) * kDays;
+    bounds[2 * m] = m * kDays;
+    bounds[2 * m + 1] = (m + 1) * kDays;
+  }
+  nc::check(nc_put_var_double(file.id(), *file.find_variable(kMonth), middle.data()));
+  nc::check(nc_put_var_double(file.id(), *file.find_variable(kClimatologyBounds), bounds.data()));
+}
+
+std::string monthly_cell_methods(const FieldSpec& spec) {
+  const bool sum = &spec == &field::precipitation_monthly;
+  return fmt::format("area: mean month: {} within years month: mean over years",
+                     sum ? "sum" : "mean");
+}
+
+/// Annual values that a field of months belongs to; none for winds.
+std::span<const float> annual_values(const Snapshot& snapshot, const FieldSpec& monthly) {
+  const FieldSpec* annual = &monthly == &field::temperature_monthly ? &field::temperature
+                            : &monthly == &field::precipitation_monthly
+                                ? static_cast<const FieldSpec*>(&field::precipitation)
+                                : nullptr;
+  for (const auto& [spec, values] : snapshot.fields) {
+    if (spec == annual) return std::get<std::vector<float>>(*values);
+  }
+  return {};
 }
 
 /// Arrays to go on from, each with a dimension of its own length.
@@ -179,10 +229,18 @@ void write_frame(const std::filesystem::path& path, const Snapshot& snapshot,
   std::optional<int> time;
   if (snapshot.checkpoint) time = define_time(file);
   for (const auto& [spec, values] : snapshot.fields) {
-    define_field(file, grid, ids, *spec, *values, time);
+    define_field(file, grid, ids, *spec, *values, time, std::string(spec->cell_methods));
+  }
+  if (snapshot.months) {
+    const int months = define_months(file);
+    for (const FieldSpec* spec : field::monthly()) {
+      define_field(file, grid, ids, *spec, std::vector<float>(), months,
+                   monthly_cell_methods(*spec));
+    }
   }
   nc::check(nc_enddef(file.id()));
   write_coordinates(file, grid);
+  if (snapshot.months) write_months(file);
   const char* text = provenance.config_toml.c_str();
   nc::check(nc_put_var_string(file.id(), *file.find_variable(kConfig), &text));
   if (snapshot.checkpoint) write_checkpoint(file, *snapshot.checkpoint);
@@ -196,6 +254,16 @@ void write_rasters(const std::filesystem::path& path, const Snapshot& snapshot, 
   file.write(kCellArea, cell_areas(grid), grid.ny(), grid.nx(), chunk);
   for (const auto& [spec, values] : snapshot.fields) {
     file.write(spec->name, *values, grid.ny(), grid.nx(), chunk);
+  }
+  if (snapshot.months) {
+    Values month = std::vector<float>(static_cast<std::size_t>(grid.size()));
+    for (const FieldSpec* spec : field::monthly()) {
+      const auto annual = annual_values(snapshot, *spec);
+      for (int m = 0; m < kMonths; ++m) {
+        snapshot.months(*spec, m, annual, std::get<std::vector<float>>(month));
+        file.write(spec->name, month, grid.ny(), grid.nx(), chunk, m);
+      }
+    }
   }
   file.close();
 }

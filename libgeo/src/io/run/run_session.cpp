@@ -173,6 +173,10 @@ void RunSession::write_stage(BackgroundWriter& writer, FrameFiles& frames, int p
   for (const FieldSpec* spec : written) {
     job->snapshot.fields.emplace_back(spec, state.values(*spec));
   }
+  const bool makes_months =
+      std::find(written.begin(), written.end(), &field::temperature) != written.end() &&
+      !run_.stage(position).info().own_grid;
+  if (run_.settings.monthly && makes_months) job->snapshot.months = context.monthly_fields;
   job->provenance = provenance_of(position);
   job->netcdf = file_of(position, ".nc");
   job->vti = file_of(position, ".vti");
@@ -191,6 +195,7 @@ void RunSession::write_stage(BackgroundWriter& writer, FrameFiles& frames, int p
     manifest_.stages.push_back(job->record);
     write_manifest(folder_.manifest(), manifest_);
     job->snapshot.fields.clear();
+    job->snapshot.months = {};
   });
 }
 

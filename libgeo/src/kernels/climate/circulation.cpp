@@ -10,15 +10,16 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kRadians = kPi / 180.0;
 
-/// Latitude as the cells see it: the tropical boundary moves with the ITCZ, the pole stays.
-double cell_latitude_deg(double latitude_deg, double itcz_deg) {
-  const double span = latitude_deg >= itcz_deg ? 90.0 - itcz_deg : 90.0 + itcz_deg;
-  return (latitude_deg - itcz_deg) / span * 90.0;
+/// Latitude as the cells see it: the tropical boundary moves with the trough, the pole stays.
+double cell_latitude_deg(double latitude_deg, double trough_deg) {
+  const double span = latitude_deg >= trough_deg ? 90.0 - trough_deg : 90.0 + trough_deg;
+  return (latitude_deg - trough_deg) / span * 90.0;
 }
 
 double cell_rise_hpa(int cell, const Circulation& model) {
   if (cell == 0) return model.subtropical_high_hpa;
-  return cell == 1 ? -model.subpolar_low_hpa : model.polar_high_hpa;
+  if (cell == 1) return -model.subpolar_low_hpa;
+  return cell % 2 == 0 ? model.polar_high_hpa : -model.polar_high_hpa;
 }
 
 }  // namespace
@@ -34,51 +35,46 @@ WindDirection three_cell_wind(double latitude_deg, double deflection, double ble
   return {east, latitude_deg >= 0.0 ? poleward : -poleward};
 }
 
-double three_cell_pressure_hpa(double latitude_deg, const Circulation& model) {
-  const double distance = std::min(std::abs(latitude_deg), 90.0);
+double Circulation::rotation_rad_s() const {
+  return (retrograde ? -1.0 : 1.0) * 2.0 * kPi / (rotation_period_h * 3600.0);
+}
+
+double Circulation::cell_width() const {
+  constexpr double kSiderealDay_h = 23.934;
+  return std::sqrt(rotation_period_h / kSiderealDay_h);
+}
+
+double three_cell_pressure_hpa(double latitude_deg, const Circulation& model, double trough_deg) {
+  const double seen_deg = std::min(std::abs(cell_latitude_deg(latitude_deg, trough_deg)), 90.0);
+  const double width_deg = std::min(90.0, 30.0 * model.cell_width());
   double pressure = 0.0;
-  for (int cell = 0; cell < 3; ++cell) {
-    const double along = std::clamp((distance - 30.0 * cell) / 30.0, 0.0, 1.0);
+  for (int cell = 0; cell == 0 || width_deg * cell < 90.0 - 1e-9; ++cell) {
+    const double along = std::clamp((seen_deg - width_deg * cell) / width_deg, 0.0, 1.0);
     pressure += cell_rise_hpa(cell, model) * 0.5 * (1.0 - std::cos(kPi * along));
   }
   return pressure;
 }
 
-double three_cell_gradient_hpa(double latitude_deg, const Circulation& model) {
-  const double distance = std::min(std::abs(latitude_deg), 90.0);
-  const int cell = std::min(2, static_cast<int>(distance / 30.0));
-  const double along = distance / 30.0 - cell;
-  const double slope = cell_rise_hpa(cell, model) * 3.0 * std::sin(kPi * along);
-  return latitude_deg >= 0.0 ? slope : -slope;
-}
-
-void thermal_winds(const Grid& grid, const Circulation& model, std::span<const double> latitude_deg,
-                   double itcz_deg, std::span<const float> land_fraction,
-                   std::span<const float> heat_anomaly_k, std::span<float> wind_east,
-                   std::span<float> wind_north) {
-  const double twice_rotation_s = 4.0 * kPi / (model.rotation_period_h * 3600.0);
-  const double pascals_per_kelvin = -100.0 * model.thermal_low_hpa_k;
+void balanced_winds(const Grid& grid, const Circulation& model,
+                    std::span<const double> latitude_deg, std::span<const float> land_fraction,
+                    std::span<const float> pressure_hpa, std::span<float> wind_east,
+                    std::span<float> wind_north) {
+  const double twice_rotation_s = 2.0 * model.rotation_rad_s();
+  const double push_per_slope = -100.0 / model.air_density_kg_m3;  // from hPa
   for (int j = 0; j < grid.ny(); ++j) {
-    const double latitude = latitude_deg[j];
-    const double coriolis = twice_rotation_s * std::sin(latitude * kRadians);
-    const double cell_latitude = cell_latitude_deg(latitude, itcz_deg);
-    const double stretch =
-        latitude >= itcz_deg ? 90.0 / (90.0 - itcz_deg) : 90.0 / (90.0 + itcz_deg);
-    const double cells =
-        100.0 * three_cell_gradient_hpa(cell_latitude, model) * stretch / grid.figure().radius_m;
+    const double coriolis = twice_rotation_s * std::sin(latitude_deg[j] * kRadians);
     const double two_steps_east_m = 2.0 * grid.spacing_east_m(j);
     const auto& distances = grid.distances_m(j);
     const double two_steps_north_m = distances[kNorth] + distances[kSouth];
     for (int i = 0; i < grid.nx(); ++i) {
       const Index here = grid.cell(i, j);
-      const auto anomaly = [&](int k) {
-        return static_cast<double>(heat_anomaly_k[grid.neighbour(i, j, k)]);
+      const auto pressure = [&](int k) {
+        return static_cast<double>(pressure_hpa[grid.neighbour(i, j, k)]);
       };
-      const double push_east = -pascals_per_kelvin * (anomaly(kEast) - anomaly(kWest)) /
-                               two_steps_east_m / model.air_density_kg_m3;
+      const double push_east =
+          push_per_slope * (pressure(kEast) - pressure(kWest)) / two_steps_east_m;
       const double push_north =
-          -(cells + pascals_per_kelvin * (anomaly(kNorth) - anomaly(kSouth)) / two_steps_north_m) /
-          model.air_density_kg_m3;
+          push_per_slope * (pressure(kNorth) - pressure(kSouth)) / two_steps_north_m;
       const double drag =
           model.drag_ocean_s + land_fraction[here] * (model.drag_land_s - model.drag_ocean_s);
       const double norm = 1.0 / (drag * drag + coriolis * coriolis);

@@ -6,51 +6,74 @@
 
 namespace geo {
 namespace {
+
 constexpr double kPi = std::numbers::pi;
 constexpr double kRadians = kPi / 180.0;
-}  // namespace
 
-double month_solar_longitude_deg(int month) {
-  constexpr double kMidJanuary = 296.9;  // 64 of 365.25 days before the equinox
-  return std::fmod(kMidJanuary + 30.0 * month, 360.0);
+/// Kepler's equation M = E - e sin E by Newton's method.
+double eccentric_anomaly(double mean_anomaly, double eccentricity) {
+  double anomaly = mean_anomaly + eccentricity * std::sin(mean_anomaly);
+  for (int step = 0; step < 20; ++step) {
+    const double error = anomaly - eccentricity * std::sin(anomaly) - mean_anomaly;
+    anomaly -= error / (1.0 - eccentricity * std::cos(anomaly));
+  }
+  return anomaly;
 }
 
-double daily_insolation_w_m2(double latitude_deg, double solar_longitude_deg, double obliquity_deg,
+}  // namespace
+
+Sun sun_at(const Orbit& orbit, double year_fraction) {
+  constexpr double kEquinox = 79.0 / 365.25;
+  const double e = orbit.eccentricity;
+  const double perihelion = orbit.perihelion_deg * kRadians;
+  // Mean anomaly at the equinox, whose true anomaly is minus the longitude of the perihelion.
+  const double squeeze = std::sqrt((1.0 - e) / (1.0 + e));
+  const double at_equinox =
+      2.0 * std::atan2(squeeze * std::sin(-0.5 * perihelion), std::cos(0.5 * perihelion));
+  const double mean_anomaly =
+      at_equinox - e * std::sin(at_equinox) + 2.0 * kPi * (year_fraction - kEquinox);
+  const double anomaly = eccentric_anomaly(mean_anomaly, e);
+  const double true_anomaly =
+      2.0 * std::atan2(std::sin(0.5 * anomaly) / squeeze, std::cos(0.5 * anomaly));
+  const double distance = 1.0 - e * std::cos(anomaly);
+  const double longitude_deg = (true_anomaly + perihelion) / kRadians;
+  return {longitude_deg - 360.0 * std::floor(longitude_deg / 360.0), 1.0 / (distance * distance)};
+}
+
+Sun sun_of_month(const Orbit& orbit, int month) { return sun_at(orbit, (month + 0.5) / kMonths); }
+
+double daily_insolation_w_m2(double latitude_deg, const Sun& sun, double obliquity_deg,
                              double solar_constant_w_m2) {
   const double sin_declination =
-      std::sin(obliquity_deg * kRadians) * std::sin(solar_longitude_deg * kRadians);
+      std::sin(obliquity_deg * kRadians) * std::sin(sun.longitude_deg * kRadians);
   const double cos_declination = std::sqrt(std::max(0.0, 1.0 - sin_declination * sin_declination));
   const double sin_latitude = std::sin(latitude_deg * kRadians);
   const double cos_latitude = std::cos(latitude_deg * kRadians);
   const double along = sin_latitude * sin_declination;
   const double across = cos_latitude * cos_declination;
-  if (along >= across) return solar_constant_w_m2 * along;  // the sun does not set
-  if (along <= -across) return 0.0;                         // it does not rise
+  const double starlight_w_m2 = solar_constant_w_m2 * sun.nearness;
+  if (along >= across) return starlight_w_m2 * along;  // the sun does not set
+  if (along <= -across) return 0.0;                    // it does not rise
   const double hour_angle = std::acos(-along / across);
-  return solar_constant_w_m2 / kPi * (hour_angle * along + across * std::sin(hour_angle));
+  return starlight_w_m2 / kPi * (hour_angle * along + across * std::sin(hour_angle));
 }
 
-InsolationCycle insolation_cycle(double latitude_deg, double obliquity_deg,
-                                 double solar_constant_w_m2) {
+double annual_insolation_w_m2(double latitude_deg, const Orbit& orbit, double solar_constant_w_m2) {
   constexpr int kSteps = 720;
-  double mean = 0.0;
-  std::complex<double> harmonic = 0.0;
+  double sum = 0.0;
   for (int step = 0; step < kSteps; ++step) {
-    const double longitude_deg = (step + 0.5) * 360.0 / kSteps;
-    const double insolation =
-        daily_insolation_w_m2(latitude_deg, longitude_deg, obliquity_deg, solar_constant_w_m2);
-    mean += insolation;
-    harmonic += insolation * std::polar(1.0, -longitude_deg * kRadians);
+    sum += daily_insolation_w_m2(latitude_deg, sun_at(orbit, (step + 0.5) / kSteps),
+                                 orbit.obliquity_deg, solar_constant_w_m2);
   }
-  return {mean / kSteps, 2.0 / kSteps * harmonic};
+  return sum / kSteps;
 }
 
-std::array<double, kMonths> monthly_insolation_w_m2(double latitude_deg, double obliquity_deg,
+std::array<double, kMonths> monthly_insolation_w_m2(double latitude_deg, const Orbit& orbit,
                                                     double solar_constant_w_m2) {
   std::array<double, kMonths> months{};
   for (int month = 0; month < kMonths; ++month) {
-    months[month] = daily_insolation_w_m2(latitude_deg, month_solar_longitude_deg(month),
-                                          obliquity_deg, solar_constant_w_m2);
+    months[month] = daily_insolation_w_m2(latitude_deg, sun_of_month(orbit, month),
+                                          orbit.obliquity_deg, solar_constant_w_m2);
   }
   return months;
 }

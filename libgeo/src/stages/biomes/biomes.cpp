@@ -130,13 +130,14 @@ class BiomesStage final : public Stage {
     for (int j = 0; j < grid.ny(); ++j) {
       for (int i = 0; i < grid.nx(); ++i) {
         const Index c = grid.cell(i, j);
+        const std::int8_t from_months = koppen[c];
         biome[c] = koppen[c] = 0;
         productivity[c] = settlement[c] = 0;
         if (elevation[c] < 0) continue;
         const double t = temperature[c];
         const KoppenIndices climate = harmonic_indices(t, range[c], rain[c], seasonality[c]);
         biome[c] = id(treeline.biome(i, j, elevation[c], range[c], climate));
-        koppen[c] = koppen_class(climate);
+        koppen[c] = from_months > 0 ? from_months : koppen_class(climate);
         if (!lake.empty() && lake[c] > 0) continue;  // nobody farms or lives on the water
         const double npp = miami_productivity(t, rain[c]);
         productivity[c] = static_cast<float>(npp);
@@ -206,7 +207,8 @@ class BiomesStage final : public Stage {
                   "biomes, Köppen-Geiger classes, net primary productivity and settlement",
                   {&field::elevation, &field::temperature, &field::temperature_range,
                    &field::precipitation, &field::precipitation_seasonality},
-                  {&field::river_intensity, &field::lake_depth, &field::distance_to_coast},
+                  {&field::river_intensity, &field::lake_depth, &field::distance_to_coast,
+                   &field::koppen_class},
                   {&field::biome, &field::koppen_class, &field::net_primary_productivity,
                    &field::settlement_suitability}};
 };

@@ -8,16 +8,18 @@
 
 #include "climate_events.hpp"
 #include "climate_frame.hpp"
+#include "climatology_rows.hpp"
 #include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/climate/circulation.hpp"
 #include "geo/kernels/climate/distance_to_coast.hpp"
 #include "geo/kernels/climate/evaporation.hpp"
 #include "geo/kernels/climate/insolation.hpp"
-#include "geo/kernels/climate/orography.hpp"
+#include "geo/kernels/life/koppen.hpp"
 #include "geo/kernels/noise/noise.hpp"
 #include "geo/kernels/numerics/area_sum.hpp"
 #include "geo/kernels/remapping/conservative_remapping.hpp"
 #include "geo/kernels/water/water_balance.hpp"
+#include "relief_ascent.hpp"
 
 namespace geo {
 namespace {
@@ -29,6 +31,7 @@ constexpr double kDaysPerMonth = 365.25 / kMonths;
 struct Outputs {
   std::span<float> temperature, temperature_range, precipitation, seasonality, wind_east,
       wind_north, coast, evaporation;
+  std::span<std::int8_t> koppen;
 };
 
 /// Coherent noise on annual means; free where the amplitudes are 0. That of the blueprint is value
@@ -68,7 +71,7 @@ class ClimateNoise {
 
 /// The model's constants on this planet: its sun's path, its air.
 SeasonalClimate on_planet(SeasonalClimate model, const Planet& planet, double greenhouse_k) {
-  model.energy.obliquity_deg = planet.obliquity_deg;
+  model.energy.orbit = {planet.obliquity_deg, planet.eccentricity, planet.perihelion_deg};
   const double warming_k = greenhouse_k * (std::log1p(planet.pressure_bar) - std::log1p(1.0));
   model.energy.outgoing_w_m2 -= model.energy.outgoing_slope_w_m2_k * warming_k;
   model.energy.diffusivity_w_m2_k *= planet.pressure_bar;  // the mass that carries the heat
@@ -136,57 +139,40 @@ void close_rain(const Grid& grid, double precipitation_m3_s, std::span<float> ra
   for (Index cell = 0; cell < grid.size(); ++cell) rain_mm_yr[cell] *= factor;
 }
 
-/// Interpolated fields of the coarse planet along one row of the stage's grid.
-class PlanetRows {
- public:
-  PlanetRows(const ConservativeRemapping& overlay, const SeasonalFields& fields)
-      : temperature(overlay, fields.temperature_c),
-        harmonic_cos(overlay, fields.harmonic_cos_k),
-        harmonic_sin(overlay, fields.harmonic_sin_k),
-        rain(overlay, fields.precipitation_mm_yr),
-        boreal(overlay, fields.boreal_rain_share),
-        wind_east(overlay, fields.wind_east, Interpolator::Kind::vector_component),
-        wind_north(overlay, fields.wind_north, Interpolator::Kind::vector_component),
-        humidity(overlay, fields.humidity) {}
-  Interpolator temperature, harmonic_cos, harmonic_sin, rain, boreal, wind_east, wind_north,
-      humidity;
-};
-
-/// How many times more than over level ground air rains out at the scale of single ranges, on the
-/// relief grid: e where it has just been lifted by `lift_height_m`, 1/e where it has sunk by that.
-std::vector<float> relief_ascent(const ClimateFrame& frame, std::span<const float> wind_east,
-                                 std::span<const float> wind_north, std::span<const float> height_m,
-                                 const ClimateParameters& p) {
-  const Grid& relief = frame.relief();
-  std::vector<float> east(height_m.size()), north(height_m.size()), ascent(height_m.size());
-  const Interpolator east_of(frame.relief_on_planet(), wind_east,
-                             Interpolator::Kind::vector_component);
-  const Interpolator north_of(frame.relief_on_planet(), wind_north,
-                              Interpolator::Kind::vector_component);
-  ParallelErrors errors;
-#pragma omp parallel
-  {
-    auto scratch = errors.make<std::vector<float>>(east_of.scratch_size());
-#pragma omp for schedule(static)
-    for (int j = 0; j < relief.ny(); ++j) {
-      if (errors.any()) continue;
-      const std::size_t begin = static_cast<std::size_t>(j) * relief.nx();
-      east_of.row(j, std::span(east).subspan(begin, relief.nx()), scratch);
-      north_of.row(j, std::span(north).subspan(begin, relief.nx()), scratch);
+/// How the coarse year goes, and what of it is the same in every month.
+Climatology shape_of_year(const std::shared_ptr<const Grid>& grid, const SeasonalFields& fields,
+                          std::vector<float>& mean_temperature_c,
+                          std::vector<float>& precipitation_mm_yr) {
+  const auto size = static_cast<std::size_t>(grid->size());
+  mean_temperature_c.assign(size, 0.0F);
+  precipitation_mm_yr.assign(size, 0.0F);
+  Climatology year{grid, fields.temperature_c, fields.precipitation_mm, fields.wind_east,
+                   fields.wind_north};
+  for (std::size_t cell = 0; cell < size; ++cell) {
+    double temperature_c = 0.0, rain_mm = 0.0;
+    for (int m = 0; m < kMonths; ++m) {
+      temperature_c += fields.temperature_c[m][cell] / kMonths;
+      rain_mm += fields.precipitation_mm[m][cell];
+    }
+    mean_temperature_c[cell] = static_cast<float>(temperature_c);
+    precipitation_mm_yr[cell] = static_cast<float>(rain_mm);
+    for (int m = 0; m < kMonths; ++m) {
+      year.temperature_departure_k[m][cell] -= mean_temperature_c[cell];
+      year.precipitation_share[m][cell] =
+          rain_mm > 0.0 ? static_cast<float>(fields.precipitation_mm[m][cell] / rain_mm)
+                        : 1.0F / kMonths;
     }
   }
-  errors.rethrow();
-  upwind_lift(relief, height_m, east, north, 1000.0 * p.lift_reach_km, ascent);
-  const auto per_lift = static_cast<float>(1.0 / p.lift_height_m);
-  for (float& value : ascent) value = std::exp(std::clamp(value * per_lift, -1.0F, 1.0F));
-  return ascent;
+  return year;
 }
 
-/// Its mean over each cell of the planet, 1 beyond the stage's grid.
-std::vector<float> mean_ascent(const ClimateFrame& frame, std::span<const float> ascent) {
-  std::vector<float> mean(static_cast<std::size_t>(frame.planet().size()));
-  frame.relief_on_planet().average(ascent, mean);
-  std::replace(mean.begin(), mean.end(), 0.0F, 1.0F);
+std::vector<float> annual_mean(const Climatology::Monthly& months) {
+  std::vector<float> mean(months[0].size());
+  for (std::size_t cell = 0; cell < mean.size(); ++cell) {
+    double sum = 0.0;
+    for (const auto& month : months) sum += month[cell];
+    mean[cell] = static_cast<float>(sum / kMonths);
+  }
   return mean;
 }
 
@@ -197,27 +183,101 @@ float clearness(float humidity) {
   return (0.25F + 0.5F * sunshine) / 0.5F;
 }
 
-/// Potential evapotranspiration of Oudin et al. (2005) over the year along one row.
-void add_up_evaporation(double latitude_deg, const SeasonalClimate& model,
-                        std::span<const float> temperature, std::span<const float> cosine,
-                        std::span<const float> sine, std::span<const float> humidity,
-                        std::span<float> evaporation) {
-  const auto insolation = monthly_insolation_w_m2(latitude_deg, model.energy.obliquity_deg,
-                                                  model.energy.solar_constant_w_m2);
-  std::fill(evaporation.begin(), evaporation.end(), 0.0F);
-  for (int month = 0; month < kMonths; ++month) {
-    const double longitude = month_solar_longitude_deg(month) * kRadians;
-    const auto c = static_cast<float>(std::cos(longitude)),
-               s = static_cast<float>(std::sin(longitude));
-    // Oudin's formula is linear in T + 5 degC above its threshold.
-    const auto per_kelvin =
-        static_cast<float>(oudin_evaporation_mm_d(insolation[month], -4.0) * kDaysPerMonth);
-    for (std::size_t i = 0; i < evaporation.size(); ++i) {
-      const float above = temperature[i] + c * cosine[i] - s * sine[i] + 5.0F;
-      evaporation[i] += per_kelvin * std::max(0.0F, above);
+/// What the months make of one row: evaporation (Oudin et al. 2005), the range of temperature, how
+/// far rain keeps to the summer of the hemisphere, and classes after Köppen and Geiger.
+class SeasonsOfRows {
+ public:
+  SeasonsOfRows(const ClimateFrame& frame, const SeasonalClimate& model, const Climatology& year)
+      : frame_(frame), model_(model), rows_(frame.on_planet(), year) {}
+  [[nodiscard]] std::size_t scratch_size() const { return rows_.scratch_size(); }
+
+  /// `months` holds twice twelve rows.
+  void row(int j, std::span<const float> elevation, std::span<const float> humidity,
+           const Outputs& out, std::span<float> months, std::span<float> scratch) const {
+    const std::size_t nx = humidity.size(), begin = static_cast<std::size_t>(j) * nx;
+    const auto row_of = [&](std::span<float> field) { return field.subspan(begin, nx); };
+    const auto temperature = row_of(out.temperature), rain = row_of(out.precipitation);
+    const auto month_c = [&](int m) { return months.subspan(m * nx, nx); };
+    const auto month_mm = [&](int m) { return months.subspan((kMonths + m) * nx, nx); };
+    const auto seasonality = row_of(out.seasonality), evaporation = row_of(out.evaporation);
+    std::fill(evaporation.begin(), evaporation.end(), 0.0F);
+    std::fill(seasonality.begin(), seasonality.end(), 0.0F);
+    const double latitude = frame_.latitudes_deg()[j];
+    const auto sun_w_m2 =
+        monthly_insolation_w_m2(latitude, model_.energy.orbit, model_.energy.solar_constant_w_m2);
+    for (int m = 0; m < kMonths; ++m) {
+      const auto degrees = month_c(m), share = month_mm(m);
+      rows_.temperature_departure(m, j, degrees, scratch);
+      rows_.precipitation_share(m, j, share, scratch);
+      // Oudin's formula is linear in T + 5 degC above its threshold.
+      const auto per_kelvin =
+          static_cast<float>(oudin_evaporation_mm_d(sun_w_m2[m], -4.0) * kDaysPerMonth);
+      const auto summer =
+          static_cast<float>((latitude < 0.0 ? -2.0 : 2.0) * std::cos((m - 6) * 30.0 * kRadians));
+      for (std::size_t i = 0; i < nx; ++i) {
+        degrees[i] += temperature[i];
+        evaporation[i] += per_kelvin * std::max(0.0F, degrees[i] + 5.0F);
+        seasonality[i] += summer * share[i];
+        share[i] *= rain[i];
+      }
+    }
+    const auto range = row_of(out.temperature_range);
+    for (std::size_t i = 0; i < nx; ++i) {
+      float warmest = month_c(0)[i], coldest = warmest;
+      for (int m = 1; m < kMonths; ++m) {
+        warmest = std::max(warmest, month_c(m)[i]);
+        coldest = std::min(coldest, month_c(m)[i]);
+      }
+      range[i] = warmest - coldest;
+      seasonality[i] = std::clamp(seasonality[i], -1.0F, 1.0F);
+      evaporation[i] *= clearness(humidity[i]);
+    }
+    for (std::size_t i = 0; i < nx; ++i) {
+      out.koppen[begin + i] = 0;
+      if (elevation[begin + i] < 0.0F) continue;
+      std::array<double, kMonths> degrees{}, millimetres{};
+      for (int m = 0; m < kMonths; ++m) {
+        degrees[m] = month_c(m)[i];
+        millimetres[m] = month_mm(m)[i];
+      }
+      out.koppen[begin + i] = koppen_class(monthly_indices(degrees, millimetres, latitude < 0.0));
     }
   }
-  for (std::size_t i = 0; i < evaporation.size(); ++i) evaporation[i] *= clearness(humidity[i]);
+
+ private:
+  const ClimateFrame& frame_;
+  const SeasonalClimate& model_;
+  ClimatologyRows rows_;
+};
+
+/// Months on the stage's grid, for who writes them.
+MonthlyFields months_of(std::shared_ptr<const ClimateFrame> frame,
+                        std::shared_ptr<const Climatology> year) {
+  return
+      [frame = std::move(frame), year = std::move(year)](
+          const FieldSpec& field, int month, std::span<const float> annual, std::span<float> out) {
+        const bool is_temperature = &field == &field::temperature_monthly;
+        const bool is_rain = &field == &field::precipitation_monthly;
+        const auto& coarse = is_temperature                        ? year->temperature_departure_k
+                             : is_rain                             ? year->precipitation_share
+                             : &field == &field::wind_east_monthly ? year->wind_east
+                                                                   : year->wind_north;
+        const Interpolator values(frame->on_planet(), coarse[month],
+                                  is_temperature || is_rain ? Interpolator::Kind::scalar
+                                                            : Interpolator::Kind::vector_component);
+        const Grid& grid = frame->on_planet().fine();
+        const auto nx = static_cast<std::size_t>(grid.nx());
+        std::vector<float> scratch(values.scratch_size());
+        for (int j = 0; j < grid.ny(); ++j) {
+          const std::size_t begin = static_cast<std::size_t>(j) * nx;
+          const auto row = out.subspan(begin, nx);
+          values.row(j, row, scratch);
+          for (std::size_t i = 0; i < nx; ++i) {
+            if (is_temperature) row[i] += annual[begin + i];
+            if (is_rain) row[i] *= annual[begin + i];
+          }
+        }
+      };
 }
 
 class ClimateStage final : public Stage {
@@ -232,11 +292,13 @@ class ClimateStage final : public Stage {
         io.write(field::temperature),       io.write(field::temperature_range),
         io.write(field::precipitation),     io.write(field::precipitation_seasonality),
         io.write(field::wind_east),         io.write(field::wind_north),
-        io.write(field::distance_to_coast), io.write(field::potential_evaporation)};
+        io.write(field::distance_to_coast), io.write(field::potential_evaporation),
+        io.write(field::koppen_class)};
     distance_to_coast(io.grid(), elevation, out.coast);
     context.advance(0.2);
 
-    const ClimateFrame frame(io.grid(), p_, context.planet);
+    const auto shared_frame = std::make_shared<const ClimateFrame>(io.grid(), p_, context.planet);
+    const ClimateFrame& frame = *shared_frame;
     const auto size = static_cast<std::size_t>(frame.planet().size());
     std::vector<float> land(size), height_m(size);
     frame.planet_relief(elevation, land, height_m);
@@ -254,37 +316,53 @@ class ClimateStage final : public Stage {
         return planet_ascent;
       };
     }
-    SeasonalFields fields = solve_seasonal_climate(
+    const SeasonalFields fields = solve_seasonal_climate(
         frame.planet(), model, frame.planet_latitudes_deg(), land, height_m, ascent_of);
     context.advance(0.5);
     const DimmedSun dimmed =
         dim_the_sun(model.energy, closed_formulas ? &p_.blueprint : nullptr, context);
     if (closed_formulas) {
-      std::vector<float> rain(relief_size);
+      ascent.resize(relief_size);
       blueprint_relief_precipitation(frame.relief(), p_.blueprint, frame.relief_latitudes_deg(),
-                                     relief_land, relief_height, rain);
-      finish_blueprint(frame, model, fields, rain, elevation, dimmed, context, out);
-    } else {
-      // What a cell rains is spread over its ranges as they lift the air.
-      for (std::size_t cell = 0; cell < size; ++cell) {
-        fields.precipitation_mm_yr[cell] /= planet_ascent[cell];
-      }
-      finish_energy_balance(frame, model, fields, ascent, elevation, dimmed, context, out);
+                                     relief_land, relief_height, ascent);
+      planet_ascent.assign(size, 1.0F);
+    }
+    finish(shared_frame, model, fields, planet_ascent, ascent, elevation, dimmed, context, out);
+    if (!closed_formulas) {
       report_water(io.grid(), fields.water, dimmed.rain_left, elevation, out, context.budget);
     }
     context.advance(1.0);
   }
 
  private:
-  void finish_energy_balance(const ClimateFrame& frame, const SeasonalClimate& model,
-                             const SeasonalFields& fields, std::span<const float> ascent,
-                             std::span<const float> elevation, const DimmedSun& dimmed,
-                             Context& context, const Outputs& out) const {
+  /// Brings the coarse year to the stage's own cells. `on_relief` is the ascent over single ranges,
+  /// or, with closed formulas, their rain.
+  void finish(const std::shared_ptr<const ClimateFrame>& shared_frame, const SeasonalClimate& model,
+              const SeasonalFields& fields, std::span<const float> planet_ascent,
+              std::span<const float> on_relief, std::span<const float> elevation,
+              const DimmedSun& dimmed, Context& context, const Outputs& out) const {
+    const ClimateFrame& frame = *shared_frame;
     const Grid& grid = frame.on_planet().fine();
-    const PlanetRows planet(frame.on_planet(), fields);
-    const Interpolator ascent_of(frame.on_relief(), ascent);
+    const bool closed_formulas = p_.model == "blueprint";
+    std::vector<float> mean_c, rain_mm_yr;
+    auto year = std::make_shared<Climatology>(
+        shape_of_year(frame.shared_planet(), fields, mean_c, rain_mm_yr));
+    // What a cell rains is spread over its ranges as they lift the air.
+    for (std::size_t cell = 0; cell < rain_mm_yr.size(); ++cell) {
+      rain_mm_yr[cell] /= planet_ascent[cell];
+    }
+    const Interpolator mean_of(frame.on_planet(), mean_c), rain_of(frame.on_planet(), rain_mm_yr),
+        humidity_of(frame.on_planet(), fields.humidity),
+        east_of(frame.on_planet(), annual_mean(year->wind_east),
+                Interpolator::Kind::vector_component),
+        north_of(frame.on_planet(), annual_mean(year->wind_north),
+                 Interpolator::Kind::vector_component),
+        relief_of(frame.on_relief(), on_relief);
+    const SeasonsOfRows seasons(frame, model, *year);
     const ClimateNoise noise(p_, grid, context.seed);
-    const auto limits = TemperatureLimits::of_air(context.planet.pressure_bar);
+    const double pressure_bar = context.planet.pressure_bar;
+    const TemperatureLimits limits =
+        closed_formulas ? TemperatureLimits{} : TemperatureLimits::of_air(pressure_bar);
     std::vector<std::int64_t> held(grid.ny());
     const auto lapse = static_cast<float>(model.energy.lapse_k_m);
     const auto cooling = static_cast<float>(dimmed.cooling_k);
@@ -294,48 +372,60 @@ class ClimateStage final : public Stage {
     {
       const auto nx = static_cast<std::size_t>(grid.nx());
       auto scratch = errors.make<std::vector<float>>(
-          std::max(planet.rain.scratch_size(), ascent_of.scratch_size()));
-      auto cosine = errors.make<std::vector<float>>(nx);
-      auto sine = errors.make<std::vector<float>>(nx);
-      auto lifted = errors.make<std::vector<float>>(nx);
+          std::max(seasons.scratch_size(), relief_of.scratch_size()));
+      auto over_relief = errors.make<std::vector<float>>(nx);
       auto humidity = errors.make<std::vector<float>>(nx);
+      auto months = errors.make<std::vector<float>>(2 * kMonths * nx);
 #pragma omp for schedule(static)
       for (int j = 0; j < grid.ny(); ++j) {
         if (errors.any()) continue;
         const std::size_t begin = static_cast<std::size_t>(j) * nx;
         const auto row = [&](std::span<float> field) { return field.subspan(begin, nx); };
         const auto temperature = row(out.temperature), rain = row(out.precipitation);
-        const auto range = row(out.temperature_range), seasonality = row(out.seasonality);
-        planet.temperature.row(j, temperature, scratch);
-        planet.harmonic_cos.row(j, cosine, scratch);
-        planet.harmonic_sin.row(j, sine, scratch);
-        planet.rain.row(j, rain, scratch);
-        planet.boreal.row(j, seasonality, scratch);
-        planet.wind_east.row(j, row(out.wind_east), scratch);
-        planet.wind_north.row(j, row(out.wind_north), scratch);
-        planet.humidity.row(j, humidity, scratch);
-        ascent_of.row(j, lifted, scratch);
-        const float summer = frame.latitudes_deg()[j] < 0.0 ? -1.0F : 1.0F;
-        for (std::size_t i = 0; i < nx; ++i) {
-          const float above = std::max(0.0F, elevation[begin + i]);
-          const auto shake = static_cast<float>(noise.temperature_k(static_cast<int>(i), j));
-          temperature[i] += shake - cooling - lapse * above;
-          held[j] += limits.hold(temperature[i]) ? 1 : 0;
-          range[i] = 2.0F * std::sqrt(cosine[i] * cosine[i] + sine[i] * sine[i]);
-          const auto stray = static_cast<float>(noise.rain_mm_yr(static_cast<int>(i), j));
-          rain[i] = rain_left * std::max(0.0F, rain[i] * lifted[i] + stray);
-          seasonality[i] = std::clamp(summer * seasonality[i], -1.0F, 1.0F);
+        relief_of.row(j, over_relief, scratch);
+        humidity_of.row(j, humidity, scratch);
+        const double latitude = frame.latitudes_deg()[j];
+        if (closed_formulas) {
+          const double hadley = hadley_precipitation_mm_yr(latitude);
+          const WindDirection wind = three_cell_wind(latitude);
+          for (std::size_t i = 0; i < nx; ++i) {
+            const double h = elevation[begin + i], coast_km = 1.0e-3 * out.coast[begin + i];
+            const int column = static_cast<int>(i);
+            temperature[i] = static_cast<float>(
+                blueprint_temperature_c(p_.blueprint, latitude, h, coast_km, pressure_bar,
+                                        noise.temperature_k(column, j), dimmed.cooling_k));
+            held[j] += limits.is_end(temperature[i]) ? 1 : 0;
+            rain[i] = static_cast<float>(blueprint_precipitation_mm_yr(
+                p_.blueprint, hadley, over_relief[i], h, coast_km, pressure_bar,
+                noise.rain_mm_yr(column, j), dimmed.aerosol));
+            out.wind_east[begin + i] = static_cast<float>(p_.wind_speed_m_s * wind.east);
+            out.wind_north[begin + i] = static_cast<float>(p_.wind_speed_m_s * wind.north);
+          }
+        } else {
+          mean_of.row(j, temperature, scratch);
+          rain_of.row(j, rain, scratch);
+          east_of.row(j, row(out.wind_east), scratch);
+          north_of.row(j, row(out.wind_north), scratch);
+          for (std::size_t i = 0; i < nx; ++i) {
+            const float above = std::max(0.0F, elevation[begin + i]);
+            const auto shake = static_cast<float>(noise.temperature_k(static_cast<int>(i), j));
+            temperature[i] += shake - cooling - lapse * above;
+            held[j] += limits.hold(temperature[i]) ? 1 : 0;
+            const auto stray = static_cast<float>(noise.rain_mm_yr(static_cast<int>(i), j));
+            rain[i] = rain_left * std::max(0.0F, rain[i] * over_relief[i] + stray);
+          }
         }
-        add_up_evaporation(frame.latitudes_deg()[j], model, temperature, cosine, sine, humidity,
-                           row(out.evaporation));
+        seasons.row(j, elevation, humidity, out, months, scratch);
       }
     }
     errors.rethrow();
     // A part of a planet has no budget of its own: its air goes on beyond the edge.
-    if (grid.topology() != Topology::plane) {
+    if (!closed_formulas && grid.topology() != Topology::plane) {
       close_rain(grid, dimmed.rain_left * fields.water.precipitation_m3_s, out.precipitation);
     }
-    report_limits(grid, limits, held, /*part_of_model=*/false, context);
+    report_limits(grid, limits, held, /*part_of_model=*/closed_formulas, context);
+    context.climatology = year;
+    if (!closed_formulas) context.monthly_fields = months_of(shared_frame, year);
   }
 
   /// Evaporation as the air got it, rain as the fields have it.
@@ -356,65 +446,6 @@ class ClimateStage final : public Stage {
         std::abs(evaporation - precipitation) / std::max({evaporation, precipitation, 1e-30});
   }
 
-  void finish_blueprint(const ClimateFrame& frame, const SeasonalClimate& model,
-                        const SeasonalFields& fields, std::span<const float> relief_rain,
-                        std::span<const float> elevation, const DimmedSun& dimmed, Context& context,
-                        const Outputs& out) const {
-    const Grid& grid = frame.on_planet().fine();
-    const PlanetRows planet(frame.on_planet(), fields);
-    const Interpolator relief_of(frame.on_relief(), relief_rain);
-    const ClimateNoise noise(p_, grid, context.seed);
-    const double pressure_bar = context.planet.pressure_bar;
-    ParallelErrors errors;
-    const TemperatureLimits limits;
-    std::vector<std::int64_t> held(grid.ny());
-#pragma omp parallel
-    {
-      const auto nx = static_cast<std::size_t>(grid.nx());
-      auto scratch = errors.make<std::vector<float>>(
-          std::max(planet.rain.scratch_size(), relief_of.scratch_size()));
-      auto cosine = errors.make<std::vector<float>>(nx);
-      auto sine = errors.make<std::vector<float>>(nx);
-      auto humidity = errors.make<std::vector<float>>(nx);
-#pragma omp for schedule(static)
-      for (int j = 0; j < grid.ny(); ++j) {
-        if (errors.any()) continue;
-        const std::size_t begin = static_cast<std::size_t>(j) * nx;
-        const auto row = [&](std::span<float> field) { return field.subspan(begin, nx); };
-        const auto temperature = row(out.temperature), rain = row(out.precipitation);
-        const auto range = row(out.temperature_range), seasonality = row(out.seasonality);
-        planet.harmonic_cos.row(j, cosine, scratch);
-        planet.harmonic_sin.row(j, sine, scratch);
-        planet.boreal.row(j, seasonality, scratch);
-        planet.humidity.row(j, humidity, scratch);
-        relief_of.row(j, rain, scratch);
-        const double latitude = frame.latitudes_deg()[j];
-        const double hadley = hadley_precipitation_mm_yr(latitude);
-        const WindDirection wind = three_cell_wind(latitude);
-        const float summer = latitude < 0.0 ? -1.0F : 1.0F;
-        for (std::size_t i = 0; i < nx; ++i) {
-          const double h = elevation[begin + i], coast_km = 1.0e-3 * out.coast[begin + i];
-          const int column = static_cast<int>(i);
-          temperature[i] = static_cast<float>(
-              blueprint_temperature_c(p_.blueprint, latitude, h, coast_km, pressure_bar,
-                                      noise.temperature_k(column, j), dimmed.cooling_k));
-          held[j] += limits.is_end(temperature[i]) ? 1 : 0;
-          rain[i] = static_cast<float>(blueprint_precipitation_mm_yr(
-              p_.blueprint, hadley, rain[i], h, coast_km, pressure_bar, noise.rain_mm_yr(column, j),
-              dimmed.aerosol));
-          range[i] = 2.0F * std::sqrt(cosine[i] * cosine[i] + sine[i] * sine[i]);
-          seasonality[i] = std::clamp(summer * seasonality[i], -1.0F, 1.0F);
-          out.wind_east[begin + i] = static_cast<float>(p_.wind_speed_m_s * wind.east);
-          out.wind_north[begin + i] = static_cast<float>(p_.wind_speed_m_s * wind.north);
-        }
-        add_up_evaporation(latitude, model, temperature, cosine, sine, humidity,
-                           row(out.evaporation));
-      }
-    }
-    errors.rethrow();
-    report_limits(grid, limits, held, /*part_of_model=*/true, context);
-  }
-
   ClimateParameters p_;
   StageInfo info_{"climate",
                   "temperature, winds and rain from insolation, relief and the sea",
@@ -422,7 +453,7 @@ class ClimateStage final : public Stage {
                   {},
                   {&field::temperature, &field::temperature_range, &field::precipitation,
                    &field::precipitation_seasonality, &field::wind_east, &field::wind_north,
-                   &field::distance_to_coast, &field::potential_evaporation},
+                   &field::distance_to_coast, &field::potential_evaporation, &field::koppen_class},
                   /*own_grid=*/false,
                   /*feels_events=*/true};
 };

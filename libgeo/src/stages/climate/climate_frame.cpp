@@ -50,10 +50,11 @@ ClimateFrame::ClimateFrame(const Grid& grid, const ClimateParameters& parameters
   switch (grid.topology()) {
     case Topology::sphere:
     case Topology::plane:
-      planet_ = std::make_unique<Grid>(Grid::sphere(2 * rows, rows, planet.figure(), grid.turn()));
+      planet_ =
+          std::make_shared<const Grid>(Grid::sphere(2 * rows, rows, planet.figure(), grid.turn()));
       break;
     case Topology::torus:
-      planet_ = std::make_unique<Grid>(
+      planet_ = std::make_shared<const Grid>(
           coarser_grid(grid, parameters.resolution_deg * kRadians * radius_m));
       break;
   }

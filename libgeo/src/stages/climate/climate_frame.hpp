@@ -19,6 +19,7 @@ class ClimateFrame {
   ClimateFrame(const Grid& grid, const ClimateParameters& parameters, const Planet& planet);
 
   [[nodiscard]] const Grid& planet() const { return *planet_; }
+  [[nodiscard]] const std::shared_ptr<const Grid>& shared_planet() const { return planet_; }
   [[nodiscard]] const Grid& relief() const { return *relief_; }
   [[nodiscard]] const ConservativeRemapping& on_planet() const { return *on_planet_; }
   [[nodiscard]] const ConservativeRemapping& on_relief() const { return *on_relief_; }
@@ -42,7 +43,8 @@ class ClimateFrame {
                      std::span<float> height_m) const;
 
   bool edge_continues_;
-  std::unique_ptr<Grid> planet_, relief_;
+  std::shared_ptr<const Grid> planet_;
+  std::unique_ptr<Grid> relief_;
   std::unique_ptr<ConservativeRemapping> on_planet_, on_relief_, relief_on_planet_;
   std::vector<double> latitude_deg_, planet_latitude_deg_, relief_latitude_deg_;
 };

@@ -52,6 +52,7 @@ struct RunSettings {
   std::string map_center;  ///< "LAT,LON"; empty: 0,0
   std::int64_t compression = 1;
   std::int64_t vtk_compression = 0;
+  bool monthly = false;
 
   std::vector<Event> events;
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "geo/core/checkpoint.hpp"
+#include "geo/core/climatology.hpp"
 #include "geo/core/state.hpp"
 
 namespace geo::io {
@@ -32,6 +33,8 @@ struct Snapshot {
   /// Of a frame of a stage that runs through time: a scalar time coordinate and the arrays to go on
   /// from, in a group of their own.
   std::shared_ptr<const Checkpoint> checkpoint = {};
+  /// Makes the fields of months, which are written beside the others; empty: none.
+  MonthlyFields months = {};
 };
 
 /// Writes a snapshot as NetCDF-4 with CF-1.10 metadata: temporary name, flush, rename. Shuffled,

@@ -20,29 +20,37 @@ struct WindDirection {
 ///   r u - f v = -dp/dx / rho,   r v + f u = -dp/dy / rho.
 struct Circulation {
   double rotation_period_h = 23.934;
+  bool retrograde = false;
   double air_density_kg_m3 = 1.2;
-  double drag_ocean_s = 1.5e-5;  ///< r over the sea, s-1
-  double drag_land_s = 3.0e-5;
-  double subtropical_high_hpa = 4.9;  ///< above the equatorial trough
-  double subpolar_low_hpa = 17.0;     ///< below the subtropical high
-  double polar_high_hpa = 6.0;        ///< above the subpolar low
-  double thermal_low_hpa_k = 0.8;     ///< fall of pressure per kelvin of heat anomaly
+  double drag_ocean_s = 3.95e-5;  ///< r over the sea, s-1
+  double drag_land_s = 2.33e-5;
+  double subtropical_high_hpa = 4.14;  ///< above the equatorial trough
+  double subpolar_low_hpa = 8.0;       ///< below the subtropical high
+  double polar_high_hpa = 3.79;        ///< above the subpolar low
+  double thermal_low_hpa_k = 0.871;    ///< fall of pressure per kelvin of heat anomaly
+  double cold_high_share = 1.0;        ///< of it, where the anomaly is cold and shallow
+
+  /// Angular velocity, negative if retrograde.
+  [[nodiscard]] double rotation_rad_s() const;
+  /// How much wider the cells are than the Earth's: as the root of the length of the day
+  /// (Held 2000), until one cell reaches the pole.
+  [[nodiscard]] double cell_width() const;
 };
 
 /// Pressure of the three cells at a latitude, hPa relative to the equatorial trough: half cosines
-/// between the trough, the high at 30, the low at 60 and the high at 90 deg.
-[[nodiscard]] double three_cell_pressure_hpa(double latitude_deg, const Circulation& model);
-/// Its derivative, hPa per radian of latitude.
-[[nodiscard]] double three_cell_gradient_hpa(double latitude_deg, const Circulation& model);
+/// between the trough, the high at 30, the low at 60 and the high at 90 deg; wider cells end at
+/// the pole, narrower ones are followed by more, like the polar one.
+/// @param trough_deg  latitude of the trough: the tropical edge moves with it, the pole stays
+[[nodiscard]] double three_cell_pressure_hpa(double latitude_deg, const Circulation& model,
+                                             double trough_deg = 0.0);
 
-/// Winds of one season on a sphere or torus.
+/// Winds of one month on a sphere or torus.
 /// @param latitude_deg     per row
-/// @param itcz_deg         latitude about which the tropical cells are centred
-/// @param heat_anomaly_k   temperature minus what the cells already stand for, per cell
+/// @param pressure_hpa     per cell
 /// @param[out] wind_east, wind_north  m s-1, where the air goes
-void thermal_winds(const Grid& grid, const Circulation& model, std::span<const double> latitude_deg,
-                   double itcz_deg, std::span<const float> land_fraction,
-                   std::span<const float> heat_anomaly_k, std::span<float> wind_east,
-                   std::span<float> wind_north);
+void balanced_winds(const Grid& grid, const Circulation& model,
+                    std::span<const double> latitude_deg, std::span<const float> land_fraction,
+                    std::span<const float> pressure_hpa, std::span<float> wind_east,
+                    std::span<float> wind_north);
 
 }  // namespace geo

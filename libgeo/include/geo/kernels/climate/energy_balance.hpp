@@ -1,71 +1,88 @@
 #pragma once
 
+#include <array>
 #include <complex>
 #include <span>
+#include <vector>
 
 #include "geo/core/grid.hpp"
+#include "geo/kernels/climate/insolation.hpp"
 
 namespace geo {
-
-/// Heat balance   (loss + sum of conductances) T - sum(conductance * T_neighbour) = source
-/// on a sphere or torus, for real or complex unknowns. The matrix is symmetric: conjugate gradients
-/// (without conjugation for complex unknowns: COCG, van der Vorst & Melissen 1990), preconditioned
-/// with the exact solution of each row, which takes the narrow cells near the poles in its stride.
-/// One thread: on a grid of 2 degrees a step takes well below a millisecond.
-template <class T>
-struct HeatProblem {
-  std::span<const double> conductance_east;   ///< of the face to the east, W K-1, size nx*ny
-  std::span<const double> conductance_north;  ///< of the face to the north, W K-1 (0 at a pole)
-  std::span<const T> loss;                    ///< W K-1 per cell
-  std::span<const T> source;                  ///< W per cell
-};
-/// Improves `temperature` until a step changes less than 1e-5 K, at most `iterations` times.
-template <class T>
-void solve_heat(const Grid& grid, const HeatProblem<T>& problem, int iterations,
-                std::span<T> temperature);
 
 /// Constants of the energy-balance model (North 1975, North et al. 1981, with the moist transport
 /// of Flannery 1984).
 struct EnergyBalance {
   double solar_constant_w_m2 = 1361.0;
-  double obliquity_deg = 23.44;
-  double outgoing_w_m2 = 204.6;         ///< A at 0 degC
-  double outgoing_slope_w_m2_k = 2.09;  ///< B
-  double diffusivity_w_m2_k = 0.53;     ///< D at 15 degC, on the unit sphere
-  double moist_transport = 1.0;         ///< share of latent heat in D's change with temperature
-  double coalbedo = 0.697;              ///< mean absorbed share without ice
-  double coalbedo_p2 = -0.0779;         ///< its second Legendre coefficient in latitude
-  double ice_coalbedo = 0.27;           ///< of ice sheets and snow on land
-  double sea_ice_coalbedo = 0.55;       ///< of sea ice, broken and wet in summer
-  double ice_temperature_c = -16.0;     ///< annual mean at which half the surface is ice
-  double ice_width_k = 3.0;             ///< width of the transition; 0: no ice at all
-  double land_heat_capacity_w_yr_m2_k = 0.27;
-  double ocean_heat_capacity_w_yr_m2_k = 5.4;
-  double gyre_heat_w_m2 = 120.0;  ///< heat that gyres release along a western coast of an ocean
-  double gyre_reach_km = 3200.0;  ///< e-folding distance of a coast's influence
-  double lapse_k_m = 0.0057;
+  Orbit orbit;
+  double outgoing_w_m2 = 198.0;         ///< A at 0 degC
+  double outgoing_slope_w_m2_k = 2.36;  ///< B
+  double diffusivity_w_m2_k = 0.552;    ///< D at 15 degC, on the unit sphere
+  double moist_transport = 1.15;        ///< share of latent heat in D's change with temperature
+  double advected_heat_j_m2_k = 9.5e6;  ///< of the air that the zonal wind moves
+  double coalbedo = 0.682;              ///< mean absorbed share without snow and ice
+  double coalbedo_p2 = -0.0788;         ///< its second Legendre coefficient in latitude
+  double snow_coalbedo = 0.66;          ///< of snow that melts in summer
+  double ice_coalbedo = 0.232;          ///< of land whose snow stays
+  double sea_ice_coalbedo = 0.65;       ///< of sea ice, broken and wet in summer
+  double snow_temperature_c = -4.14;    ///< monthly mean at which half the land is under snow
+  double ice_temperature_c = -9.68;     ///< annual mean at which half the sea is ice
+  double ice_width_k = 2.45;            ///< width of both transitions; 0: no ice and snow at all
+  double land_heat_capacity_w_yr_m2_k = 0.104;
+  double ocean_heat_capacity_w_yr_m2_k = 6.73;
+  double ice_heat_capacity_w_yr_m2_k = 0.532;  ///< of sea ice that does not melt
+  double melt_w_m2_k = 10.1;      ///< heat that melting sea ice takes for each kelvin above -1 degC
+  double gyre_heat_w_m2 = 41.9;   ///< heat that gyres release along a western coast of an ocean
+  double gyre_reach_km = 1030.0;  ///< e-folding distance of a coast's influence
+  double lapse_k_m = 0.00498;
+  double dry_warming_k_m2_w = 0.0268;  ///< by which dry ground is warmer for each W m-2 of sunlight
+  double dry_warming_from_w_m2 = 160.0;  ///< above this
 };
 
 /// Heat that wind-driven gyres bring to the sea, W m-2: trades push warm water west and let cold
 /// water well up in the east, westerlies the other way round (zero at 45 deg),
 ///   q = gyre_heat cos(2 lat) (land to the west - land to the east) * water,
-/// the land shares weighted by exp(-distance / reach) along the parallel.
-void gyre_heat(const Grid& grid, const EnergyBalance& model, std::span<const double> latitude_deg,
-               std::span<const float> land_fraction, std::span<double> heat_w_m2);
+/// the land shares weighted by exp(-distance / reach) along the parallel. On a planet that turns
+/// the other way, west is east.
+void gyre_heat(const Grid& grid, const EnergyBalance& model, bool retrograde,
+               std::span<const double> latitude_deg, std::span<const float> land_fraction,
+               std::span<double> heat_w_m2);
 
-/// Annual mean and first annual harmonic of the temperature at sea level:
-///   C dT/dt = Q (1 - albedo) - (A + B T) + div(D grad T).
-/// The mean is solved with its ice cover, the harmonic as a complex Helmholtz equation
-/// (B + i omega C) T1 = Q1 (1 - albedo) + div(D grad T1) that shares its matrix.
+/// Temperature at sea level through the year, in harmonics of the time of the year t (0 to 1):
+///   T(t) = mean + Re(sum over k of harmonic_k e^(2 pi i k t)).
+class TemperatureCycle {
+ public:
+  static constexpr int kHarmonics = 2;
+  explicit TemperatureCycle(std::size_t cells) {
+    for (auto& harmonic : harmonics_) harmonic.assign(cells, 0.0);
+  }
+  /// The mean for 0.
+  [[nodiscard]] std::span<std::complex<double>> harmonic(int k) { return harmonics_[k]; }
+  [[nodiscard]] std::span<const std::complex<double>> harmonic(int k) const {
+    return harmonics_[k];
+  }
+  [[nodiscard]] double mean_c(std::size_t cell) const { return harmonics_[0][cell].real(); }
+  /// In the middle of a month, 0 for January.
+  [[nodiscard]] double month_c(std::size_t cell, int month) const;
+
+ private:
+  std::array<std::vector<std::complex<double>>, kHarmonics + 1> harmonics_;
+};
+
+/// Solves, on a sphere or torus,
+///   C dT/dt + F u dT/dx = Q (1 - albedo) - (A + B T) + gyres + div(D grad T)
+/// for the periodic year, by harmonics: for each a sparse linear system, in whose source the albedo
+/// of the months' snow and ice is found by iteration. F is the advected heat, u the zonal wind.
+/// Throws Bug if a solver does not converge. Threads: one for each harmonic.
 ///
-/// @param latitude_deg   per row
+/// @param latitude_deg, zonal_wind_m_s  per row
 /// @param land_fraction  0..1 per cell
 /// @param height_m       mean elevation of the cell above sea level, 0 at sea
-/// @param[out] mean_c    degC at sea level
-/// @param[out] harmonic_k  T(L) = mean + Re(harmonic e^{iL}), L the solar longitude
-void solve_energy_balance(const Grid& grid, const EnergyBalance& model,
-                          std::span<const double> latitude_deg,
-                          std::span<const float> land_fraction, std::span<const float> height_m,
-                          std::span<double> mean_c, std::span<std::complex<double>> harmonic_k);
+[[nodiscard]] TemperatureCycle solve_energy_balance(const Grid& grid, const EnergyBalance& model,
+                                                    bool retrograde,
+                                                    std::span<const double> latitude_deg,
+                                                    std::span<const double> zonal_wind_m_s,
+                                                    std::span<const float> land_fraction,
+                                                    std::span<const float> height_m);
 
 }  // namespace geo

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <span>
 #include <vector>
@@ -8,23 +9,37 @@
 #include "geo/kernels/climate/circulation.hpp"
 #include "geo/kernels/climate/energy_balance.hpp"
 #include "geo/kernels/climate/moisture.hpp"
+#include "geo/kernels/climate/soil_moisture.hpp"
+#include "geo/kernels/climate/stationary_wave.hpp"
 
 namespace geo {
 
-/// Constants of the seasonal climate: energy balance, winds, eddies, moisture.
+/// Constants of the seasonal climate: energy balance, winds, waves, eddies, moisture.
 struct SeasonalClimate {
   EnergyBalance energy;
   Circulation circulation;
+  StationaryWave wave;
   MoistureBudget moisture;
-  double itcz_share = 1.22;  ///< of the thermal equator's excursion that the cells follow
-  double base_diffusivity_m2_s = 7.5e5;
-  double eddy_diffusivity_m2_s = 3.7e5;  ///< at the reference temperature gradient
-  double eddy_rain = 5.8;                ///< extra rain-out activity there
-  double eddy_gradient_k_1000km = 6.6;   ///< the reference gradient
-  double ascent_time_d = 5.2;            ///< convergence over this time multiplies rain-out by e
-  double orographic_share = 0.19;  ///< of the mean height by which moist air is lifted over a cell
-  double blocking_height_m = 5000.0;  ///< height at which relief halves the moist flow
-  double land_transpiration = 0.97;   ///< share of Budyko's evaporation that returns to the air
+  SoilMoisture soil;
+  double itcz_share = 0.3;  ///< of the thermal equator's excursion that the cells follow
+  double itcz_locality =
+      0.937;  ///< how far the trough follows the warmest latitude of each meridian
+  double sensible_w_m2_k =
+      4.25;  ///< heating of the air where the surface is warmer than its parallel
+  double base_diffusivity_m2_s = 2.63e6;
+  double eddy_diffusivity_m2_s = 0.0;    ///< at the reference temperature gradient
+  double eddy_rain = 11.8;               ///< extra rain-out activity there
+  double eddy_gradient_k_1000km = 4.18;  ///< the reference gradient
+  double eddy_locality = 0.0;    ///< how far eddies follow the local gradient, not the parallel's
+  double ascent_time_d = 8.47;   ///< convergence over this time multiplies rain-out by e
+  double descent_time_d = 2.13;  ///< the same of the descent that stationary waves make
+  double ascent_smoothing_km = 474.0;  ///< over which ascent is felt
+  double convection_1_k = 0.156;  ///< by which rain-out grows with relative moist static energy
+  double convection_latitude_deg = 49.6;  ///< to which the free atmosphere is level
+  double orographic_share =
+      0.00488;  ///< of the mean height by which moist air is lifted over a cell
+  double blocking_height_m = 5.26e3;  ///< height at which relief halves the moist flow
+  double land_transpiration = 0.914;  ///< share of the soil's evaporation that returns to the air
 };
 
 /// Water that passes between a surface and its air, m3 s-1 over the year. The two sides are summed
@@ -34,13 +49,12 @@ struct AirWater {
   double precipitation_m3_s = 0.0;
 };
 
-/// Fields of a coarse grid, one value per cell.
+/// Fields of a coarse grid, one value per cell, for each month.
 struct SeasonalFields {
-  std::vector<float> temperature_c;                   ///< annual mean at sea level
-  std::vector<float> harmonic_cos_k, harmonic_sin_k;  ///< T(L) = mean + cos * cos L - sin * sin L
-  std::vector<float> precipitation_mm_yr;
-  std::vector<float> boreal_rain_share;  ///< July-phased annual harmonic of rain over its mean
-  std::vector<float> wind_east, wind_north;
+  using Monthly = std::array<std::vector<float>, kMonths>;
+  Monthly temperature_c;     ///< at sea level
+  Monthly precipitation_mm;  ///< per month
+  Monthly wind_east, wind_north;
   std::vector<float> humidity;  ///< annual mean relative humidity of the column
   AirWater water;
 };
@@ -50,11 +64,14 @@ struct SeasonalFields {
 using ReliefAscent = std::function<std::vector<float>(std::span<const float> wind_east,
                                                       std::span<const float> wind_north)>;
 
-/// Twelve months of climate of a sphere or torus from its relief: sea-level temperature from the
-/// energy balance, winds from cells and heat lows, rain from the moisture budget with evaporation
-/// from the land by Budyko (1974). What `ascent` (empty: level ground) lets rain in one cell the
-/// air lacks in the next; rain and evaporation of the whole surface agree every month.
-/// Months run in parallel; the same bits for any number of threads.
+/// Twelve months of climate of a sphere or torus from its relief. Temperature at sea level comes
+/// from the energy balance; pressure from cells about the thermal equator, heat lows and the
+/// stationary waves that latent heat and warm land set up; winds balance it with friction; they
+/// and eddies, strongest where temperature changes most, carry moisture, which rains out where air
+/// is humid, rises, or is warmer and moister than the tropics' even free atmosphere; soil gives
+/// rain back. Waves and rain are iterated together. What `ascent` (empty: level ground) lets rain
+/// in one cell the air lacks in the next; rain and evaporation of the whole surface agree every
+/// month. Months run in parallel; the same bits for any number of threads.
 SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& model,
                                       std::span<const double> latitude_deg,
                                       std::span<const float> land_fraction,

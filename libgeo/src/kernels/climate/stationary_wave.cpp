@@ -1,0 +1,208 @@
+#include "geo/kernels/climate/stationary_wave.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <tuple>
+#include <unsupported/Eigen/FFT>
+#include <vector>
+
+#include "geo/core/error.hpp"
+
+namespace geo {
+namespace {
+
+using Complex = std::complex<double>;
+constexpr double kPi = std::numbers::pi;
+constexpr double kRadians = kPi / 180.0;
+constexpr double kSecondsPerDay = 86400.0;
+constexpr Complex kI{0.0, 1.0};
+
+/// What a wave meets at one latitude.
+struct Parallel {
+  double cosine, coriolis;
+  Complex drag;         ///< e + i k U
+  Complex wave_number;  ///< i k, k = m / (a cos lat)
+  [[nodiscard]] Complex inertia() const { return drag * drag + coriolis * coriolis; }
+};
+
+/// lower_j x_{j-1} + own_j x_j + upper_j x_{j+1} = right_j (Thomas algorithm); leaves x in `right`.
+void solve_tridiagonal(std::vector<Complex>& lower, std::vector<Complex>& own,
+                       std::vector<Complex>& upper, std::vector<Complex>& right) {
+  const std::size_t n = own.size();
+  for (std::size_t j = 1; j < n; ++j) {
+    const Complex factor = lower[j] / own[j - 1];
+    own[j] -= factor * upper[j - 1];
+    right[j] -= factor * right[j - 1];
+  }
+  right[n - 1] /= own[n - 1];
+  for (std::size_t j = n - 1; j-- > 0;) right[j] = (right[j] - upper[j] * right[j + 1]) / own[j];
+}
+
+/// The response of one zonal wave number.
+class Wave {
+ public:
+  Wave(const WaveMode& model, int number, double radius_m, double rotation_rad_s,
+       std::span<const double> latitude_deg, std::span<const double> zonal_wind_m_s)
+      : model_(model), rows_(static_cast<int>(latitude_deg.size())) {
+    const double damping = 1.0 / (model.momentum_damping_d * kSecondsPerDay);
+    const double step = kPi / rows_;
+    step_m_ = radius_m * step;
+    const auto parallel = [&](double latitude, double wind) {
+      const double cosine = std::max(std::cos(latitude), 1e-9);
+      const Complex k = kI * (number / (radius_m * cosine));
+      return Parallel{cosine, 2.0 * rotation_rad_s * std::sin(latitude),
+                      damping + k * model.wind_share * wind, k};
+    };
+    for (int j = 0; j < rows_; ++j) {
+      centre_.push_back(parallel(latitude_deg[j] * kRadians, zonal_wind_m_s[j]));
+    }
+    for (int j = 0; j + 1 < rows_; ++j) {
+      face_.push_back(
+          parallel(-0.5 * kPi + (j + 1) * step, 0.5 * (zonal_wind_m_s[j] + zonal_wind_m_s[j + 1])));
+    }
+    mirror_ = number % 2 == 0 ? 1.0 : -1.0;  // of P beyond a pole
+  }
+
+  /// The wind that carries the wave, as i k U.
+  [[nodiscard]] Complex carried(int j) const { return centre_[j].drag - centre_[j].drag.real(); }
+
+  /// Cooling of the geopotential as a wave passes: e_T + i k U.
+  [[nodiscard]] Complex thermal(int j) const {
+    const double damping = 1.0 / (model_.thermal_damping_d * kSecondsPerDay);
+    return damping + carried(j);
+  }
+
+  /// Winds at the middle of a row.
+  [[nodiscard]] std::pair<Complex, Complex> wind(int j, const std::vector<Complex>& values) const {
+    const Parallel& at = centre_[j];
+    const Complex north = j + 1 < rows_ ? values[j + 1] : mirror_ * values[j];
+    const Complex south = j > 0 ? values[j - 1] : mirror_ * values[j];
+    const Complex slope_east = at.wave_number * values[j],
+                  slope_north = (north - south) / (2.0 * step_m_);
+    return {-(at.drag * slope_east + at.coriolis * slope_north) / at.inertia(),
+            (at.coriolis * slope_east - at.drag * slope_north) / at.inertia()};
+  }
+
+  /// From the forcing of the geopotential to its response.
+  void respond(std::vector<Complex>& values) const {
+    const double speed2 = model_.speed_m_s * model_.speed_m_s;
+    std::vector<Complex> lower(rows_, 0.0), own(rows_), upper(rows_, 0.0);
+    for (int j = 0; j < rows_; ++j) {
+      const Parallel& at = centre_[j];
+      const Complex per_inertia = speed2 * at.wave_number / at.inertia();
+      own[j] = thermal(j) - per_inertia * at.drag * at.wave_number;
+      // u from dP/dy across the row.
+      const Complex slope = -per_inertia * at.coriolis / (2.0 * step_m_);
+      (j + 1 < rows_ ? upper[j] : own[j]) += (j + 1 < rows_ ? 1.0 : mirror_) * slope;
+      (j > 0 ? lower[j] : own[j]) -= (j > 0 ? 1.0 : mirror_) * slope;
+      // v through the faces: v = (-drag dP/dy + f i k P) / inertia.
+      const double per_width = speed2 / (at.cosine * step_m_);
+      if (j + 1 < rows_) {
+        const auto [before, beyond] = through(face_[j]);
+        own[j] += per_width * before;
+        upper[j] += per_width * beyond;
+      }
+      if (j > 0) {
+        const auto [before, beyond] = through(face_[j - 1]);
+        lower[j] -= per_width * before;
+        own[j] -= per_width * beyond;
+      }
+    }
+    solve_tridiagonal(lower, own, upper, values);
+  }
+
+ private:
+  /// Flow cos(lat) v through a face for 1 of P before it, and beyond it.
+  [[nodiscard]] std::pair<Complex, Complex> through(const Parallel& face) const {
+    const Complex scale = face.cosine / face.inertia();
+    const Complex along = 0.5 * face.coriolis * face.wave_number;
+    const Complex down = face.drag / step_m_;
+    return {scale * (along + down), scale * (along - down)};
+  }
+
+  const WaveMode& model_;
+  int rows_;
+  double step_m_, mirror_;
+  std::vector<Parallel> centre_, face_;
+};
+
+}  // namespace
+
+void stationary_wave(const Grid& grid, const StationaryWave& model, double rotation_rad_s,
+                     std::span<const double> latitude_deg, std::span<const double> zonal_wind_m_s,
+                     std::span<const float> heating_w_m2, std::span<const float> height_m,
+                     std::span<float> wind_east, std::span<float> wind_north,
+                     std::span<float> descent_1_s) {
+  if (grid.topology() != Topology::sphere) throw Bug("stationary_wave: the grid is no sphere");
+  constexpr double kGravity_m_s2 = 9.81;
+  const int nx = grid.nx(), ny = grid.ny();
+  const double radius_m = grid.figure().radius_m;
+  const int waves = std::min(model.waves, nx / 2 - 1);
+  const bool mountains = model.mountain_share > 0.0;
+  Eigen::FFT<double> fourier;
+  std::vector<std::vector<Complex>> heating(ny), height(ny), east(ny), north(ny), descent(ny);
+  std::vector<double> line(nx);
+  const auto analyse = [&](int j, std::span<const float> values, std::vector<Complex>& spectrum) {
+    const auto row = values.subspan(static_cast<std::size_t>(j) * nx, nx);
+    std::copy(row.begin(), row.end(), line.begin());
+    fourier.fwd(spectrum, line);
+  };
+  for (int j = 0; j < ny; ++j) {
+    analyse(j, heating_w_m2, heating[j]);
+    if (mountains) analyse(j, height_m, height[j]);
+    east[j].assign(nx, 0.0);
+    north[j].assign(nx, 0.0);
+    descent[j].assign(nx, 0.0);
+  }
+  const double speed2 = model.internal.speed_m_s * model.internal.speed_m_s;
+  std::vector<Complex> values(ny);
+  for (int m = 1; m <= waves; ++m) {
+    const auto wave_of = [&](const WaveMode& mode) {
+      return Wave(mode, m, radius_m, rotation_rad_s, latitude_deg, zonal_wind_m_s);
+    };
+    const Wave wave = wave_of(model.internal);
+    const auto smoothed = [&](int j) {
+      const double scale =
+          1000.0 * model.smoothing_km * m / (radius_m * std::cos(latitude_deg[j] * kRadians));
+      return 1.0 / (1.0 + scale * scale);
+    };
+    for (int j = 0; j < ny; ++j) {
+      values[j] = -model.heating_m4_s3_w * smoothed(j) * heating[j][m];
+    }
+    wave.respond(values);
+    for (int j = 0; j < ny; ++j) {
+      std::tie(east[j][m], north[j][m]) = wave.wind(j, values);
+      descent[j][m] = -wave.thermal(j) * values[j] / speed2;
+    }
+    if (mountains) {
+      const Wave over = wave_of(model.external);
+      for (int j = 0; j < ny; ++j) {
+        values[j] =
+            kGravity_m_s2 * model.mountain_share * smoothed(j) * over.carried(j) * height[j][m];
+      }
+      over.respond(values);
+      for (int j = 0; j < ny; ++j) {
+        const auto [along, across] = over.wind(j, values);
+        east[j][m] += along;
+        north[j][m] += across;
+      }
+    }
+    for (auto* spectra : {&east, &north, &descent}) {
+      for (auto& spectrum : *spectra) spectrum[nx - m] = std::conj(spectrum[m]);
+    }
+  }
+  for (int j = 0; j < ny; ++j) {
+    const std::size_t begin = static_cast<std::size_t>(j) * nx;
+    const auto put = [&](const std::vector<Complex>& spectrum, std::span<float> out) {
+      fourier.inv(line, spectrum);
+      for (int i = 0; i < nx; ++i) out[begin + i] = static_cast<float>(line[i]);
+    };
+    put(east[j], wind_east);
+    put(north[j], wind_north);
+    put(descent[j], descent_1_s);
+  }
+}
+
+}  // namespace geo

@@ -1,0 +1,162 @@
+#include "geo/kernels/climate/stationary_wave.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "geo/kernels/climate/soil_moisture.hpp"
+
+namespace geo {
+namespace {
+
+constexpr double kRadians = std::numbers::pi / 180.0;
+constexpr double kTurning = 7.292e-5;
+
+struct Response {
+  Response(int nx, int ny, const StationaryWave& model, double wind_m_s, double turning,
+           auto&& heating, auto&& height)
+      : grid(Grid::sphere(nx, ny)) {
+    std::vector<double> latitude;
+    for (int j = 0; j < ny; ++j) latitude.push_back(grid.latitude_deg(j));
+    const auto size = static_cast<std::size_t>(grid.size());
+    std::vector<float> warm(size), high(size);
+    for (Index c = 0; c < grid.size(); ++c) {
+      const double lat = grid.latitude_deg(grid.row(c)), lon = grid.longitude_deg(grid.column(c));
+      warm[c] = static_cast<float>(heating(lat, lon));
+      high[c] = static_cast<float>(height(lat, lon));
+    }
+    east.resize(size), north.resize(size), descent.resize(size);
+    stationary_wave(grid, model, turning, latitude, std::vector<double>(ny, wind_m_s), warm, high,
+                    east, north, descent);
+  }
+  [[nodiscard]] Index at(double lat, double lon) const {
+    const int i = static_cast<int>((lon + 180.0) / 360.0 * grid.nx());
+    const int j = static_cast<int>((lat + 90.0) / 180.0 * grid.ny());
+    return grid.cell(i, j);
+  }
+  Grid grid;
+  std::vector<float> east, north, descent;
+};
+
+StationaryWave gill() {
+  StationaryWave model;
+  model.internal = {40.0, 3.0, 10.0, 0.0};
+  model.smoothing_km = 0.0;
+  model.mountain_share = 0.0;
+  return model;
+}
+
+const auto kNothing = [](double, double) { return 0.0; };
+const auto kWarmPool = [](double lat, double lon) {
+  return 200.0 * std::exp(-(lat * lat + lon * lon) / (2 * 10.0 * 10.0));
+};
+
+// Gill (1980): westerlies west of equatorial heating, easterlies (farther) east of it, air that
+// comes in over the heating, and cyclones off the equator to its west.
+TEST(StationaryWave, EquatorialHeatingIsThatOfGill) {
+  const Response r(180, 90, gill(), 0.0, kTurning, kWarmPool, kNothing);
+  EXPECT_GT(r.east[r.at(1, -25)], 0.3F);
+  EXPECT_LT(r.east[r.at(1, 40)], -0.3F);
+  EXPECT_LT(r.east[r.at(1, 70)], 0.0F) << "the Kelvin wave reaches farther than the Rossby wave";
+  EXPECT_LT(r.north[r.at(15, -35)], 0.0F) << "equatorwards on the western side of the cyclone";
+  EXPECT_GT(r.north[r.at(15, 5)], 0.0F) << "polewards on its eastern side";
+}
+
+TEST(StationaryWave, IsSymmetricAboutTheEquatorAndTurnsAboutWithThePlanet) {
+  const Response r(120, 60, gill(), 0.0, kTurning, kWarmPool, kNothing);
+  const Response back(120, 60, gill(), 0.0, -kTurning, kWarmPool, kNothing);
+  double most = 0.0;
+  for (int j = 0; j < 60; ++j) {
+    for (int i = 0; i < 120; ++i) {
+      const Index c = r.grid.cell(i, j), mirrored = r.grid.cell(i, 59 - j);
+      most = std::max<double>(most, std::abs(r.east[c]));
+      EXPECT_NEAR(r.east[c], r.east[mirrored], 1e-4);
+      EXPECT_NEAR(r.north[c], -r.north[mirrored], 1e-4);
+      // East and west change places where the planet turns the other way.
+      EXPECT_NEAR(back.east[r.grid.cell(119 - i, j)], -r.east[c], 1e-4);
+      EXPECT_NEAR(back.north[r.grid.cell(119 - i, j)], r.north[c], 1e-4);
+    }
+  }
+  EXPECT_GT(most, 0.5);
+}
+
+// Heating of one spherical harmonic on a planet that does not turn: with P = p Y the equations
+// give u = -grad P / e and (e_T + c^2 l(l+1) / (e a^2)) p = -q Q exactly.
+TEST(StationaryWave, WithoutRotationIsTheExactAnswer) {
+  const StationaryWave model = gill();
+  constexpr double kRadius_m = 6371000.0;
+  const auto harmonic = [](double lat, double lon) {
+    return 100.0 * std::cos(lat * kRadians) * std::cos(lon * kRadians);  // l = m = 1
+  };
+  double before = 0.0;
+  for (const int ny : {30, 60, 120}) {
+    const Response r(2 * ny, ny, model, 0.0, 0.0, harmonic, kNothing);
+    const double e = 1.0 / (3.0 * 86400), e_t = 1.0 / (10.0 * 86400);
+    const double p =
+        -model.heating_m4_s3_w * 100.0 / (e_t + 40.0 * 40.0 * 2.0 / (e * kRadius_m * kRadius_m));
+    double worst = 0.0;
+    for (int j = 1; j + 1 < ny; ++j) {
+      for (int i = 0; i < 2 * ny; ++i) {
+        const double lat = r.grid.latitude_deg(j) * kRadians,
+                     lon = r.grid.longitude_deg(i) * kRadians;
+        const Index c = r.grid.cell(i, j);
+        worst =
+            std::max({worst, std::abs(r.east[c] - p * std::sin(lon) / kRadius_m / e),
+                      std::abs(r.north[c] - p * std::sin(lat) * std::cos(lon) / kRadius_m / e)});
+      }
+    }
+    const double size = std::abs(p) / kRadius_m / e;
+    EXPECT_LT(worst, 0.02 * size * (30.0 / ny) * (30.0 / ny) + 1e-5 * size) << ny;
+    if (before > 0.0) EXPECT_LT(worst, 0.3 * before) << "second order";
+    before = worst;
+  }
+}
+
+TEST(StationaryWave, WesterliesOverMountainsLeaveATroughBehind) {
+  StationaryWave model = gill();
+  model.mountain_share = 0.5;
+  const auto range = [](double lat, double lon) {
+    return 2000.0 * std::exp(-(std::pow((lat - 45) / 12, 2) + std::pow(lon / 8, 2)));
+  };
+  const Response r(180, 90, model, 15.0, kTurning, kNothing, range);
+  EXPECT_GT(r.north[r.at(45, -15)], r.north[r.at(45, 12)])
+      << "polewards before the ridge on the crest, equatorwards behind it";
+}
+
+TEST(SoilMoisture, EvaporatesNoMoreThanFallsOrThanTheSunAllows) {
+  const SoilMoisture model;
+  for (int k = 0; k < 200; ++k) {
+    std::array<double, kMonths> t{}, p{}, e{};
+    double rain = 0.0, back = 0.0;
+    for (int m = 0; m < kMonths; ++m) {
+      t[m] = 10.0 + (k % 30 - 20) * std::cos(2 * std::numbers::pi * m / 12);
+      p[m] = (k % 7) * 20.0 * (1.0 + 0.9 * std::sin(k + m));
+      e[m] = std::max(0.0, 3.0 * (t[m] + 5.0));
+      rain += p[m];
+    }
+    const auto evaporation = soil_evaporation_mm(model, t, p, e);
+    for (int m = 0; m < kMonths; ++m) {
+      EXPECT_GE(evaporation[m], 0.0);
+      EXPECT_LE(evaporation[m], e[m] + 1e-9);
+      back += evaporation[m];
+    }
+    EXPECT_LE(back, rain * 1.001 + 0.2) << k;
+  }
+}
+
+TEST(SoilMoisture, ServesTheDrySeasonFromTheWetOne) {
+  const SoilMoisture model;
+  std::array<double, kMonths> t{}, p{}, e{};
+  t.fill(25.0), e.fill(120.0);
+  for (int m = 0; m < 6; ++m) p[m] = 200.0;
+  const auto evaporation = soil_evaporation_mm(model, t, p, e);
+  EXPECT_NEAR(evaporation[3], 120.0, 1e-9) << "wet season";
+  EXPECT_GT(evaporation[6], 60.0) << "soon after";
+  EXPECT_LT(evaporation[11], 0.3 * evaporation[6]) << "long after";
+}
+
+}  // namespace
+}  // namespace geo
