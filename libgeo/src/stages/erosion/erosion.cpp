@@ -4,12 +4,14 @@
 #include <array>
 #include <cmath>
 #include <initializer_list>
+#include <optional>
 #include <vector>
 
 #include "geo/kernels/water/flow_graph.hpp"
 #include "geo/stages/erosion/finishing.hpp"
 #include "geo/stages/erosion/ground.hpp"
 #include "geo/stages/erosion/landscape.hpp"
+#include "stages/relief/climate_of_land.hpp"
 #include "stages/relief/finish_relief.hpp"
 #include "stages/relief/relief_events.hpp"
 
@@ -37,6 +39,18 @@ std::vector<Parameter> ErosionParameters::declarations() {
           "what becomes of what rivers take: it leaves the world, or they lay it down where they "
           "cannot carry it, on plains, in lakes and at sea",
           "davy2009"),
+      choice("erosion.discharge", discharge, {"rain", "area"},
+             "what makes rivers large: the runoff of the climate that the relief has, or the area "
+             "that they drain",
+             "fekete2002"),
+      real("erosion.reference_runoff_mm_yr", reference_runoff_mm_yr, "mm yr-1", 1.0, 10000.0,
+           "runoff at which the erodibilities hold, with discharge = rain", "fekete2002"),
+      real("erosion.least_runoff_mm_yr", least_runoff_mm_yr, "mm yr-1", 0.0, 10000.0,
+           "runoff of the driest land, which flows in floods", "fekete2002"),
+      integer("erosion.climates", climates, "1", 1, 1000,
+              "times that the climate is found anew while the relief changes, with discharge = "
+              "rain",
+              "design"),
       choice("erosion.flow_routing", flow_routing, {"d8", "mfd"},
              "whether drainage area follows the steepest descent or spreads over all lower "
              "neighbours; the implicit solve takes the steepest one in both",
@@ -181,8 +195,10 @@ class ErosionStage final : public Stage {
     Landscape<float> landscape(parameters_, {}, grid, elevation, uplift, thickening, erodibility,
                                find_outlets(grid, elevation));
     Drainage drainage;
+    std::optional<LandClimate> climate;
     const auto route = [&] {
-      drain(parameters_, grid, elevation, landscape.outlets(), drainage);
+      drain(parameters_, grid, elevation, landscape.outlets(), drainage,
+            climate ? &*climate : nullptr);
       landscape.breach(drainage);
     };
     const auto reshape = [&](auto&& change) {
@@ -196,8 +212,12 @@ class ErosionStage final : public Stage {
       if (context.events.empty()) return false;
       return reshape([&] { return events.strike(step, elevation); });
     };
+    const bool follows_rain = parameters_.discharge == "rain" && has_climate(grid, context);
     for (std::int64_t step = 0; step < steps; ++step) {
       const bool struck = strike(step);
+      if (follows_rain && is_turn_of_climate(step)) {
+        climate = climate_of_land(grid, elevation, context);
+      }
       if (struck || step % parameters_.route_every == 0) route();
       landscape.step(drainage);
       context.advance(static_cast<double>(step + 1) / static_cast<double>(steps + 1));
@@ -208,6 +228,7 @@ class ErosionStage final : public Stage {
     landscape.relax();
     reshape([&] { return ReliefFinish(parameters_, grid, context).reshape(elevation); });
     strike(steps);
+    climate.reset();  // files have the area
     route();
     write_rates(io, landscape, drainage, erodibility);
     if (parameters_.deposits()) write_sediment(io, landscape.sediment());
@@ -217,6 +238,11 @@ class ErosionStage final : public Stage {
   }
 
  private:
+  /// The climates stand at even distances, the first at the beginning.
+  [[nodiscard]] bool is_turn_of_climate(std::int64_t step) const {
+    const std::int64_t climates = parameters_.climates, steps = parameters_.steps;
+    return step * climates / steps != (step - 1) * climates / steps || step == 0;
+  }
   static StageInfo described(std::initializer_list<const FieldSpec*> of_sediment) {
     StageInfo info{
         "erosion",

@@ -29,7 +29,8 @@ struct RockVolumes {
   Number over_edges{0.0};  ///< by rivers, out of the world
 };
 
-/// What rivers have laid down: thickness now, what was laid in all, and what the last step carried.
+/// What rivers have laid down: thickness now, what was laid in all, and what left each cell in the
+/// last step, or arrived at the sea.
 struct SedimentRecord {
   std::vector<float> thickness_m, laid_m;
   std::vector<float> carried_m3_yr;
@@ -268,9 +269,12 @@ class Landscape {
         float& thickness_m = sediment_.thickness_m[cell];
         thickness_m = std::max(0.0F, thickness_m + rise_m);
         sediment_.laid_m[cell] += std::max(0.0F, rise_m);
+      });
+#pragma omp parallel for schedule(static)
+      for (Index cell = 0; cell < grid_.size(); ++cell) {
         sediment_.carried_m3_yr[cell] =
             static_cast<float>(std::max(0.0, volume_m3[cell]) / p_.time_step_yr);
-      });
+      }
     }
     rock_.laid_on_land += area_sum<Number>(grid_, [&](Index c) {
       return outlets_[c] == 0 ? greater(Number(Number(z_[c]) - Number(before_[c])), Number(0.0))
