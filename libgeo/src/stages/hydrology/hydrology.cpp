@@ -43,19 +43,29 @@ Drainage drain(const Grid& grid, std::span<const float> z, const Bytes& outlets,
   return d;
 }
 
-/// Where water ends: outlets, and the bottoms of the basins that keep theirs before any dam is cut,
-/// unless the dam is what a coarse relief has made of a gorge: basins smaller than `least_m2` when
-/// full to their sill.
+/// Where water ends: outlets, and the bottoms of the basins that keep theirs before any dam is cut.
+/// Not those behind what a coarse relief has made of a gorge: basins smaller than `least_m2` when
+/// full to their sill, and those that so much water comes to that its valley would be as deep as the
+/// sill is high above the bottom.
 Bytes with_closed_basins(const Grid& grid, std::span<const float> z, Bytes outlets,
                          std::span<const double> runoff, std::span<const float> loss,
                          double least_m2) {
   const Drainage d = drain(grid, z, outlets, runoff, loss);
   const auto& depressions = d.hierarchy.depressions;
+  // Parents stand behind their children.
+  std::vector<std::int32_t> whole(depressions.size());
+  for (auto n = static_cast<std::int32_t>(depressions.size()); n-- > 0;) {
+    whole[n] = depressions[n].parent == kSea ? n : whole[depressions[n].parent];
+  }
+  std::vector<double> comes_m3_s(depressions.size(), 0.0);
+  for (const Lake& lake : d.lakes.lakes) comes_m3_s[whole[lake.depression]] += lake.inflow_m3_s;
   for (std::int32_t leaf = 0; leaf < d.hierarchy.leaves; ++leaf) {
     if (d.lakes.exit_of_leaf[leaf].inside != kNoCell) continue;
-    std::int32_t whole = leaf;
-    while (depressions[whole].parent != kSea) whole = depressions[whole].parent;
-    if (depressions[whole].area_m2 >= least_m2) outlets[depressions[leaf].pit] = 1;
+    const Depression& basin = depressions[whole[leaf]];
+    const double rim_m = basin.sill_m - z[basin.pit];
+    if (basin.area_m2 >= least_m2 && valley_depth(comes_m3_s[whole[leaf]]) < rim_m) {
+      outlets[depressions[leaf].pit] = 1;
+    }
   }
   return outlets;
 }
