@@ -11,6 +11,7 @@
 #include "geo/stages/erosion/finishing.hpp"
 #include "geo/stages/erosion/ground.hpp"
 #include "geo/stages/erosion/landscape.hpp"
+#include "geo/stages/erosion/seas.hpp"
 #include "stages/relief/climate_of_land.hpp"
 #include "stages/relief/finish_relief.hpp"
 #include "stages/relief/relief_events.hpp"
@@ -51,6 +52,19 @@ std::vector<Parameter> ErosionParameters::declarations() {
               "times that the climate is found anew while the relief changes, with discharge = "
               "rain",
               "design"),
+      real("erosion.strait_sill_m", strait_sill_m, "m", 0.0, 10000.0,
+           "highest land over which high stands of the sea join a sea to the ocean of a whole "
+           "planet "
+           "and cut a strait; 0: seas stay as they are",
+           "haq1987"),
+      real("erosion.strait_land_km", strait_land_km, "km", 0.0, 1e5,
+           "longest way of a strait over land", "design"),
+      real("erosion.strait_depth_m", strait_depth_m, "m", 0.01, 5000.0, "depth of straits",
+           "garciacastellanos2009"),
+      real("erosion.strait_width_km", strait_width_km, "km", 0.1, 5000.0,
+           "width of straits, at least a cell", "design"),
+      real("erosion.strait_sea_km2", strait_sea_km2, "km2", 0.0, 1e9,
+           "area of the smallest sea that is joined to the ocean", "design"),
       choice("erosion.flow_routing", flow_routing, {"d8", "mfd"},
              "whether drainage area follows the steepest descent or spreads over all lower "
              "neighbours; the implicit solve takes the steepest one in both",
@@ -127,6 +141,9 @@ std::vector<Parameter> ErosionParameters::declarations() {
       real("erosion.sediment.wave_base_m", wave_base_m, "m", 0.0, 1000.0,
            "depth down to which waves let no sediment lie, at the lowest stands of the sea",
            "design"),
+      real("erosion.sediment.highstand_yr", highstand_yr, "yr", 0.0, 1e9,
+           "time for which the sea has stood where it does and rivers have built deltas",
+           "stanley1994"),
   };
 }
 
@@ -207,6 +224,10 @@ class ErosionStage final : public Stage {
       return did;
     };
     const std::int64_t steps = parameters_.steps;
+    if (steps > 0) {
+      reshape([&] { return join_seas(parameters_, grid, elevation); });
+      landscape.set_landlocked(landlocked_cells(parameters_, grid, elevation));
+    }
     ReliefEvents events(grid, context, steps, parameters_.time_step_yr);
     const auto strike = [&](std::int64_t step) {
       if (context.events.empty()) return false;
@@ -219,8 +240,13 @@ class ErosionStage final : public Stage {
         climate = climate_of_land(grid, elevation, context);
       }
       if (struck || step % parameters_.route_every == 0) route();
-      landscape.step(drainage);
+      landscape.step(drainage, /*builds_deltas=*/step + 1 == steps);
       context.advance(static_cast<double>(step + 1) / static_cast<double>(steps + 1));
+    }
+    if (steps > 0) {
+      landscape.dry_filled_seas();
+      landscape.set_outlets(find_outlets(grid, elevation));
+      reshape([&] { return join_seas(parameters_, grid, elevation); });
     }
     if (!thickening.empty()) write_rock_uplift(landscape, uplift);
     reshape([&] { return inject_noise<float>(parameters_, {}, grid, context.seed, elevation); });

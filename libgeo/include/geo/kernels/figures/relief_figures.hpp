@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -17,11 +18,15 @@ std::vector<float> local_relief_m(const Grid& grid, std::span<const float> eleva
 struct SeaPart {
   double area_m2 = 0.0;
   double deepest_m = 0.0;  ///< below 0
+  Index first = kNoCell;   ///< its lowest cell by number
 };
 
 /// All parts of the sea, the largest first; of equals that of the lower cell. `elevation_m` has one
 /// value per cell (InputError otherwise). Cost: linear.
 std::vector<SeaPart> parts_of_sea(const Grid& grid, std::span<const float> elevation_m);
+
+/// Number of the part of the sea in which each cell lies, 1 the largest; 0 on land.
+std::vector<std::int32_t> number_seas(const Grid& grid, std::span<const float> elevation_m);
 
 /// How many parts of the sea beside the ocean, its largest part, are deeper than `depth_m` or
 /// larger than `area_m2`.
