@@ -41,6 +41,8 @@ Model::Model(std::span<const Parameter> configuration) {
     parameter.set(given->value());
     if (std::holds_alternative<double*>(parameter.storage)) declarations_.push_back(parameter);
   }
+  // The climate of each trial would cost more than all the rest.
+  erosion.discharge = "area";
   check_differentiable(isostasy, erosion);
   uplift_factor = speed_factor(erosion, configuration);
 }

@@ -12,7 +12,8 @@
 
 namespace geo::calibration {
 
-/// The settings of the forward model, bound to their declarations: not movable.
+/// The settings of the forward model, bound to their declarations: not movable. Rivers follow the
+/// area that they drain (erosion.discharge) whatever the configuration says.
 class Model {
  public:
   /// Takes over the values of a run's configuration. Throws ConfigurationError for settings that

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "calibration/model.hpp"
@@ -16,6 +17,7 @@
 #include "geo/stages/erosion/finishing.hpp"
 #include "geo/stages/erosion/ground.hpp"
 #include "geo/stages/erosion/landscape.hpp"
+#include "geo/stages/erosion/seas.hpp"
 #include "geo/stages/isostasy/floating_crust.hpp"
 #include "geo/stages/isostasy/freeboard.hpp"
 #include "geo/stages/isostasy/rocks.hpp"
@@ -36,7 +38,11 @@ struct FrozenDrainage {
   std::optional<TectonicFrame> frame;
   double divergent_length_km = 0.0, transform_length_km = 0.0;  ///< that the frame was made with
   std::vector<float> erodibility;
-  std::vector<std::uint8_t> outlets;
+  std::vector<std::uint8_t> outlets, landlocked;
+  /// Cells that straits have drowned before the first step and after the last, and their heights,
+  /// m.
+  using Straits = std::vector<std::pair<Index, float>>;
+  Straits straits, late_straits;
   std::vector<Drainage> drainage;  ///< one for each routing of the erosion stage
   /// Sea level as a mean over cells next to it (by share) or over the sea (by volume), and how it
   /// follows the share or volume that is asked for.
@@ -180,6 +186,17 @@ Relief<V> SeedPlanet::evaluate(const Model& model, const ActiveVariables<V>& act
     for (std::size_t c = 0; c < cells; ++c) values[c] = static_cast<float>(value_of(field[c]));
     return values;
   };
+  const auto drown_straits = [&](FrozenDrainage::Straits& straits) {
+    const std::vector<float> before = as_floats(z);
+    std::vector<float> after = before;
+    straits.clear();
+    if (p.steps > 0 && join_seas(p, grid, after)) {
+      for (Index c = 0; c < grid.size(); ++c) {
+        if (after[c] != before[c]) straits.emplace_back(c, after[c]);
+      }
+    }
+    return after;
+  };
   if (routes) {
     std::vector<float> closing = as_floats(convergent), opening = as_floats(divergent),
                        shear = as_floats(transform), none;
@@ -201,9 +218,12 @@ Relief<V> SeedPlanet::evaluate(const Model& model, const ActiveVariables<V>& act
                    .erodibility = held_.erodibility,
                    .elevation_m = none,
                    .thickening_m_yr = {}});
-    held_.outlets = find_outlets(grid, as_floats(z));
+    const std::vector<float> after = drown_straits(held_.straits);
+    held_.outlets = find_outlets(grid, after);
+    held_.landlocked = landlocked_cells(p, grid, after);
     held_.drainage.resize((p.steps + p.route_every - 1) / p.route_every);
   }
+  for (const auto& [cell, height_m] : held_.straits) z[cell] = V(height_m);
   std::vector<V> uplift(cells, V(0.0));
   if (p.uplift_from == "deformation" || p.uplift_from == "shortening") {
     add_belt_uplift<V>(p, active, convergent, divergent, transform, model.uplift_factor, uplift);
@@ -219,6 +239,7 @@ Relief<V> SeedPlanet::evaluate(const Model& model, const ActiveVariables<V>& act
     thickening.clear();
   }
   Landscape<V> landscape(p, active, grid, z, uplift, thickening, erodibility, held_.outlets);
+  landscape.set_landlocked(held_.landlocked);
   for (std::int64_t step = 0; step < p.steps; ++step) {
     Drainage& drainage = held_.drainage[step / p.route_every];
     if (step % p.route_every == 0) {
@@ -227,6 +248,9 @@ Relief<V> SeedPlanet::evaluate(const Model& model, const ActiveVariables<V>& act
     }
     landscape.step(drainage);
   }
+  if (p.steps > 0) landscape.dry_filled_seas();
+  if (routes) drown_straits(held_.late_straits);
+  for (const auto& [cell, height_m] : held_.late_straits) z[cell] = V(height_m);
   inject_noise(p, active, grid, seed_, z);
   warp(p, active, grid, seed_, z);
   landscape.relax();

@@ -165,6 +165,14 @@ const std::map<std::string, std::string> kSilent{
     {"planet.radius_km", "cells and plates are laid with it"},
     {"planet.flattening", "cells are laid with it"},
     {"planet.obliquity_deg", "climate alone"},
+    {"erosion.reference_runoff_mm_yr", "rain alone"},
+    {"erosion.least_runoff_mm_yr", "rain alone"},
+    {"erosion.strait_sill_m", "straits are held fast"},
+    {"erosion.strait_land_km", "straits are held fast"},
+    {"erosion.strait_depth_m", "straits are held fast"},
+    {"erosion.strait_width_km", "straits are held fast"},
+    {"erosion.strait_sea_km2", "straits are held fast"},
+    {"erosion.sediment.highstand_yr", "deltas are left out"},
     {"planet.pressure_bar", "climate alone"},
     {"isostasy.convergent_length_km", "blueprint crust alone"},
     {"isostasy.crust_smoothing_km", "blueprint crust alone"},
@@ -323,7 +331,8 @@ TEST(Derivatives, FrozenModelIsTheRoutedOneWhereItWasRouted) {
 }
 
 TEST(Derivatives, ValuesAreThoseOfARun) {
-  Planet1 p;
+  Planet1 p(48, "isostasy.ocean_depth_m=0",
+            {"erosion.discharge=area", "erosion.sediment.highstand_yr=0"});
   const auto relief = p.planet.reroute(p.model);
   State state(std::make_shared<const Grid>(p.run.grid()));
   Context context;

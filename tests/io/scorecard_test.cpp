@@ -51,6 +51,7 @@ State whole_planet(int nx = 480) {
   fill(field::basin_id, [&](Index c) { return land(c) ? grid.row(c) + 1 : 0; });
   fill(field::stream_order, [&](Index c) { return land(c) ? 1 + grid.row(c) % 3 : 0; });
   fill(field::lake_depth, [&](Index c) { return column(c) == 3 ? 5.0 : 0.0; });
+  fill(field::sediment_flux, [&](Index c) { return column(c) == nx - 1 ? 1e6 : 0.0; });
   fill(field::erosion_rate, [](Index) { return 40e-6; });
   fill(field::koppen_class, [&](Index c) { return land(c) ? 1 + grid.row(c) % 30 : 0; });
   fill(field::biome, [&](Index c) { return land(c) ? 1 + grid.row(c) % 11 : 0; });
@@ -66,7 +67,7 @@ const ScoreLine& line_named(const Scorecard& card, const std::string& name) {
 }
 
 TEST(Scorecard, MeasuresEveryRowOfTheTableWhenAllFieldsAreThere) {
-  const auto card = score_planet(whole_planet());
+  const auto card = score_planet(whole_planet(1024));
   std::set<std::string> names;
   for (const auto& line : card.lines) {
     EXPECT_TRUE(names.insert(line.name).second) << line.name << " stands twice";
@@ -102,10 +103,30 @@ TEST(Scorecard, FiguresAreInTheUnitsOfTheTable) {
   EXPECT_NEAR(line_named(card, "denudation_median").value, 40.0, 1e-3);
   const double land_m2 = 0.3 * state.grid().total_area_m2();
   EXPECT_NEAR(line_named(card, "denudation_flux").value, 40e-6 * 2700.0 * land_m2 / 1e12, 1e-3);
+  EXPECT_NEAR(line_named(card, "sediment_flux").value, 240 * 1e6 * 2700.0 / 1e12, 1e-9);
   EXPECT_NEAR(line_named(card, "lakes").value, 100.0 / 144.0, 1e-3);
   EXPECT_NEAR(line_named(card, "endorheic").value, 0.0, 1e-12);
   EXPECT_NEAR(line_named(card, "largest_basin").value, 144 * state.grid().area_m2(120) / 1e12,
               1e-6);
+}
+
+TEST(Scorecard, MeasuresLocalReliefOnCellsOfOneSizeAlone) {
+  State state(std::make_shared<const Grid>(Grid::sphere(1024, 512)));
+  const auto z = state.update(field::elevation);
+  for (Index c = 0; c < state.grid().size(); ++c) {
+    const int i = state.grid().column(c), j = state.grid().row(c);
+    z[c] = i < 200 ? 1000.0F + (j % 2 == 0 ? 0.0F : 80.0F) : i < 400 ? 100.0F : -4000.0F;
+  }
+  z[state.grid().cell(100, 200)] = -3001.0F;  // a hole in the land
+  const auto card = score_planet(state);
+  EXPECT_NEAR(line_named(card, "local_relief_q10").value, 0.0, 1e-3);
+  EXPECT_NEAR(line_named(card, "local_relief_q90").value, 80.0, 1e-3);
+  EXPECT_NEAR(line_named(card, "flat_land").value, 49.5, 0.1);
+  EXPECT_EQ(line_named(card, "landlocked_seas").value, 1.0);
+  State coarse(std::make_shared<const Grid>(Grid::sphere(512, 256)));
+  for (float& height : coarse.update(field::elevation)) height = -100.0F;
+  coarse.update(field::elevation)[7] = 5.0F;
+  for (const ScoreLine& line : score_planet(coarse).lines) EXPECT_NE(line.group, "relief");
 }
 
 TEST(Scorecard, SaysWhichFieldsAreMissing) {

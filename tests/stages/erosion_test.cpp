@@ -72,13 +72,16 @@ TEST(Erosion, NoStepsLeaveTheReliefAlone) {
   EXPECT_GT(*std::max_element(out.rate.begin(), out.rate.end()), 0.0F);
 }
 
-TEST(Erosion, SeaStaysSeaAndLandStaysLand) {
+TEST(Erosion, SeaStaysSeaAndLandStaysLandWithoutStraitsAndDeltas) {
   for (const Grid& grid : test::small_grids()) {
     const auto z = test::random_terrain(grid, 8);
     for (const std::string model : {"detachment", "sediment"}) {
-      const Outcome out = erode(
-          grid, z,
-          {{"erosion.steps", "30"}, {"erosion.uplift_mm_yr", "-0.1"}, {"erosion.model", model}});
+      const Outcome out = erode(grid, z,
+                                {{"erosion.steps", "30"},
+                                 {"erosion.uplift_mm_yr", "-0.1"},
+                                 {"erosion.model", model},
+                                 {"erosion.strait_sill_m", "0"},
+                                 {"erosion.sediment.highstand_yr", "0"}});
       for (Index cell = 0; cell < grid.size(); ++cell) {
         ASSERT_EQ(z[cell] < 0.0F, out.z[cell] < 0.0F);
         if (z[cell] < 0.0F && model == "detachment") {
@@ -99,6 +102,8 @@ TEST(Erosion, SedimentBudgetClosesFromIndependentSums) {
                                  {"erosion.warping_m", "0"},
                                  {"erosion.model", "sediment"},
                                  {"erosion.sediment.dispersal_km", "3"},
+                                 {"erosion.strait_sill_m", "0"},
+                                 {"erosion.sediment.highstand_yr", "0"},
                                  {"erosion.depressions", depressions}});
       const auto sum = [&](const std::vector<float>& field, bool at_sea) {
         double total = 0.0;
@@ -125,6 +130,24 @@ TEST(Erosion, SedimentBudgetClosesFromIndependentSums) {
       for (const float thickness : out.thickness) ASSERT_GE(thickness, 0.0F);
       for (const float flux : out.flux) ASSERT_GE(flux, 0.0F);
     }
+  }
+}
+
+TEST(Erosion, StraitsFilledSeasAndDeltasAreInTheBudgets) {
+  for (const Grid& grid : test::small_grids()) {
+    auto z = test::random_terrain(grid, 5);
+    for (float& height : z) height = height < 0.0F ? 0.02F * height : height;  // shallow seas
+    const Outcome out = erode(grid, z,
+                              {{"erosion.steps", "4"},
+                               {"erosion.time_step_yr", "1e5"},
+                               {"erosion.strait_width_km", "1"},
+                               {"erosion.strait_sea_km2", "1"},
+                               {"erosion.sediment.highstand_yr", "5e4"}});
+    EXPECT_LT(std::abs(out.budget.at("sediment_closing_error")), 1e-12);
+    EXPECT_LT(std::abs(out.budget.at("rock_closing_error")), 1e-12);
+    int gained = 0;
+    for (Index c = 0; c < grid.size(); ++c) gained += z[c] < 0.0F && out.z[c] >= 0.0F ? 1 : 0;
+    EXPECT_GT(gained, 0);
   }
 }
 
@@ -315,6 +338,7 @@ TEST(Erosion, LargeRiversDoNotPreferTheAxesOfTheGrid) {
                               {{"erosion.steps", "60"},
                                {"erosion.uplift_mm_yr", "0.5"},
                                {"erosion.erodibility_yr", "3e-6"},
+                               {"erosion.sediment.highstand_yr", "0"},
                                {"erosion.time_step_yr", "2e5"}});
     for (Index cell = 0; cell < grid.size(); ++cell) {
       if (out.area[cell] < 4e8 || out.z[cell] < 0.0F) continue;

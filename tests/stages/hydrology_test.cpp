@@ -72,6 +72,47 @@ TEST(Hydrology, EveryLandCellReachesTheSeaOrAnEndorheicBottomWithoutClimbingTheW
   }
 }
 
+TEST(Hydrology, DamsAreCutUnlessTheBasinBehindKeepsItsWater) {
+  // A plateau around a bowl, with a dam of 60 m and one cell to the sea.
+  const Grid grid = Grid::plane(60, 30, 1e4, 1e4);
+  const auto level = [&](double rain_mm_yr, double potential_mm_yr, double closed_km2) {
+    State state(std::make_shared<Grid>(grid));
+    const auto z = state.update(field::elevation);
+    for (Index c = 0; c < grid.size(); ++c) {
+      const int i = grid.column(c), j = grid.row(c);
+      const double r = std::hypot(i - 20.0, j - 15.0);
+      z[c] = static_cast<float>(r < 12.5 ? 100.0 + 5.0 * r
+                                : i < 33 ? 220.0
+                                : i < 34 ? 160.0
+                                : i < 50 ? 90.0 - i
+                                         : -100.0);
+    }
+    for (float& t : state.update(field::temperature)) t = 15.0F;
+    for (float& p : state.update(field::precipitation)) p = static_cast<float>(rain_mm_yr);
+    for (float& e : state.update(field::potential_evaporation)) {
+      e = static_cast<float>(potential_mm_yr);
+    }
+    Context context;
+    HydrologyParameters parameters;
+    parameters.closed_basin_km2 = closed_km2;
+    const State after = run(std::move(state), context, parameters);
+    EXPECT_LT(std::abs(context.budget.at("water_closing_error")), 1e-9);
+    double ends_on_land = 0.0;
+    const auto receiver = after.read(field::flow_receiver);
+    for (Index c = 0; c < grid.size(); ++c) {
+      const bool inland = grid.column(c) > 5 && grid.column(c) < 34 && grid.row(c) > 0 &&
+                          grid.row(c) < grid.ny() - 1;
+      if (receiver[c] == c && inland) {
+        ends_on_land += after.read(field::drainage_area)[c];
+      }
+    }
+    return ends_on_land / grid.area_m2(0);
+  };
+  EXPECT_GT(level(150.0, 2500.0, 5000.0), 300.0);
+  EXPECT_EQ(level(150.0, 2500.0, 1e9), 0.0);
+  EXPECT_EQ(level(1500.0, 800.0, 5000.0), 0.0);
+}
+
 TEST(Hydrology, SameBitsForAnyNumberOfThreads) {
   const Grid grid = Grid::sphere(120, 60);
   Context context;

@@ -224,8 +224,8 @@ const Field<float> deposition_rate{{.name = "deposition_rate",
                                     .least = 0.0}};
 const Field<float> sediment_flux{{.name = "sediment_flux",
                                   .units = "m3 yr-1",
-                                  .doc = "sediment that leaves the cell with its river, as rock "
-                                         "without pores; 0 at sea",
+                                  .doc = "sediment that leaves the cell with its river, or comes "
+                                         "to the sea there, as rock without pores",
                                   .type = Type::float32,
                                   .cell_methods = "area: point",
                                   .least = 0.0}};

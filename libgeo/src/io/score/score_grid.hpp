@@ -9,6 +9,8 @@ namespace geo::io {
 
 /// Resolutions of the data that Earth's figures were measured on.
 inline constexpr double kReliefStepDeg = 0.2, kCrustStepDeg = 1.0;
+/// Cells over which local relief is measured.
+inline constexpr double kLocalStepDeg = 180.0 / 512.0;
 
 /// A field on a grid of its own.
 struct CoarseField {

@@ -1,11 +1,14 @@
-// Figures of the relief: hypsometry and spectrum.
+// Figures of the relief: hypsometry, local relief, seas and spectrum.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <vector>
 
 #include "geo/kernels/figures/hypsometry_figures.hpp"
+#include "geo/kernels/figures/relief_figures.hpp"
 #include "geo/kernels/numerics/quantiles.hpp"
 #include "geo/kernels/numerics/spectrum.hpp"
 #include "score_figures.hpp"
@@ -51,6 +54,31 @@ void measure_spectrum(const State& state, Figures& figures) {
       spectral_slope(harmonic_power(*relief.grid, relief.values, kLast), kFirst, kLast);
 }
 
+/// Ranges of height from cell to cell say something only between cells of one size, and straits
+/// close on larger ones.
+void measure_local_relief(const State& state, Figures& figures) {
+  const CoarseField relief = coarsen(state, field::elevation, kLocalStepDeg);
+  const Grid& grid = *relief.grid;
+  if (grid.ny() < std::lround(180.0 / kLocalStepDeg)) return;
+  constexpr double kDeepM = 3000.0, kLargeM2 = 2e12, kFlatM = 30.0;
+  figures["landlocked_seas"] =
+      count_landlocked(parts_of_sea(grid, relief.values), kDeepM, kLargeM2);
+  std::vector<std::uint8_t> land(relief.values.size());
+  std::vector<float> range = local_relief_m(grid, relief.values);
+  for (std::size_t c = 0; c < land.size(); ++c) {
+    land[c] = relief.values[c] >= 0.0F ? 1 : 0;
+    if (land[c] == 0) range[c] = std::numeric_limits<float>::quiet_NaN();
+  }
+  if (std::find(land.begin(), land.end(), 1) == land.end()) return;
+  constexpr std::array kFractions{0.1, 0.5, 0.9};
+  constexpr std::array kFlat{kFlatM};
+  const auto values = quantiles(grid, range, kFractions, land);
+  for (std::size_t k = 0; k < kFractions.size(); ++k) {
+    figures[fmt::format("local_relief_q{:.0f}", 100.0 * kFractions[k])] = values[k];
+  }
+  figures["flat_land"] = 100.0 * shares_between(grid, range, kFlat).front();
+}
+
 }  // namespace
 
 void measure_relief(const State& state, Figures& figures) {
@@ -68,6 +96,7 @@ void measure_relief(const State& state, Figures& figures) {
   figures["land_mode"] = modes.land_m;
   figures["antimode"] = modes.antimode_m;
   measure_shares(relief, figures);
+  measure_local_relief(state, figures);
   measure_spectrum(state, figures);
 }
 

@@ -12,6 +12,7 @@ namespace geo::io {
 namespace {
 
 constexpr double kSecondsPerYear = 31557600.0;
+constexpr double kRockKgM3 = 2700.0;
 
 /// Sum over the land of an amount per m2 that `amount(cell)` gives.
 template <class Amount>
@@ -46,6 +47,17 @@ void measure_runoff(const State& state, Figures& figures) {
   const double rain_m3_yr =
       sum_over_land(state, [&](Index c) { return 1e-3 * static_cast<double>(rain[c]); });
   if (rain_m3_yr > 0.0) figures["runoff_ratio"] = to_sea_m3_s * kSecondsPerYear / rain_m3_yr;
+}
+
+/// What rivers bring to the cells of the sea.
+void measure_sediment(const State& state, Figures& figures) {
+  const auto z = state.read(field::elevation);
+  const auto flux = state.read(field::sediment_flux);
+  double to_sea_m3_yr = 0.0;
+  for (std::size_t c = 0; c < z.size(); ++c) {
+    if (z[c] < 0.0F) to_sea_m3_yr += flux[c];
+  }
+  figures["sediment_flux"] = to_sea_m3_yr * kRockKgM3 / 1e12;
 }
 
 void measure_basin_areas(const Grid& grid, const DrainedPlanet& drainage,
@@ -118,11 +130,11 @@ void measure_rivers(const State& state, Figures& figures) {
                        land_m2;
   }
   if (state.has(field::erosion_rate)) {
-    constexpr double kRockKgM3 = 2700.0;
     const auto rate = state.read(field::erosion_rate);
     figures["denudation_flux"] =
         sum_over_land(state, [&](Index c) { return std::max(0.0F, rate[c]); }) * kRockKgM3 / 1e12;
   }
+  if (state.has(field::sediment_flux)) measure_sediment(state, figures);
   if (!state.has(field::flow_receiver)) return;
   if (state.has(field::discharge) && state.has(field::precipitation)) {
     measure_runoff(state, figures);

@@ -4,12 +4,15 @@
 #include <array>
 #include <cmath>
 #include <initializer_list>
+#include <optional>
 #include <vector>
 
 #include "geo/kernels/water/flow_graph.hpp"
 #include "geo/stages/erosion/finishing.hpp"
 #include "geo/stages/erosion/ground.hpp"
 #include "geo/stages/erosion/landscape.hpp"
+#include "geo/stages/erosion/seas.hpp"
+#include "stages/relief/climate_of_land.hpp"
 #include "stages/relief/finish_relief.hpp"
 #include "stages/relief/relief_events.hpp"
 
@@ -37,6 +40,31 @@ std::vector<Parameter> ErosionParameters::declarations() {
           "what becomes of what rivers take: it leaves the world, or they lay it down where they "
           "cannot carry it, on plains, in lakes and at sea",
           "davy2009"),
+      choice("erosion.discharge", discharge, {"rain", "area"},
+             "what makes rivers large: the runoff of the climate that the relief has, or the area "
+             "that they drain",
+             "fekete2002"),
+      real("erosion.reference_runoff_mm_yr", reference_runoff_mm_yr, "mm yr-1", 1.0, 10000.0,
+           "runoff at which the erodibilities hold, with discharge = rain", "fekete2002"),
+      real("erosion.least_runoff_mm_yr", least_runoff_mm_yr, "mm yr-1", 0.0, 10000.0,
+           "runoff of the driest land, which flows in floods", "fekete2002"),
+      integer("erosion.climates", climates, "1", 1, 1000,
+              "times that the climate is found anew while the relief changes, with discharge = "
+              "rain",
+              "design"),
+      real("erosion.strait_sill_m", strait_sill_m, "m", 0.0, 10000.0,
+           "highest land over which high stands of the sea join a sea to the ocean of a whole "
+           "planet "
+           "and cut a strait; 0: seas stay as they are",
+           "haq1987"),
+      real("erosion.strait_land_km", strait_land_km, "km", 0.0, 1e5,
+           "longest way of a strait over land", "design"),
+      real("erosion.strait_depth_m", strait_depth_m, "m", 0.01, 5000.0, "depth of straits",
+           "garciacastellanos2009"),
+      real("erosion.strait_width_km", strait_width_km, "km", 0.1, 5000.0,
+           "width of straits, at least a cell", "design"),
+      real("erosion.strait_sea_km2", strait_sea_km2, "km2", 0.0, 1e9,
+           "area of the smallest sea that is joined to the ocean", "design"),
       choice("erosion.flow_routing", flow_routing, {"d8", "mfd"},
              "whether drainage area follows the steepest descent or spreads over all lower "
              "neighbours; the implicit solve takes the steepest one in both",
@@ -113,6 +141,9 @@ std::vector<Parameter> ErosionParameters::declarations() {
       real("erosion.sediment.wave_base_m", wave_base_m, "m", 0.0, 1000.0,
            "depth down to which waves let no sediment lie, at the lowest stands of the sea",
            "design"),
+      real("erosion.sediment.highstand_yr", highstand_yr, "yr", 0.0, 1e9,
+           "time for which the sea has stood where it does and rivers have built deltas",
+           "stanley1994"),
   };
 }
 
@@ -181,8 +212,10 @@ class ErosionStage final : public Stage {
     Landscape<float> landscape(parameters_, {}, grid, elevation, uplift, thickening, erodibility,
                                find_outlets(grid, elevation));
     Drainage drainage;
+    std::optional<LandClimate> climate;
     const auto route = [&] {
-      drain(parameters_, grid, elevation, landscape.outlets(), drainage);
+      drain(parameters_, grid, elevation, landscape.outlets(), drainage,
+            climate ? &*climate : nullptr);
       landscape.breach(drainage);
     };
     const auto reshape = [&](auto&& change) {
@@ -191,16 +224,29 @@ class ErosionStage final : public Stage {
       return did;
     };
     const std::int64_t steps = parameters_.steps;
+    if (steps > 0) {
+      reshape([&] { return join_seas(parameters_, grid, elevation); });
+      landscape.set_landlocked(landlocked_cells(parameters_, grid, elevation));
+    }
     ReliefEvents events(grid, context, steps, parameters_.time_step_yr);
     const auto strike = [&](std::int64_t step) {
       if (context.events.empty()) return false;
       return reshape([&] { return events.strike(step, elevation); });
     };
+    const bool follows_rain = parameters_.discharge == "rain" && has_climate(grid, context);
     for (std::int64_t step = 0; step < steps; ++step) {
       const bool struck = strike(step);
+      if (follows_rain && is_turn_of_climate(step)) {
+        climate = climate_of_land(grid, elevation, context);
+      }
       if (struck || step % parameters_.route_every == 0) route();
-      landscape.step(drainage);
+      landscape.step(drainage, /*builds_deltas=*/step + 1 == steps);
       context.advance(static_cast<double>(step + 1) / static_cast<double>(steps + 1));
+    }
+    if (steps > 0) {
+      landscape.dry_filled_seas();
+      landscape.set_outlets(find_outlets(grid, elevation));
+      reshape([&] { return join_seas(parameters_, grid, elevation); });
     }
     if (!thickening.empty()) write_rock_uplift(landscape, uplift);
     reshape([&] { return inject_noise<float>(parameters_, {}, grid, context.seed, elevation); });
@@ -208,6 +254,7 @@ class ErosionStage final : public Stage {
     landscape.relax();
     reshape([&] { return ReliefFinish(parameters_, grid, context).reshape(elevation); });
     strike(steps);
+    climate.reset();  // files have the area
     route();
     write_rates(io, landscape, drainage, erodibility);
     if (parameters_.deposits()) write_sediment(io, landscape.sediment());
@@ -217,6 +264,11 @@ class ErosionStage final : public Stage {
   }
 
  private:
+  /// The climates stand at even distances, the first at the beginning.
+  [[nodiscard]] bool is_turn_of_climate(std::int64_t step) const {
+    const std::int64_t climates = parameters_.climates, steps = parameters_.steps;
+    return step * climates / steps != (step - 1) * climates / steps || step == 0;
+  }
   static StageInfo described(std::initializer_list<const FieldSpec*> of_sediment) {
     StageInfo info{
         "erosion",

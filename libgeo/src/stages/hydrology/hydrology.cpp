@@ -43,6 +43,33 @@ Drainage drain(const Grid& grid, std::span<const float> z, const Bytes& outlets,
   return d;
 }
 
+/// Where water ends: outlets, and the bottoms of the basins that keep theirs before any dam is cut.
+/// Not those behind what a coarse relief has made of a gorge: basins smaller than `least_m2` when
+/// full to their sill, and those that so much water comes to that its valley would be as deep as the
+/// sill is high above the bottom.
+Bytes with_closed_basins(const Grid& grid, std::span<const float> z, Bytes outlets,
+                         std::span<const double> runoff, std::span<const float> loss,
+                         double least_m2) {
+  const Drainage d = drain(grid, z, outlets, runoff, loss);
+  const auto& depressions = d.hierarchy.depressions;
+  // Parents stand behind their children.
+  std::vector<std::int32_t> whole(depressions.size());
+  for (auto n = static_cast<std::int32_t>(depressions.size()); n-- > 0;) {
+    whole[n] = depressions[n].parent == kSea ? n : whole[depressions[n].parent];
+  }
+  std::vector<double> comes_m3_s(depressions.size(), 0.0);
+  for (const Lake& lake : d.lakes.lakes) comes_m3_s[whole[lake.depression]] += lake.inflow_m3_s;
+  for (std::int32_t leaf = 0; leaf < d.hierarchy.leaves; ++leaf) {
+    if (d.lakes.exit_of_leaf[leaf].inside != kNoCell) continue;
+    const Depression& basin = depressions[whole[leaf]];
+    const double rim_m = basin.sill_m - z[basin.pit];
+    if (basin.area_m2 >= least_m2 && valley_depth(comes_m3_s[whole[leaf]]) < rim_m) {
+      outlets[depressions[leaf].pit] = 1;
+    }
+  }
+  return outlets;
+}
+
 /// Discharge out of each cell: runoff and what lakes lose, downstream. `water` holds the runoff.
 void accumulate_discharge(const Drainage& d, std::span<double> water) {
   for (const Lake& lake : d.lakes.lakes) {
@@ -112,7 +139,11 @@ class HydrologyStage final : public Stage {
                                       io.read(field::potential_evaporation), water, loss);
     const double inflow = add_inflow(io.read_optional(field::inflow_discharge), water);
     context.advance(0.1);
-    shape_valleys(grid, outlets, sea, water, inflow_area, z);
+    shape_valleys(
+        grid,
+        by_area() ? outlets
+                  : with_closed_basins(grid, z, outlets, water, loss, 1e6 * p_.closed_basin_km2),
+        sea, water, inflow_area, z);
     context.advance(0.5);
 
     const Drainage d = drain(grid, z, outlets, water, loss);
@@ -261,6 +292,11 @@ std::vector<Parameter> HydrologyParameters::declarations() {
            "deepest cut through narrow dams of a coarse relief; 0 cuts none", "lindsay2016"),
       real("hydrology.breach_length_km", breach_length_km, "km", 0.0, 1e4,
            "longest cut through such a dam", "lindsay2016"),
+      real(
+          "hydrology.closed_basin_km2", closed_basin_km2, "km2", 0.0, 1e12,
+          "area, when full to the sill, from which a basin that keeps its water stays closed, with "
+          "rivers = discharge; dams of smaller ones are cut like those of others",
+          "design"),
       real("hydrology.gorge_factor", gorge_factor, "1", 0.0, 100.0,
            "deepest cut by a river through a dam, over the depth of its valley; 0 cuts none",
            "leopold1953"),

@@ -5,12 +5,56 @@
 
 #include "geo/kernels/landscape/river_sediment.hpp"
 #include "geo/kernels/water/depressions.hpp"
+#include "geo/kernels/water/lakes.hpp"
 #include "geo/kernels/water/multiple_flow.hpp"
+#include "geo/kernels/water/water_balance.hpp"
 
 namespace geo {
+namespace {
+
+/// Area whose water each cell sheds at the reference runoff, m2: negative where a lake loses more.
+void shed_rain(const ErosionParameters& p, const Grid& grid, std::span<const float> elevation_m,
+               std::span<const std::uint8_t> outlets, const LandClimate& climate,
+               std::span<double> shed) {
+  std::vector<float> loss_m3_s(grid.size());
+  std::vector<std::uint8_t> sea(grid.size());
+#pragma omp parallel for schedule(static)
+  for (Index c = 0; c < grid.size(); ++c) sea[c] = elevation_m[c] < 0.0F ? 1 : 0;
+  land_water(grid, sea, climate.precipitation_mm_yr, climate.potential_mm_yr, shed, loss_m3_s);
+  const double m2_per_m3_s = kSecondsPerYear / (1e-3 * p.reference_runoff_mm_yr);
+  const double least = p.least_runoff_mm_yr / p.reference_runoff_mm_yr / m2_per_m3_s;
+#pragma omp parallel for schedule(static)
+  for (int j = 0; j < grid.ny(); ++j) {
+    for (Index c = grid.cell(0, j); c < grid.cell(0, j) + grid.nx(); ++c) {
+      shed[c] = std::max(shed[c], least * grid.area_m2(j));
+    }
+  }
+  std::vector<Index> receiver(grid.size());
+  steepest_receivers(grid, elevation_m, outlets, receiver);
+  const auto hierarchy = build_depression_hierarchy(grid, elevation_m, outlets, receiver);
+  const Lakes lakes = balance_lakes(grid, elevation_m, hierarchy, shed, loss_m3_s);
+#pragma omp parallel for schedule(static)
+  for (Index c = 0; c < grid.size(); ++c) shed[c] *= m2_per_m3_s;
+  for (const Lake& lake : lakes.lakes) {
+    shed[hierarchy.depressions[lake.depression].sill_inside] -= m2_per_m3_s * lake.loss_m3_s;
+  }
+}
+
+/// Lakes whose water parts upstream may take more than comes.
+void keep_some_water(const ErosionParameters& p, const Grid& grid, std::span<double> area_m2) {
+  const double least = p.least_runoff_mm_yr / p.reference_runoff_mm_yr;
+#pragma omp parallel for schedule(static)
+  for (int j = 0; j < grid.ny(); ++j) {
+    for (Index c = grid.cell(0, j); c < grid.cell(0, j) + grid.nx(); ++c) {
+      area_m2[c] = std::max(area_m2[c], least * grid.area_m2(j));
+    }
+  }
+}
+
+}  // namespace
 
 void drain(const ErosionParameters& p, const Grid& grid, std::span<const float> elevation_m,
-           std::span<const std::uint8_t> outlets, Drainage& drainage) {
+           std::span<const std::uint8_t> outlets, Drainage& drainage, const LandClimate* climate) {
   const bool spread = p.flow_routing == "mfd";
   FlowGraph& graph = drainage.graph;
   graph = {};
@@ -22,6 +66,7 @@ void drain(const ErosionParameters& p, const Grid& grid, std::span<const float> 
   for (int j = 0; j < grid.ny(); ++j) {
     std::fill_n(area_m2.begin() + grid.cell(0, j), grid.nx(), grid.area_m2(j));
   }
+  if (climate != nullptr) shed_rain(p, grid, elevation_m, outlets, *climate, area_m2);
   const auto put_in_order = [&] { graph.order = downstream_order(graph.receiver); };
   if (spread) {
     accumulate_flow(grid, routing.filled_m, graph.receiver, {FlowMethod::multiple, p.flow_exponent},
@@ -30,6 +75,7 @@ void drain(const ErosionParameters& p, const Grid& grid, std::span<const float> 
     put_in_order();
     graph.accumulate(area_m2);
   }
+  if (climate != nullptr) keep_some_water(p, grid, area_m2);
   drainage.flooded.clear();
   if (p.deposits() && p.depressions == "fill") {
     drainage.flooded = flooded_cells(graph, elevation_m);

@@ -22,6 +22,17 @@ struct ErosionParameters {
   double deposition = 1.0;
   double dispersal_km = 300.0;
   double wave_base_m = 120.0;
+  double highstand_yr = 7000.0;
+  std::string discharge = "rain";
+  // Of the discharge "rain".
+  double reference_runoff_mm_yr = 300.0;
+  double least_runoff_mm_yr = 5.0;
+  std::int64_t climates = 2;
+  double strait_sill_m = 300.0;
+  double strait_land_km = 3000.0;
+  double strait_depth_m = 60.0;
+  double strait_width_km = 80.0;
+  double strait_sea_km2 = 5e4;
   std::string flow_routing = "mfd";
   double flow_exponent = 1.1;
   std::string depressions = "fill";
@@ -58,8 +69,13 @@ struct ErosionParameters {
 /// "detachment" has G = 0: what rivers take leaves the world. Each step: route the water, raise the
 /// ground, let rivers cut and, with "sediment", lay down (implicit, any m and n), let hillslopes
 /// creep (implicit), lay on the floor of the sea what rivers bring there, let the crust rise under
-/// what was taken from it and sink under what was laid on it. With no steps the relief stays as it
-/// is and the present rate of incision is reported.
+/// what was taken from it and sink under what was laid on it. With the discharge "rain" the area A
+/// counts for as much as it yields: the climate stage is run within on a coarse grid, `climates`
+/// times, and runoff over the reference weighs cells; on whole planets whose run has that stage.
+/// Before the first step and after the last straits join seas behind low sills to the ocean of a
+/// whole planet; those that stay cut off fill to the brim and become land. In the last step rivers
+/// build deltas. With no steps the relief stays as it is and the present rate of incision is
+/// reported.
 std::unique_ptr<Stage> make_erosion_stage();
 
 }  // namespace geo

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "geo/core/numeric.hpp"
+#include "geo/kernels/landscape/deltas.hpp"
 #include "geo/kernels/landscape/marine_deposition.hpp"
 #include "geo/kernels/landscape/river_sediment.hpp"
 #include "geo/kernels/landscape/stream_power.hpp"
@@ -16,6 +17,7 @@
 #include "geo/kernels/numerics/smoothing.hpp"
 #include "geo/kernels/water/valley_width.hpp"
 #include "geo/stages/erosion/drainage.hpp"
+#include "geo/stages/erosion/seas.hpp"
 
 namespace geo {
 
@@ -29,7 +31,8 @@ struct RockVolumes {
   Number over_edges{0.0};  ///< by rivers, out of the world
 };
 
-/// What rivers have laid down: thickness now, what was laid in all, and what the last step carried.
+/// What rivers have laid down: thickness now, what was laid in all, and what left each cell in the
+/// last step, or arrived at the sea.
 struct SedimentRecord {
   std::vector<float> thickness_m, laid_m;
   std::vector<float> carried_m3_yr;
@@ -84,7 +87,9 @@ class Landscape {
     if (deposits()) carry(drainage.graph);
   }
 
-  void step(const Drainage& drainage) {
+  /// `builds_deltas`: the step ends at a time when the sea has stood still for a while.
+  void step(const Drainage& drainage, bool builds_deltas = false) {
+    builds_deltas_ = builds_deltas;
     raise();
     before_.assign(z_.begin(), z_.end());
     const std::span<const double> area_m2(drainage.area_m2);
@@ -118,6 +123,21 @@ class Landscape {
     if (!reshape()) return false;
     rock_.reshaped += volume_since_before();
     return true;
+  }
+  /// Seas that land cuts off (landlocked_cells): rivers fill them to the brim.
+  void set_landlocked(std::vector<std::uint8_t> cells) { landlocked_ = std::move(cells); }
+  /// Those that are full are land.
+  void dry_filled_seas() {
+    if (landlocked_.empty()) return;
+    book_reshaping([&] {
+#pragma omp parallel for schedule(static)
+      for (Index cell = 0; cell < grid_.size(); ++cell) {
+        if (landlocked_[cell] != 0 && value_of(z_[cell]) >= -1.5F * kShallowest_m) {
+          z_[cell] = greater(z_[cell], V(0.0F));
+        }
+      }
+      return true;
+    });
   }
   void set_outlets(std::vector<std::uint8_t> outlets) { outlets_ = std::move(outlets); }
 
@@ -233,8 +253,14 @@ class Landscape {
 #pragma omp parallel for schedule(static)
     for (Index cell = 0; cell < grid_.size(); ++cell) {
       sea[cell] = outlets_[cell] != 0 && value_of(z_[cell]) < 0.0 ? 1 : 0;
+    }
+    record_on_land(volume_m3);
+    build_at_mouths(sea, volume_m3);
+#pragma omp parallel for schedule(static)
+    for (Index cell = 0; cell < grid_.size(); ++cell) {
       if (sea[cell] == 0) continue;
-      room_m[cell] = greater(Number(-wave_base_m - Number(z_[cell])), Number(0.0));
+      const Number up_to_m = is_landlocked(cell) ? Number(-kShallowest_m) : Number(-wave_base_m);
+      room_m[cell] = greater(Number(up_to_m - Number(z_[cell])), Number(0.0));
       supply_m[cell] = volume_m3[cell] / grid_.area_m2(grid_.row(cell)) + unsettled_m_[cell];
     }
     rock_.over_edges += area_sum<Number>(grid_, [&](Index cell) {
@@ -242,7 +268,6 @@ class Landscape {
                  ? volume_m3[cell] / grid_.area_m2(grid_.row(cell))
                  : Number(0.0);
     });
-    record_on_land(volume_m3);
     volume_m3 = {};
     lay_at_sea<Number>(grid_, sea, 1e3 * active_(p_.dispersal_km), room_m, supply_m);
     std::vector<V> laid_m(grid_.size(), V(0.0F));
@@ -260,6 +285,38 @@ class Landscape {
     });
     record_at_sea(laid_m);
   }
+  [[nodiscard]] bool is_landlocked(Index cell) const {
+    return !landlocked_.empty() && landlocked_[cell] != 0;
+  }
+  /// What rivers bring while the sea stands where it does builds land at their mouths; `volume_m3`
+  /// keeps what is left. Not where numbers carry derivatives: a cell is filled or it is not.
+  void build_at_mouths(const std::vector<std::uint8_t>& sea, std::vector<Number>& volume_m3) {
+    if constexpr (kRecords) {
+      if (!builds_deltas_ || p_.highstand_yr <= 0.0) return;
+      const double share = std::min(1.0, p_.highstand_yr / p_.time_step_yr);
+      std::vector<double> brought_m3(grid_.size());
+      std::vector<float> laid_m(grid_.size());
+      for (Index cell = 0; cell < grid_.size(); ++cell) {
+        if (sea[cell] != 0) brought_m3[cell] = std::max(0.0, share * volume_m3[cell]);
+      }
+      std::vector<double> left_m3(brought_m3);
+      for (const auto& [cell, mouth] : build_deltas(grid_, {}, sea, z_, left_m3, laid_m)) {
+        if (mouth != kNoCell) sediment_.carried_m3_yr[mouth] += sediment_.carried_m3_yr[cell];
+      }
+      for (Index cell = 0; cell < grid_.size(); ++cell) {
+        volume_m3[cell] -= brought_m3[cell] - left_m3[cell];
+      }
+      for (Index cell = 0; cell < grid_.size(); ++cell) {
+        if (laid_m[cell] == 0.0F) continue;
+        const float floor = z_[cell];
+        z_[cell] += laid_m[cell];
+        crust_change_m_[cell] += Number(z_[cell]) - Number(floor);
+        // What rounding to the height of the plain took or gave.
+        unsettled_m_[cell] += Number(laid_m[cell]) - (Number(z_[cell]) - Number(floor));
+      }
+      record_at_sea(laid_m);
+    }
+  }
   void record_on_land(const std::vector<Number>& volume_m3) {
     if constexpr (kRecords) {
       sediment_.carried_m3_yr.resize(grid_.size());
@@ -268,9 +325,12 @@ class Landscape {
         float& thickness_m = sediment_.thickness_m[cell];
         thickness_m = std::max(0.0F, thickness_m + rise_m);
         sediment_.laid_m[cell] += std::max(0.0F, rise_m);
+      });
+#pragma omp parallel for schedule(static)
+      for (Index cell = 0; cell < grid_.size(); ++cell) {
         sediment_.carried_m3_yr[cell] =
             static_cast<float>(std::max(0.0, volume_m3[cell]) / p_.time_step_yr);
-      });
+      }
     }
     rock_.laid_on_land += area_sum<Number>(grid_, [&](Index c) {
       return outlets_[c] == 0 ? greater(Number(Number(z_[c]) - Number(before_[c])), Number(0.0))
@@ -334,6 +394,8 @@ class Landscape {
   std::span<const V> erodibility_;
   std::vector<V> initial_;
   std::vector<std::uint8_t> outlets_;
+  std::vector<std::uint8_t> landlocked_;  ///< or empty
+  bool builds_deltas_ = false;
   std::vector<V> lowered_, before_, owed_m_;
   std::vector<Number> unsettled_m_;
   std::vector<double> crust_change_m_;

@@ -11,6 +11,7 @@ namespace geo {
 struct HydrologyParameters {
   double breach_depth_m = 100.0;
   double breach_length_km = 100.0;
+  double closed_basin_km2 = 5000.0;
   double gorge_factor = 1.0;
   double gorge_length_km = 450.0;
   double channel_area_km2 = 5000.0;
@@ -28,7 +29,7 @@ struct HydrologyParameters {
 };
 
 /// Where the rain goes: runoff after Budyko (1974), routing over a DEM freed of spurious
-/// depressions of its resolution, lakes and endorheic basins by the steady water balance,
+/// depressions of its resolution but for basins that keep their water as they are, lakes and endorheic basins by the steady water balance,
 /// discharge, valleys carved by rivers (Leopold & Maddock 1953), basins and stream orders.
 ///
 /// With `rivers = "area"` rivers show and carve by their drainage area, as in the Tectonica

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "geo/core/grid.hpp"
+
+namespace geo {
+
+/// What rivers build at their mouths while the sea stands still.
+struct DeltaLaw {
+  double top_m = 2.0;       ///< height of their plains
+  double deepest_m = 60.0;  ///< water that they do not advance into
+};
+
+/// Builds deltas: from each river mouth, the one that brings most first, the sea is filled to the
+/// height of the plain, cell by cell, the nearest and shallowest first (distance times 1 + depth /
+/// 10 m), as long as there is enough for a whole cell and the next is no deeper than `deepest_m`.
+/// A river grows no delta through another's. What is left is for the sea to spread.
+///
+/// `volume_m3` in: what each river brings to its cell of the sea, 0 elsewhere; out: what is left of
+/// it. `sea`: one byte per cell. `laid_m`: by how much each cell rises, added to; `elevation_m` is
+/// that before. Volumes laid and left add up to what was brought. Returns the
+/// cells that became land, each with the cell of the sea that is nearest to it then, kNoCell where
+/// there is none. Cost: m log
+/// m in the cells filled, and a sort of the mouths. The same bits always.
+std::vector<std::pair<Index, Index>> build_deltas(const Grid& grid, const DeltaLaw& law,
+                                                  std::span<const std::uint8_t> sea,
+                                                  std::span<const float> elevation_m,
+                                                  std::span<double> volume_m3,
+                                                  std::span<float> laid_m);
+
+}  // namespace geo

@@ -1,0 +1,62 @@
+#include "climate_of_land.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include "geo/kernels/remapping/resample.hpp"
+#include "geo/stages/climate/climate.hpp"
+
+namespace geo {
+namespace {
+
+constexpr int kMostColumns = 512;
+constexpr float kLapse_K_m = 6.5e-3F;
+
+}  // namespace
+
+bool has_climate(const Grid& grid, const Context& context) {
+  return grid.topology() == Topology::sphere &&
+         find_parameter(context.configuration, "climate.model") != nullptr;
+}
+
+LandClimate climate_of_land(const Grid& grid, std::span<const float> elevation_m,
+                            Context& context) {
+  const int nx = std::min(grid.nx(), kMostColumns);
+  const int ny = std::min(grid.ny(), kMostColumns / 2);
+  State scratch(std::make_shared<const Grid>(Grid::sphere(nx, ny, grid.figure())));
+  const Raster fine = raster_of(grid), coarse = raster_of(scratch.grid());
+  const std::span<float> height_m = scratch.update(field::elevation);
+  resample_raster(fine, elevation_m, coarse, height_m, grid.figure());
+
+  const auto stage = make_climate_stage();
+  for (const Parameter& parameter : stage->parameters()) {
+    if (const Parameter* outside = find_parameter(context.configuration, parameter.name)) {
+      parameter.set(outside->value());
+    }
+  }
+  Context inner;
+  inner.planet = context.planet;
+  inner.seed = context.seed;
+  inner.stop = context.stop;
+  StageIo io(scratch, stage->info());
+  stage->run(io, inner);
+
+  LandClimate climate;
+  const auto lay = [&](std::span<const float> values, std::vector<float>& on) {
+    on.resize(grid.size());
+    resample_raster(coarse, values, fine, on, grid.figure());
+  };
+  lay(scratch.read(field::precipitation), climate.precipitation_mm_yr);
+  lay(scratch.read(field::potential_evaporation), climate.potential_mm_yr);
+  lay(scratch.read(field::temperature_range), climate.range_k);
+  std::vector<float> at_sea_level(scratch.grid().size());
+  const auto temperature = scratch.read(field::temperature);
+  for (std::size_t c = 0; c < at_sea_level.size(); ++c) {
+    at_sea_level[c] = temperature[c] + kLapse_K_m * std::max(0.0F, height_m[c]);
+  }
+  lay(at_sea_level, climate.sea_level_temperature_c);
+  return climate;
+}
+
+}  // namespace geo

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <span>
+
+#include "geo/core/stage.hpp"
+#include "geo/stages/erosion/drainage.hpp"
+
+namespace geo {
+
+/// Whether the climate of a relief can be known in the midst of another stage: of a whole planet
+/// whose run has a climate stage.
+[[nodiscard]] bool has_climate(const Grid& grid, const Context& context);
+
+/// The climate of a relief as it is now: the stage `climate`, with the settings that it has in this
+/// run, on a grid of at most 512 columns, interpolated; temperatures follow heights by 6.5 K/km
+/// from there (ICAO 1993). Events do not act on it: they are sudden, this is the mean of an age.
+[[nodiscard]] LandClimate climate_of_land(const Grid& grid, std::span<const float> elevation_m,
+                                          Context& context);
+
+}  // namespace geo
