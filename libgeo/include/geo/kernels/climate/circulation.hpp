@@ -22,13 +22,13 @@ struct Circulation {
   double rotation_period_h = 23.934;
   bool retrograde = false;
   double air_density_kg_m3 = 1.2;
-  double drag_ocean_s = 3.95e-5;  ///< r over the sea, s-1
-  double drag_land_s = 2.33e-5;
-  double subtropical_high_hpa = 4.14;  ///< above the equatorial trough
+  double drag_ocean_s = 3.87e-5;  ///< r over the sea, s-1
+  double drag_land_s = 2.14e-5;
+  double subtropical_high_hpa = 3.95;  ///< above the equatorial trough
   double subpolar_low_hpa = 8.0;       ///< below the subtropical high
-  double polar_high_hpa = 3.79;        ///< above the subpolar low
-  double thermal_low_hpa_k = 0.871;    ///< fall of pressure per kelvin of heat anomaly
-  double cold_high_share = 1.0;        ///< of it, where the anomaly is cold and shallow
+  double polar_high_hpa = 15.0;        ///< above the subpolar low
+  double thermal_low_hpa_k = 1.03;     ///< fall of pressure per kelvin of heat anomaly
+  double cold_high_share = 0.831;      ///< of it, where the anomaly is cold and shallow
 
   /// Angular velocity, negative if retrograde.
   [[nodiscard]] double rotation_rad_s() const;

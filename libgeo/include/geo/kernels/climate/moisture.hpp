@@ -13,8 +13,8 @@ namespace geo {
 struct MoistureBudget {
   double rain_time_d = 0.3;            ///< rain-out time of a saturated column
   std::int64_t humidity_exponent = 4;  ///< how sharply rain follows the column's relative humidity
-  double evaporation_velocity_1_d = 0.2;  ///< v over open water that energy does not limit
-  double evaporating_share = 1.23;        ///< of the annual insolation, at most
+  double evaporation_velocity_1_d = 0.186;  ///< v over open water that energy does not limit
+  double evaporating_share = 1.39;          ///< of the annual insolation, at most
   int sweeps = 30;
 };
 

@@ -21,25 +21,23 @@ struct SeasonalClimate {
   StationaryWave wave;
   MoistureBudget moisture;
   SoilMoisture soil;
-  double itcz_share = 0.3;  ///< of the thermal equator's excursion that the cells follow
-  double itcz_locality =
-      0.937;  ///< how far the trough follows the warmest latitude of each meridian
+  double itcz_share = 0.312;   ///< of the thermal equator's excursion that the cells follow
+  double itcz_locality = 0.5;  ///< how far the trough follows the warmest latitude of each meridian
   double sensible_w_m2_k =
-      4.25;  ///< heating of the air where the surface is warmer than its parallel
-  double base_diffusivity_m2_s = 2.63e6;
-  double eddy_diffusivity_m2_s = 0.0;    ///< at the reference temperature gradient
-  double eddy_rain = 11.8;               ///< extra rain-out activity there
-  double eddy_gradient_k_1000km = 4.18;  ///< the reference gradient
-  double eddy_locality = 0.0;    ///< how far eddies follow the local gradient, not the parallel's
-  double ascent_time_d = 8.47;   ///< convergence over this time multiplies rain-out by e
-  double descent_time_d = 2.13;  ///< the same of the descent that stationary waves make
-  double ascent_smoothing_km = 474.0;  ///< over which ascent is felt
-  double convection_1_k = 0.156;  ///< by which rain-out grows with relative moist static energy
-  double convection_latitude_deg = 49.6;  ///< to which the free atmosphere is level
-  double orographic_share =
-      0.00488;  ///< of the mean height by which moist air is lifted over a cell
-  double blocking_height_m = 5.26e3;  ///< height at which relief halves the moist flow
-  double land_transpiration = 0.914;  ///< share of the soil's evaporation that returns to the air
+      4.47;  ///< heating of the air where the surface is warmer than its parallel
+  double base_diffusivity_m2_s = 3e6;
+  double eddy_diffusivity_m2_s = 9.59e5;  ///< at the reference temperature gradient
+  double eddy_rain = 11.5;                ///< extra rain-out activity there
+  double eddy_gradient_k_1000km = 4.28;   ///< the reference gradient
+  double eddy_locality = 0.141;   ///< how far eddies follow the local gradient, not the parallel's
+  double ascent_time_d = 12.0;    ///< convergence over this time multiplies rain-out by e
+  double descent_time_d = 0.766;  ///< the same of the descent that stationary waves make
+  double ascent_smoothing_km = 492.0;  ///< over which ascent is felt
+  double convection_1_k = 0.124;  ///< by which rain-out grows with relative moist static energy
+  double convection_latitude_deg = 38.8;  ///< to which the free atmosphere is level
+  double orographic_share = 0.0;  ///< of the mean height by which moist air is lifted over a cell
+  double blocking_height_m = 6.19e3;  ///< height at which relief halves the moist flow
+  double land_transpiration = 0.931;  ///< share of the soil's evaporation that returns to the air
 };
 
 /// Water that passes between a surface and its air, m3 s-1 over the year. The two sides are summed

@@ -17,13 +17,13 @@ struct WaveMode {
 /// Constants of the response of an atmosphere to heating and mountains that do not move.
 struct StationaryWave {
   /// What heating sets up: the first baroclinic mode, whose winds turn with height.
-  WaveMode internal{99.9, 1.27, 18.8, 0.215};
-  double heating_m4_s3_w = 0.000149;  ///< fall of the lower geopotential by 1 W m-2
+  WaveMode internal{120.0, 1.13, 19.8, 0.202};
+  double heating_m4_s3_w = 0.000176;  ///< fall of the lower geopotential by 1 W m-2
   /// What mountains set up: the external mode, nearly the same at all heights.
-  WaveMode external{200.0, 9.33, 20.0, 1.47};
-  double mountain_share = 0.073;  ///< of the height of mountains that the flow goes over
-  double smoothing_km = 185.0;    ///< waves shorter than this are damped out of both
-  int waves = 24;                 ///< zonal wave numbers 1 to this
+  WaveMode external{200.0, 9.87, 20.0, 1.34};
+  double mountain_share = 0.0274;  ///< of the height of mountains that the flow goes over
+  double smoothing_km = 537.0;     ///< waves shorter than this are damped out of both
+  int waves = 24;                  ///< zonal wave numbers 1 to this
 };
 
 /// Steady, damped, linear response of the lower layer of a rotating atmosphere to heating Q
