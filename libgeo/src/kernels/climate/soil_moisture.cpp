@@ -11,7 +11,8 @@ std::array<double, kMonths> soil_evaporation_mm(const SoilMoisture& model,
   constexpr int kYears = 4;
   constexpr double kAllSnow_c = -1.0, kAllRain_c = 3.0, kMostSnow_mm = 1000.0;
   std::array<double, kMonths> evaporation{};
-  double soil_mm = 0.5 * model.capacity_mm, snow_mm = 0.0;
+  // From dry ground on: no year gives back more than it got.
+  double soil_mm = 0.0, snow_mm = 0.0;
   for (int year = 0; year < kYears; ++year) {
     for (int m = 0; m < kMonths; ++m) {
       const double rain_share =

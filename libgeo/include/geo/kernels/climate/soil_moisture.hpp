@@ -17,7 +17,7 @@ struct SoilMoisture {
 /// Evaporation of each month, mm, of a year that repeats itself: water in soil and snow follows
 /// rain, melt and evaporation, and what exceeds the capacity runs off. Snow falls where the
 /// month's mean lies below -1 degC, rain above 3 degC, both between. The sum over the year is at
-/// most that of precipitation, to 1e-3.
+/// most that of precipitation.
 [[nodiscard]] std::array<double, kMonths> soil_evaporation_mm(
     const SoilMoisture& model, const std::array<double, kMonths>& temperature_c,
     const std::array<double, kMonths>& precipitation_mm,
