@@ -43,6 +43,7 @@ struct FrozenDrainage {
   /// m.
   using Straits = std::vector<std::pair<Index, float>>;
   Straits straits, late_straits;
+  float late_level_m = 0.0F;       ///< of the sea after them
   std::vector<Drainage> drainage;  ///< one for each routing of the erosion stage
   /// Sea level as a mean over cells next to it (by share) or over the sea (by volume), and how it
   /// follows the share or volume that is asked for.
@@ -197,6 +198,7 @@ Relief<V> SeedPlanet::evaluate(const Model& model, const ActiveVariables<V>& act
     }
     return after;
   };
+  double sea_share = 0.0;
   if (routes) {
     std::vector<float> closing = as_floats(convergent), opening = as_floats(divergent),
                        shear = as_floats(transform), none;
@@ -218,6 +220,7 @@ Relief<V> SeedPlanet::evaluate(const Model& model, const ActiveVariables<V>& act
                    .erodibility = held_.erodibility,
                    .elevation_m = none,
                    .thickening_m_yr = {}});
+    sea_share = share_of_sea(grid, as_floats(z));
     const std::vector<float> after = drown_straits(held_.straits);
     held_.outlets = find_outlets(grid, after);
     held_.landlocked = landlocked_cells(p, grid, after);
@@ -254,6 +257,10 @@ Relief<V> SeedPlanet::evaluate(const Model& model, const ActiveVariables<V>& act
   inject_noise(p, active, grid, seed_, z);
   warp(p, active, grid, seed_, z);
   landscape.relax();
+  if (routes) {
+    held_.late_level_m = p.steps > 0 ? moved_sea_level_m(p, grid, as_floats(z), sea_share) : 0.0F;
+  }
+  for (V& height_m : z) height_m -= V(held_.late_level_m);
 
   const auto is_land = [&](Index c) { return held_.outlets[c] == 0; };
   const double land_m2 = area_sum<double>(grid, [&](Index c) { return is_land(c) ? 1.0 : 0.0; });

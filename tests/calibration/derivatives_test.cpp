@@ -165,6 +165,8 @@ const std::map<std::string, std::string> kSilent{
     {"planet.radius_km", "cells and plates are laid with it"},
     {"planet.flattening", "cells are laid with it"},
     {"planet.obliquity_deg", "climate alone"},
+    {"planet.eccentricity", "climate alone"},
+    {"planet.perihelion_deg", "climate alone"},
     {"erosion.reference_runoff_mm_yr", "rain alone"},
     {"erosion.least_runoff_mm_yr", "rain alone"},
     {"erosion.strait_sill_m", "straits are held fast"},

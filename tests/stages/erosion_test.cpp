@@ -1,6 +1,8 @@
 #include "geo/stages/erosion/erosion.hpp"
 
 #include <gtest/gtest.h>
+
+#include "geo/stages/erosion/seas.hpp"
 #ifdef _OPENMP
 #include <omp.h>
 #endif
@@ -147,7 +149,14 @@ TEST(Erosion, StraitsFilledSeasAndDeltasAreInTheBudgets) {
     EXPECT_LT(std::abs(out.budget.at("rock_closing_error")), 1e-12);
     int gained = 0;
     for (Index c = 0; c < grid.size(); ++c) gained += z[c] < 0.0F && out.z[c] >= 0.0F ? 1 : 0;
-    EXPECT_GT(gained, 0);
+    if (grid.topology() == Topology::plane) {
+      EXPECT_GT(gained, 0) << "mouths build land out";
+      continue;
+    }
+    // A whole planet's sea rises by what it lost, until it covers as much as before.
+    const double largest_cell_m2 = std::max(grid.area_m2(0), grid.area_m2(grid.ny() / 2));
+    EXPECT_NEAR(share_of_sea(grid, out.z), share_of_sea(grid, z),
+                1.5 * largest_cell_m2 / grid.total_area_m2());
   }
 }
 

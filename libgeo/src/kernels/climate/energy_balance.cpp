@@ -231,7 +231,7 @@ TemperatureCycle solve_energy_balance(const Grid& grid, const EnergyBalance& mod
   const auto size = static_cast<std::size_t>(grid.size());
   const HeatOperator heat(grid, model.advected_heat_j_m2_k, zonal_wind_m_s);
   const Surface surface(grid, model, latitude_deg, land_fraction, height_m);
-  std::vector<double> gyres(size), diffusivity(size);
+  std::vector<double> gyres(size), diffusivity(size), capacity(size);
   gyre_heat(grid, model, retrograde, latitude_deg, land_fraction, gyres);
   TemperatureCycle temperature(size);
   for (std::size_t cell = 0; cell < size; ++cell) {
@@ -263,10 +263,7 @@ TemperatureCycle solve_energy_balance(const Grid& grid, const EnergyBalance& mod
   const auto factor = [&](int k) {
     std::vector<Complex> loss(size);
     for (std::size_t cell = 0; cell < size; ++cell) {
-      const double stored_w_m2_k =
-          2.0 * kPi * k *
-          surface.capacity_w_yr_m2_k(temperature.mean_c(cell), static_cast<Index>(cell));
-      loss[cell] = Complex(model.outgoing_slope_w_m2_k, stored_w_m2_k) *
+      loss[cell] = Complex(model.outgoing_slope_w_m2_k, 2.0 * kPi * k * capacity[cell]) *
                    grid.area_m2(grid.row(static_cast<Index>(cell)));
     }
     solvers[k].factor(heat.matrix(diffusivity, loss), grid.nx());
@@ -279,6 +276,8 @@ TemperatureCycle solve_energy_balance(const Grid& grid, const EnergyBalance& mod
     if (round < kFactorRounds) {
       for (std::size_t cell = 0; cell < size; ++cell) {
         diffusivity[cell] = surface.diffusivity_w_m2_k(temperature.mean_c(cell));
+        capacity[cell] =
+            surface.capacity_w_yr_m2_k(temperature.mean_c(cell), static_cast<Index>(cell));
       }
     }
     gather_sources(round > 0);

@@ -224,6 +224,7 @@ class ErosionStage final : public Stage {
       return did;
     };
     const std::int64_t steps = parameters_.steps;
+    const double sea_share = share_of_sea(grid, elevation);
     if (steps > 0) {
       reshape([&] { return join_seas(parameters_, grid, elevation); });
       landscape.set_landlocked(landlocked_cells(parameters_, grid, elevation));
@@ -253,6 +254,9 @@ class ErosionStage final : public Stage {
     reshape([&] { return warp<float>(parameters_, {}, grid, context.seed, elevation); });
     landscape.relax();
     reshape([&] { return ReliefFinish(parameters_, grid, context).reshape(elevation); });
+    if (steps > 0) {
+      reshape([&] { return keep_sea_share(parameters_, grid, elevation, sea_share); });
+    }
     strike(steps);
     climate.reset();  // files have the area
     route();

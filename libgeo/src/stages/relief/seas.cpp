@@ -1,9 +1,12 @@
 #include "geo/stages/erosion/seas.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "geo/kernels/figures/relief_figures.hpp"
 #include "geo/kernels/landscape/straits.hpp"
+#include "geo/kernels/numerics/area_sum.hpp"
+#include "geo/kernels/numerics/quantiles.hpp"
 
 namespace geo {
 
@@ -28,6 +31,37 @@ std::vector<std::uint8_t> landlocked_cells(const ErosionParameters& p, const Gri
   std::transform(part.begin(), part.end(), cells.begin(),
                  [](std::int32_t number) { return static_cast<std::uint8_t>(number > 1); });
   return cells;
+}
+
+double share_of_sea(const Grid& grid, std::span<const float> elevation_m) {
+  return area_sum<double>(grid, [&](Index c) { return elevation_m[c] < 0.0F ? 1.0 : 0.0; }) /
+         grid.total_area_m2();
+}
+
+float moved_sea_level_m(const ErosionParameters& p, const Grid& grid,
+                        std::span<const float> elevation_m, double share) {
+  const bool moves = p.strait_sill_m > 0.0 && grid.topology() != Topology::plane;
+  if (!moves || share <= 0.0 || share >= 1.0) return 0.0F;
+  return static_cast<float>(level_for_fraction(grid, elevation_m, share));
+}
+
+bool keep_sea_share(const ErosionParameters& p, const Grid& grid, std::span<float> elevation_m,
+                    double share) {
+  const float level_m = moved_sea_level_m(p, grid, elevation_m, share);
+  if (level_m == 0.0F) return false;
+  constexpr float kShallowest_m = -1e-3F, kLevel_m = 1e-6F;
+  for (float& z : elevation_m) {
+    z -= level_m;
+    if (std::abs(z) < kLevel_m) z = 0.0F;
+  }
+  double lacking_m2 = (share - share_of_sea(grid, elevation_m)) * grid.total_area_m2();
+  for (Index c = 0; c < grid.size(); ++c) {
+    const double area_m2 = grid.area_m2(grid.row(c));
+    if (elevation_m[c] != 0.0F || lacking_m2 < 0.5 * area_m2) continue;
+    elevation_m[c] = kShallowest_m;
+    lacking_m2 -= area_m2;
+  }
+  return true;
 }
 
 }  // namespace geo
