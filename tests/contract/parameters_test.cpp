@@ -23,7 +23,7 @@ std::vector<std::string> spellings(std::string base) {
   static const std::map<std::string, std::vector<std::string>> kShort{
       {"day", {"d"}},     {"degree", {"deg"}}, {"degC", {"degc", "c"}}, {"K", {"k", "c"}},
       {"Mm", {"1000km"}}, {"hPa", {"hpa"}},    {"Pa", {"pa"}},          {"N", {"n"}},
-      {"W", {"w"}},       {"Myr", {"myr"}}};
+      {"W", {"w"}},       {"J", {"j"}},        {"Myr", {"myr"}}};
   const auto known = kShort.find(base);
   if (known != kShort.end()) return known->second;
   return {base};

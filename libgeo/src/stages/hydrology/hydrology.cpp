@@ -45,8 +45,8 @@ Drainage drain(const Grid& grid, std::span<const float> z, const Bytes& outlets,
 
 /// Where water ends: outlets, and the bottoms of the basins that keep theirs before any dam is cut.
 /// Not those behind what a coarse relief has made of a gorge: basins smaller than `least_m2` when
-/// full to their sill, and those that so much water comes to that its valley would be as deep as the
-/// sill is high above the bottom.
+/// full to their sill, and those that so much water comes to that its valley would be as deep as
+/// the sill is high above the bottom.
 Bytes with_closed_basins(const Grid& grid, std::span<const float> z, Bytes outlets,
                          std::span<const double> runoff, std::span<const float> loss,
                          double least_m2) {

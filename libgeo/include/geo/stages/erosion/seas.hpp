@@ -22,14 +22,14 @@ bool join_seas(const ErosionParameters& parameters, const Grid& grid, std::span<
 /// Share of the area below 0.
 [[nodiscard]] double share_of_sea(const Grid& grid, std::span<const float> elevation_m);
 
-/// Where the sea stands, m, once straits, filled seas and deltas have changed how much it covers: at
-/// the level below which `share` of the area lies. 0 on parts of a planet, and where nothing of
+/// Where the sea stands, m, once straits, filled seas and deltas have changed how much it covers:
+/// at the level below which `share` of the area lies. 0 on parts of a planet, and where nothing of
 /// that happens.
 [[nodiscard]] float moved_sea_level_m(const ErosionParameters& parameters, const Grid& grid,
                                       std::span<const float> elevation_m, double share);
 
-/// Moves the datum there. Of flats that lie just at the new level, as mouths have laid them, as many
-/// cells as `share` still lacks become sea, in their order. Returns whether anything changed.
+/// Moves the datum there. Of flats that lie just at the new level, as mouths have laid them, as
+/// many cells as `share` still lacks become sea, in their order. Returns whether anything changed.
 bool keep_sea_share(const ErosionParameters& parameters, const Grid& grid,
                     std::span<float> elevation_m, double share);
 

@@ -29,8 +29,9 @@ struct HydrologyParameters {
 };
 
 /// Where the rain goes: runoff after Budyko (1974), routing over a DEM freed of spurious
-/// depressions of its resolution but for basins that keep their water as they are, lakes and endorheic basins by the steady water balance,
-/// discharge, valleys carved by rivers (Leopold & Maddock 1953), basins and stream orders.
+/// depressions of its resolution but for basins that keep their water as they are, lakes and
+/// endorheic basins by the steady water balance, discharge, valleys carved by rivers (Leopold &
+/// Maddock 1953), basins and stream orders.
 ///
 /// With `rivers = "area"` rivers show and carve by their drainage area, as in the Tectonica
 /// blueprint: by 6.4 and 6.5, with the discharge of one runoff everywhere (6.6a).
