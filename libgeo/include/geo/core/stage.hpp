@@ -80,9 +80,7 @@ struct Context {
   std::function<void(Frame frame)> on_frame;
   /// What such a stage goes on from; empty: from its beginning.
   std::shared_ptr<const Checkpoint> checkpoint;
-  /// How the months go, once a stage has made them; empty before.
-  std::shared_ptr<const Climatology> climatology;
-  /// What makes its months on the state's grid; may be empty.
+  /// What makes months on the state's grid, once a stage can; empty before.
   MonthlyFields monthly_fields;
   /// Set by a signal handler; stages look at it between steps.
   const std::atomic<bool>* stop = nullptr;

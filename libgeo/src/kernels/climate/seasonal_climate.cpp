@@ -29,7 +29,7 @@ struct Month {
   std::vector<double> zonal_wind_m_s;
   std::vector<float> wind_east, wind_north, descent_1_s;
   std::vector<float> open_flow;  ///< share of the flow that relief lets pass
-  std::vector<float> mixing, diffusivity, eddies, activity, saturated_mm, open_water_1_d;
+  std::vector<float> diffusivity, eddies, activity, saturated_mm, open_water_1_d;
   std::vector<float> potential_evaporation_mm_d, land_evaporation_mm_d;
   std::vector<float> heating_w_m2;
   std::vector<double> column_mm, rain_mm_d;
@@ -119,9 +119,9 @@ void SeasonalYear::begin_month(int m, const TemperatureCycle& temperature) {
   const int nx = grid_.nx();
   for (auto* values :
        {&month.temperature_c, &month.pressure_hpa, &month.wind_east, &month.wind_north,
-        &month.descent_1_s, &month.open_flow, &month.mixing, &month.diffusivity, &month.eddies,
-        &month.activity, &month.saturated_mm, &month.open_water_1_d,
-        &month.potential_evaporation_mm_d, &month.land_evaporation_mm_d, &month.heating_w_m2}) {
+        &month.descent_1_s, &month.open_flow, &month.diffusivity, &month.eddies, &month.activity,
+        &month.saturated_mm, &month.open_water_1_d, &month.potential_evaporation_mm_d,
+        &month.land_evaporation_mm_d, &month.heating_w_m2}) {
     values->assign(size_, 0.0F);
   }
   month.column_mm.resize(size_);

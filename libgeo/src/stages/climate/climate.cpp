@@ -424,7 +424,6 @@ class ClimateStage final : public Stage {
       close_rain(grid, dimmed.rain_left * fields.water.precipitation_m3_s, out.precipitation);
     }
     report_limits(grid, limits, held, /*part_of_model=*/closed_formulas, context);
-    context.climatology = year;
     if (!closed_formulas) context.monthly_fields = months_of(shared_frame, year);
   }
 

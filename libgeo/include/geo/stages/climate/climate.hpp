@@ -31,13 +31,13 @@ struct ClimateParameters {
 /// Temperature, winds and rain of a planet from its relief.
 ///
 /// `climate.model = "energy-balance"`: temperature from insolation by an energy-balance model with
-/// ice, moist transport and seasons; winds from cells and heat lows; rain from the moisture budget
-/// of twelve months on a coarse grid, in which lift and lee of single ranges take their water from
-/// the air and leave it there; each coarse cell's rain is then spread over its ranges. On a whole
-/// planet all that evaporates rains: the budget has both sides, summed apart, and their
-/// `air_water_closing_error`. A part of a planet has no such budget of its own; its is that of the
-/// planet around it. `temperature_held_share` is the share of the area whose temperature would
-/// leave the range that the air allows, with a warning.
+/// snow, ice, moist transport and seasons; winds from cells, heat lows and stationary waves; rain
+/// from the moisture budget of twelve months on a coarse grid, in which lift and lee of single
+/// ranges take their water from the air and leave it there; each coarse cell's rain is then spread
+/// over its ranges. On a whole planet all that evaporates rains: the budget has both sides, summed
+/// apart, and their `air_water_closing_error`. A part of a planet has no such budget of its own;
+/// its is that of the planet around it. `temperature_held_share` is the share of the area whose
+/// temperature would leave the range that the air allows, with a warning.
 /// `"blueprint"`: the closed formulas of the Tectonica blueprint, section 5, for annual means; the
 /// seasons, which it leaves open, come from the former.
 std::unique_ptr<Stage> make_climate_stage(ClimateParameters parameters = {});
