@@ -591,6 +591,17 @@ const BadInput kPlates[] = {
      kInput,
      {"feature 2 (AF): 900000, 0 is no longitude"},
      drift_of(two_plates(R"("Code": "AF")", "[[0, 0], [9e5, 0], [9e5, 9], [0, 0]]"))},
+    {"MotionsOfOutlines",
+     kConfiguration,
+     {"fields.plate_rotations = x.csv", "by number", "must be empty"},
+     drift_of("<>", {"--set", "fields.plate_rotations=x.csv"})},
+    {"NumbersWithoutMotions",
+     kConfiguration,
+     {"relief.nc", "plates by number", "fields.plate_rotations"},
+     [](const fs::path& folder) {
+       ReliefFile{}.write(folder / "relief.nc");
+       return drift_of("", {"--set", "fields.plates=" + (folder / "relief.nc").string()})(folder);
+     }},
     {"NoFirstRelief",
      kConfiguration,
      {"plates.sphere.initial_elevation = given", "fields.initial_elevation"},

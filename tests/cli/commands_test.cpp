@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <fstream>
 #include <set>
 
@@ -9,6 +10,7 @@
 #include "cli/program.hpp"
 #include "cli/relief_file.hpp"
 #include "cli/sample_run.hpp"
+#include "io/picture.hpp"
 #include "io/temporary_folder.hpp"
 
 namespace geo {
@@ -240,6 +242,27 @@ TEST_F(FinishedRun, AFieldIsThatOfTheLastStageOrOfTheOneNamed) {
   EXPECT_TRUE(last == draw({"--stage", "hydrology"}));
   EXPECT_FALSE(last == draw({"--stage", "erosion"}));
   EXPECT_FALSE(last == draw({"--stage", "island"}));
+}
+
+TEST_F(FinishedRun, BiomesAloneHaveTheIceThatTheirMapHas) {
+  // What is frozen all year is told by fields of the climate, which the stage of biomes has not.
+  const fs::path cold = folder_ / "cold";
+  ASSERT_EQ(terrane(quick_run(folder_ / "relief.nc", cold,
+                              {"--set", "planet.insolation=0.8", "--to", "biomes"}))
+                .code,
+            0);
+  const auto drawn = lines_of(told_by({"maps", cold, "--field", "biome", "--width", "600"}));
+  const io::Picture picture(drawn.at(0), {});
+  constexpr io::Colour kIce{244, 247, 251};
+  bool legend_has_ice = false;
+  for (int y = 2 * picture.height() / 3; y < picture.height(); ++y) {
+    for (int x = 0; x < picture.width(); ++x) {
+      const io::Colour here = picture.at(x, y);  // rounded by Cairo
+      legend_has_ice |= std::abs(here.r - kIce.r) <= 1 && std::abs(here.g - kIce.g) <= 1 &&
+                        std::abs(here.b - kIce.b) <= 1;
+    }
+  }
+  EXPECT_TRUE(legend_has_ice);
 }
 
 TEST_F(FinishedRun, WhatMapsCannotDrawIsSaidInOneLine) {

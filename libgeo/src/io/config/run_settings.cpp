@@ -80,9 +80,14 @@ std::vector<Parameter> RunSettings::parameters() {
            "plates follow a hypsography",
            "davidson2013"),
       text("fields.plates", plates,
-           "plates from which drift begins: earth, or a GeoJSON file of polygons with their Euler "
-           "poles; empty draws plates.count of them",
+           "plates from which drift begins: earth, a GeoJSON file of polygons with their Euler "
+           "poles, or FILE[:VARIABLE] with the number of the plate at each place, with "
+           "fields.plate_rotations; empty draws plates.count of them",
            "bird2003"),
+      text("fields.plate_rotations", plate_rotations,
+           "CSV file with the motions of plates that fields.plates gives by number: plate_id, "
+           "pole_latitude_deg, pole_longitude_deg, rate_deg_myr; the last row of a plate counts",
+           "design"),
       text("fields.initial_elevation", initial_elevation,
            "FILE[:VARIABLE] of a planet's relief from which drift begins where "
            "plates.sphere.initial_elevation "

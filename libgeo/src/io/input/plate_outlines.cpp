@@ -18,8 +18,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::size_t kMostPlates = 200;
-
 /// One feature while it is read; errors say where.
 class Feature {
  public:
@@ -82,8 +80,7 @@ class Feature {
           code && !is_partial ? fmt::format("{} is no Code of PB2002: ", *code) : ""));
     }
     check(plate.pole);
-    constexpr double kFastest = 100.0;
-    if (!(std::abs(plate.rate_deg_myr) <= kFastest)) {
+    if (!(std::abs(plate.rate_deg_myr) <= kFastestPlate_deg_myr)) {
       refuse(fmt::format("rate_deg_myr = {:g}: must be in [-100, 100]", plate.rate_deg_myr));
     }
   }

@@ -13,6 +13,8 @@
 #include "geo/io/input/exemplar_files.hpp"
 #include "geo/io/input/hypsography.hpp"
 #include "geo/io/input/plate_outlines.hpp"
+#include "geo/io/input/plate_raster.hpp"
+#include "geo/io/input/table.hpp"
 #include "geo/io/netcdf/stage_file.hpp"
 #include "geo/kernels/landscape/impact_crater.hpp"
 #include "geo/kernels/numerics/quantiles.hpp"
@@ -223,6 +225,7 @@ class Reader {
   void refuse_initial_conditions() const {
     const std::pair<std::string_view, const std::string*> given[] = {
         {"fields.plates", &settings_.plates},
+        {"fields.plate_rotations", &settings_.plate_rotations},
         {"fields.initial_elevation", &settings_.initial_elevation},
         {"fields.initial_age", &settings_.initial_age},
         {"fields.start_frame", &settings_.start_frame}};
@@ -246,12 +249,43 @@ class Reader {
     }
   }
 
+  /// Outlines with their motions, or a raster of numbers and a table of motions.
+  void read_plates() {
+    const std::string& given = settings_.plates;
+    const std::string& rotations = settings_.plate_rotations;
+    const auto [file, variable] = split_dem(given);
+    const std::string ending = file.extension();
+    const bool has_outlines = given == "earth" || ending == ".geojson" || ending == ".json";
+    if (!rotations.empty() && (given.empty() || has_outlines)) {
+      throw ConfigurationError(
+          fmt::format("fields.plate_rotations = {}: is for plates by number, and fields.plates is "
+                      "{}: must be empty",
+                      rotations, given.empty() ? "empty" : given));
+    }
+    if (given.empty()) return;
+    if (rotations.empty() && !has_outlines && std::filesystem::exists(file)) {
+      throw ConfigurationError(
+          fmt::format("fields.plates = {}: outlines are in files that end in .geojson or .json; "
+                      "plates by number "
+                      "need their motions, fields.plate_rotations",
+                      given));
+    }
+    if (rotations.empty()) {
+      inputs_.plates = read_plate_outlines(given);
+      return;
+    }
+    const Relief numbers =
+        read_field_with_gaps(given, field::plate_id, run_.planet, image_words(given));
+    check_whole_planet(numbers, "fields.plates");
+    inputs_.plates = plates_of_raster(numbers, Table::of_file(rotations));
+  }
+
   /// The first plates and the first relief, as far as the first stage is still to come. Cells of
   /// the relief are of one size whatever the grid of the run, so that the same planet comes of it.
   void read_initial_conditions() {
     if (plan_.begin != 0) refuse_initial_conditions();
     if (plan_.first != 0) return;
-    if (!settings_.plates.empty()) inputs_.plates = read_plate_outlines(settings_.plates);
+    read_plates();
     if (settings_.initial_elevation.empty()) return refuse_missing_elevation();
     constexpr GridSize kCells{2160, 1080};
     GivenRelief given{Grid::sphere(kCells.nx, kCells.ny, run_.planet.figure()), {}, {}};

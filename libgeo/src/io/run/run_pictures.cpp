@@ -133,32 +133,45 @@ const StageRecord& stage_of(const Manifest& manifest, const FieldOfRun& wanted,
                   near.empty() ? ": it has " + fmt::format("{}", fmt::join(fields, ", ")) : near));
 }
 
-/// The fields of that stage that a map of one of them is drawn from, with the rivers of an island's
-/// relief; where the stage has no elevation, the planet's last.
+/// What a map of a field shows besides: the relief, with the rivers of an island's; of biomes what
+/// is frozen all year.
+std::vector<const FieldSpec*> companions_of(std::string_view field, bool of_island) {
+  std::vector<const FieldSpec*> fields{&field::elevation};
+  if (of_island && field == field::elevation.name) {
+    fields.insert(fields.end(), {&field::lake_depth, &field::flow_receiver, &field::discharge,
+                                 &field::drainage_area});
+  }
+  if (field == field::biome.name) {
+    fields.insert(fields.end(), {&field::temperature, &field::temperature_range});
+  }
+  return fields;
+}
+
+/// The fields of that stage that a map of one of them is drawn from; those that the stage does not
+/// have as the planet has them at the end.
 State state_for(const RunFolder& folder, const Manifest& manifest, const StageRecord& record,
                 std::string_view field) {
-  const std::array<const FieldSpec*, 4> water{&field::lake_depth, &field::flow_receiver,
-                                              &field::discharge, &field::drainage_area};
-  const bool with_water = is_island(record) && field == field::elevation.name;
+  const bool of_island = is_island(record);
+  std::vector<const FieldSpec*> wanted = companions_of(field, of_island);
   const Snapshot snapshot = read_recorded(folder.path(), record, [&](const FieldSpec& spec) {
-    return spec.name == field || spec.name == field::elevation.name ||
-           (with_water && std::find(water.begin(), water.end(), &spec) != water.end());
+    return spec.name == field || lists(wanted, spec);
   });
   State state(snapshot.grid);
   for (const auto& [spec, values] : snapshot.fields) state.share(*spec, values);
-  if (!state.has(field::elevation) && !is_island(record)) {
-    std::vector<std::filesystem::path> files;
-    for (const StageRecord& each : manifest.stages) {
-      if (!is_island(each) && holds(each, field::elevation.name)) {
-        files.push_back(folder.path() / netcdf_of(each));
-      }
+  if (of_island) return state;
+  std::erase_if(wanted, [&](const FieldSpec* spec) { return state.has(*spec); });
+  std::vector<std::filesystem::path> files;
+  for (const StageRecord& each : manifest.stages) {
+    const auto has = [&](const FieldSpec* spec) { return holds(each, spec->name); };
+    if (!is_island(each) && std::any_of(wanted.begin(), wanted.end(), has)) {
+      files.push_back(folder.path() / netcdf_of(each));
     }
-    if (files.empty()) return state;
-    const std::array<const FieldSpec*, 1> wanted{&field::elevation};
-    const State planet = read_planet(std::array{files.back()}, wanted);
-    if (planet.grid().size() == state.grid().size()) {
-      state.share(field::elevation, planet.values(field::elevation));
-    }
+  }
+  if (files.empty()) return state;
+  const State planet = read_planet(files, wanted);
+  if (planet.grid().size() != state.grid().size()) return state;
+  for (const FieldSpec* spec : wanted) {
+    if (planet.has(*spec)) state.share(*spec, planet.values(*spec));
   }
   return state;
 }

@@ -38,6 +38,7 @@ struct RunSettings {
   std::string hypsography_ocean = "planet";
   std::string ranking;            ///< FILE[:VARIABLE]
   std::string plates;             ///< "earth" or a file
+  std::string plate_rotations;    ///< motions of plates that are given by number
   std::string initial_elevation;  ///< FILE[:VARIABLE]
   std::string initial_age;        ///< FILE[:VARIABLE]
   std::string start_frame;

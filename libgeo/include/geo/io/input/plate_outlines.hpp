@@ -1,11 +1,17 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
 #include "geo/core/initial_conditions.hpp"
 
 namespace geo::io {
+
+// What is told of plates that come as a file.
+constexpr std::size_t kMostPlates = 200;
+constexpr double kFastestPlate_deg_myr = 100.0;
+constexpr double kHighestPlateNumber = 32767.0;
 
 /// Plates of a GeoJSON file (RFC 7946): "earth", sixteen of today's, or a path.
 ///
