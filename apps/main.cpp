@@ -17,7 +17,7 @@
 #include <system_error>
 #include <vector>
 
-#include "commands.hpp"
+#include "commands/commands.hpp"
 #include "geo/core/error.hpp"
 #include "geo/io/config/config.hpp"
 #include "geo/io/files/build_info.hpp"

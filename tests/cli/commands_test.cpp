@@ -248,7 +248,7 @@ TEST_F(FinishedRun, BiomesAloneHaveTheIceThatTheirMapHas) {
   // What is frozen all year is told by fields of the climate, which the stage of biomes has not.
   const fs::path cold = folder_ / "cold";
   ASSERT_EQ(terrane(quick_run(folder_ / "relief.nc", cold,
-                              {"--set", "planet.insolation=0.8", "--to", "biomes"}))
+                              {"--set", "climate.solar_constant_w_m2=1150", "--to", "biomes"}))
                 .code,
             0);
   const auto drawn = lines_of(told_by({"maps", cold, "--field", "biome", "--width", "600"}));
