@@ -7,15 +7,15 @@
 #include <string>
 #include <vector>
 
+#include "apps/configuration.hpp"
+#include "apps/log.hpp"
+#include "apps/signals.hpp"
+#include "apps/thread_count.hpp"
 #include "calibration/calibrate.hpp"
 #include "commands.hpp"
-#include "configuration.hpp"
 #include "geo/core/error.hpp"
 #include "geo/io/config/config.hpp"
 #include "geo/io/config/presets.hpp"
-#include "log.hpp"
-#include "signals.hpp"
-#include "thread_count.hpp"
 
 namespace terrane {
 namespace {

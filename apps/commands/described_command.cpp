@@ -6,7 +6,7 @@
 #include <CLI/Formatter.hpp>
 #include <algorithm>
 
-#include "configuration.hpp"
+#include "apps/configuration.hpp"
 #include "geo/core/field.hpp"
 #include "geo/io/config/presets.hpp"
 #include "geo/stages/stages.hpp"

@@ -11,14 +11,14 @@
 #include <string>
 #include <vector>
 
+#include "apps/configuration.hpp"
+#include "apps/thread_count.hpp"
 #include "commands.hpp"
-#include "configuration.hpp"
 #include "geo/core/error.hpp"
 #include "geo/io/config/config.hpp"
 #include "geo/io/run/difference.hpp"
 #include "geo/io/run/manifest.hpp"
 #include "geo/io/run/run_folder.hpp"
-#include "thread_count.hpp"
 
 namespace terrane {
 namespace {

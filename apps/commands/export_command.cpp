@@ -7,10 +7,10 @@
 #include <memory>
 #include <string>
 
+#include "apps/thread_count.hpp"
 #include "commands.hpp"
 #include "geo/core/error.hpp"
 #include "geo/io/export/export.hpp"
-#include "thread_count.hpp"
 
 namespace terrane {
 namespace {

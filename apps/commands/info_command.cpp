@@ -8,12 +8,12 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "apps/thread_count.hpp"
 #include "commands.hpp"
 #include "geo/core/error.hpp"
 #include "geo/io/files/digest.hpp"
 #include "geo/io/netcdf/stage_file.hpp"
 #include "geo/io/run/recorded_file.hpp"
-#include "thread_count.hpp"
 
 namespace terrane {
 namespace {

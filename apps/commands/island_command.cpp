@@ -7,15 +7,15 @@
 #include <memory>
 #include <string>
 
+#include "apps/configuration.hpp"
+#include "apps/log.hpp"
+#include "apps/progress.hpp"
+#include "apps/signals.hpp"
+#include "apps/thread_count.hpp"
 #include "commands.hpp"
-#include "configuration.hpp"
 #include "geo/core/error.hpp"
 #include "geo/io/config/config.hpp"
 #include "geo/io/run/island_session.hpp"
-#include "log.hpp"
-#include "progress.hpp"
-#include "signals.hpp"
-#include "thread_count.hpp"
 
 namespace terrane {
 namespace {

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "apps/configuration.hpp"
 #include "commands.hpp"
-#include "configuration.hpp"
 #include "geo/core/error.hpp"
 #include "geo/core/event.hpp"
 #include "geo/io/config/config.hpp"

@@ -9,15 +9,15 @@
 #include <string>
 #include <vector>
 
+#include "apps/configuration.hpp"
+#include "apps/log.hpp"
+#include "apps/memory.hpp"
+#include "apps/progress.hpp"
+#include "apps/signals.hpp"
+#include "apps/thread_count.hpp"
 #include "commands.hpp"
-#include "configuration.hpp"
 #include "geo/core/error.hpp"
 #include "geo/io/run/run_session.hpp"
-#include "log.hpp"
-#include "memory.hpp"
-#include "progress.hpp"
-#include "signals.hpp"
-#include "thread_count.hpp"
 
 namespace terrane {
 namespace {

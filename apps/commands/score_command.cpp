@@ -7,11 +7,11 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "apps/thread_count.hpp"
 #include "commands.hpp"
 #include "geo/core/error.hpp"
 #include "geo/io/netcdf/planet_file.hpp"
 #include "geo/io/score/scorecard.hpp"
-#include "thread_count.hpp"
 
 namespace terrane {
 namespace {

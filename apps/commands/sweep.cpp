@@ -12,12 +12,12 @@
 #include <set>
 #include <sstream>
 
-#include "child_process.hpp"
+#include "apps/child_process.hpp"
+#include "apps/log.hpp"
+#include "apps/signals.hpp"
 #include "geo/core/error.hpp"
 #include "geo/io/files/atomic_file.hpp"
 #include "geo/io/input/table.hpp"
-#include "log.hpp"
-#include "signals.hpp"
 
 namespace terrane {
 namespace {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "configuration.hpp"
+#include "apps/configuration.hpp"
 
 namespace terrane {
 

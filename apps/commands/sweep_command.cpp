@@ -8,11 +8,11 @@
 #include <memory>
 #include <string>
 
+#include "apps/log.hpp"
+#include "apps/thread_count.hpp"
 #include "commands.hpp"
 #include "geo/core/error.hpp"
-#include "log.hpp"
 #include "sweep.hpp"
-#include "thread_count.hpp"
 
 namespace terrane {
 namespace {

@@ -47,8 +47,11 @@ class _Teller:
             self._progress(self._stage, fraction)
 
 
-def _print_progress(stage: str, fraction: float) -> None:
-    print(f"\r{stage:<12}{100 * fraction:4.0f} %", end="\n" if fraction == 1.0 else "", file=sys.stderr, flush=True)
+def _print_progress(stage: str, number: float) -> None:
+    if stage.startswith("iteration "):
+        print(f"{stage:<12} {number:.0f} m from the target", file=sys.stderr, flush=True)
+        return
+    print(f"\r{stage:<12}{100 * number:4.0f} %", end="\n" if number == 1.0 else "", file=sys.stderr, flush=True)
 
 
 def _parameters(preset: str, config: Path, parameters: Union[Parameters, Mapping[str, Value], None],
