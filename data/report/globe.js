@@ -279,7 +279,7 @@
 
   const view = { latitude: 20, longitude: index.centre, distance: 3.4 };
   const FOCUS = 2.95;
-  let layer = index.layers[0], ground = null, current = null, frame = null, waiting = false;
+  let layer = index.layers[0], ground = null, current = null, frame = null, month = 0, waiting = false;
 
   function turn() {
     const [sl, cl] = [Math.sin(view.longitude * radians), Math.cos(view.longitude * radians)];
@@ -384,8 +384,11 @@
       coloured(of, data, ground)), !flat, !flat);
   }
 
+  /** A layer as it is in the chosen month, where it has months. */
+  const inMonth = (one) => (month && index.months[one.name] ? index.months[one.name][month - 1] : one);
+
   async function show(name) {
-    layer = index.layers.find((one) => one.name === name) || index.layers[0];
+    layer = inMonth(index.layers.find((one) => one.name === name) || index.layers[0]);
     const data = await load(layer);
     current = data;
     paint(layer, data);
@@ -395,18 +398,28 @@
     redraw();
   }
 
+  const MONTHS = ["year", "January", "February", "March", "April", "May", "June", "July", "August", "September",
+    "October", "November", "December"];
+
+  /** A month of the layer, 0 for the year; layers without months stay as they are. */
+  async function showMonth(number) {
+    month = number;
+    part("month-name").textContent = MONTHS[month];
+    if (!frame) await show(layer.name);
+  }
+
   /** A moment of the drift: its relief in place of the planet's. */
   async function showFrame(number) {
     frame = index.frames[number] || null;
     const relief = index.layers[0];
     const data = frame ? await load(frame) : await load(relief);
     setGround(data.values);
+    layer = inMonth(index.layers.find((one) => one.name === part("layer").value));
     current = frame ? data : await load(layer);
     paint(frame ? relief : layer, current);
     part("layer").disabled = Boolean(frame);
     part("time").textContent = frame ? `${frame.time_myr} Myr` : "today";
     if (frame) layer = { ...relief, title: "Elevation" };
-    else layer = index.layers.find((one) => one.name === part("layer").value);
     legend();
     drawMarks();
     redraw();
@@ -487,6 +500,11 @@
   } else {
     part("frame").parentElement.remove();
   }
+  if (Object.keys(index.months).length) {
+    part("month").addEventListener("input", () => showMonth(Number(part("month").value)));
+  } else {
+    part("month").parentElement.remove();
+  }
   new ResizeObserver(redraw).observe(canvas);
 
   const ready = load(index.layers[0]).then(async ({ values }) => {
@@ -502,12 +520,14 @@
   window.terraneGlobe = {
     ready,
     layers: index.layers.map((one) => one.name),
-    async value(name, latitude, longitude) {
-      const of = index.layers.find((one) => one.name === name), cell = cellAt(latitude, longitude);
+    months: Object.keys(index.months),
+    async value(name, latitude, longitude, month = 0) {
+      const cell = cellAt(latitude, longitude);
+      const of = month ? index.months[name][month - 1] : index.layers.find((one) => one.name === name);
       const [north, east] = placeOf(cell);
       return { value: (await load(of)).values[cell], latitude: north, longitude: east, quantum: of.scale };
     },
-    show, showFrame, draw,
+    show, showFrame, showMonth, draw,
     view: () => ({ ...view }),
     look(latitude, longitude, distance = view.distance) {
       Object.assign(view, { latitude, longitude, distance });

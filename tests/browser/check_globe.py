@@ -4,7 +4,7 @@
 usage: check_globe.py RUN DRIFT [PICTURES]
 
 Five places of each of several layers must show what netCDF4 reads there, to the step of the layer's codes;
-the canvas must show a globe, soon, and answer to keys, layers and hands; the console stays free of errors. The
+so must months where there are any; the canvas must show a globe, soon, and answer to keys, layers and hands; the console stays free of errors. The
 report of DRIFT has frames under a slider. Without WebGL there is no globe, and the pictures are there.
 """
 
@@ -80,6 +80,34 @@ def check_values(driver, run):
                 same = np.isnan(value) if np.isnan(there) or (there == -1 and value != there) else (
                     abs(value - there) <= 0.51 * told["quantum"])
                 expect(same, name, "at", north, east, "shows", told["value"], "not", there)
+
+
+def check_months(driver, run):
+    """Months of temperature and rain are those of the file; the slider shows them and goes back to the year."""
+    months = driver.execute_script("return terraneGlobe.months")
+    expect(sorted(months) == ["precipitation", "temperature"], "has months of", months)
+    with Dataset(next(run.glob("0*-climate.nc"))) as file:
+        latitude, longitude = file["lat"][:], file["lon"][:]
+        for name in months:
+            for month, (north, east) in zip((1, 4, 7, 10, 12), PLACES):
+                told = ask(driver, f"terraneGlobe.value('{name}', {north}, {east}, {month})")
+                row = int(np.abs(latitude - told["latitude"]).argmin())
+                column = int(np.abs(longitude - told["longitude"]).argmin())
+                there = float(file[name + "_monthly"][month - 1, row, column])
+                expect(abs(told["value"] - there) <= 0.51 * told["quantum"], name, "of month", month, "shows",
+                       told["value"], "not", there)
+    ask(driver, "terraneGlobe.show('temperature')")
+    slider = driver.find_element("css selector", "[data-part=month]")
+    told, seen = [], []
+    for month in (0, 1, 7, 0):
+        driver.execute_script("arguments[0].value = arguments[1]; arguments[0].dispatchEvent(new Event('input'))",
+                              slider, month)
+        ask(driver, "new Promise((done) => setTimeout(done, 500))")
+        told.append(driver.find_element("css selector", "[data-part=month-name]").text)
+        seen.append(pixels(driver))
+    expect(told == ["year", "January", "July", "year"], "names the months", told)
+    expect(seen[0] != seen[1] and seen[1] != seen[2] and seen[0] == seen[3], "months look alike:", seen)
+    ask(driver, "terraneGlobe.show('elevation')")
 
 
 def pixels(driver):
@@ -163,6 +191,7 @@ def main():
     driver = browser()
     ready = first_frame_ms(driver, run)
     check_values(driver, run)
+    check_months(driver, run)
     share, mean = pixels(driver)
     expect(0.2 < share < 0.75, "covers", share, "of the canvas")
     expect(60 < mean < 220, "is as bright as", mean)

@@ -361,6 +361,14 @@ const Field<std::int8_t> biome{{.name = "biome",
                                 .type = Type::int8,
                                 .flags = kBiomeFlags,
                                 .cell_methods = "area: point"}};
+const Field<float> sea_ice_area_fraction{
+    {.name = "sea_ice_area_fraction",
+     .units = "1",
+     .standard_name = "sea_ice_area_fraction",
+     .doc = "share of the sea's surface under ice, annual mean",
+     .type = Type::float32,
+     .least = 0.0,
+     .most = 1.0}};
 const Field<std::int8_t> koppen_class{{.name = "koppen_class",
                                        .units = "",
                                        .doc = "climate class after Köppen-Geiger",
@@ -463,6 +471,7 @@ std::span<const FieldSpec* const> all() {
                                                             &basin_id,
                                                             &stream_order,
                                                             &biome,
+                                                            &sea_ice_area_fraction,
                                                             &koppen_class,
                                                             &net_primary_productivity,
                                                             &settlement_suitability});

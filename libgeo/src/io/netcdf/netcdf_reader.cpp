@@ -191,6 +191,26 @@ Snapshot StageQuestion::here() const {
   });
 }
 
+std::vector<float> read_month(const std::filesystem::path& path, const FieldSpec& spec, int month) {
+  return read_stage_file(path, [&](const nc::File& file) -> std::vector<float> {
+    const auto variable = file.find_variable(spec.name);
+    if (!variable) return {};
+    const auto dimensions = file.dimensions_of(*variable);
+    if (dimensions.size() != 3 || file.variable_type(*variable) != NC_FLOAT) {
+      throw InputError(fmt::format("variable {}: is no field of months", spec.name));
+    }
+    file.check_size(*variable);
+    const std::size_t ny = file.dimension_size(dimensions[1]);
+    const std::size_t nx = file.dimension_size(dimensions[2]);
+    if (static_cast<std::size_t>(month) >= file.dimension_size(dimensions[0])) return {};
+    std::vector<float> values(nx * ny);
+    const std::array<std::size_t, 3> from{static_cast<std::size_t>(month), 0, 0};
+    const std::array<std::size_t, 3> count{1, ny, nx};
+    nc::check(nc_get_vara_float(file.id(), *variable, from.data(), count.data(), values.data()));
+    return values;
+  });
+}
+
 Provenance read_provenance(const std::filesystem::path& path) {
   return answer_to(ProvenanceQuestion{path.string()});
 }

@@ -29,20 +29,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr int kMostColumns = 1024;
 constexpr std::uint16_t kNothing = 65535;
-
-/// Which cells of a grid the page has: every `step`th, from the middle of the first step.
-struct Thinning {
-  explicit Thinning(const Grid& grid)
-      : step(std::max(1, (grid.nx() + kMostColumns - 1) / kMostColumns)),
-        nx(grid.nx() / step),
-        ny(std::max(1, grid.ny() / step)) {}
-  [[nodiscard]] int column(int i) const { return i * step + step / 2; }
-  [[nodiscard]] int row(int j) const { return j * step + step / 2; }
-
-  int step, nx, ny;
-};
 
 /// Values of the page's cells as double, NaN where there is none.
 std::vector<double> thinned(const State& state, const FieldSpec& spec, const Thinning& thinning) {
@@ -93,7 +80,7 @@ struct Codes {
   std::vector<std::uint16_t> codes;
 };
 
-Codes coded(const std::vector<double>& values, bool whole_numbers) {
+Codes coded(const std::vector<double>& values, bool whole_numbers, int levels) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const double value : values) {
     if (!std::isfinite(value)) continue;
@@ -103,7 +90,7 @@ Codes coded(const std::vector<double>& values, bool whole_numbers) {
   Codes out;
   if (low > high) low = high = 0.0;
   out.offset = low;
-  out.scale = whole_numbers ? 1.0 : std::max((high - low) / (kNothing - 1), 1e-30);
+  out.scale = whole_numbers ? 1.0 : std::max((high - low) / levels, 1e-30);
   out.codes.reserve(values.size());
   for (const double value : values) {
     out.codes.push_back(std::isfinite(value)
@@ -146,8 +133,8 @@ class Layers {
   }
   ordered_json described(const std::string& id, const std::vector<double>& values,
                          bool whole_numbers, ordered_json entry,
-                         const std::vector<std::uint8_t>& shown = {}) {
-    const Codes codes = coded(values, whole_numbers);
+                         const std::vector<std::uint8_t>& shown = {}, int levels = kNothing - 1) {
+    const Codes codes = coded(values, whole_numbers, levels);
     entry["id"] = id;
     entry["offset"] = codes.offset;
     entry["scale"] = codes.scale;
@@ -379,7 +366,7 @@ ordered_json add_frames(const std::vector<GlobeFrame>& frames, const Thinning& t
                         Layers& layers) {
   auto index = ordered_json::array();
   for (const GlobeFrame& frame : frames) {
-    const Thinning own(frame.state.grid());
+    const Thinning own(frame.state.grid(), kMostColumns);
     const FieldSpec& relief = frame.state.has(field::crust_elevation)
                                   ? static_cast<const FieldSpec&>(field::crust_elevation)
                                   : field::elevation;
@@ -388,6 +375,37 @@ ordered_json add_frames(const std::vector<GlobeFrame>& frames, const Thinning& t
     entry["time_myr"] = frame.time_myr;
     index.push_back(layers.described(fmt::format("globe-frame-{}", index.size()),
                                      thinned(frame.state, relief, own), false, std::move(entry)));
+  }
+  return index;
+}
+
+/// Months of what has them, each a layer of its own: in steps fine enough for an eye and small
+/// enough for a page.
+ordered_json add_months(const PlanetMonths& months, const State& state, const Thinning& thinning,
+                        Layers& layers) {
+  constexpr int kLevels = 1000;
+  constexpr std::array<const char*, Climatology::kMonths> kNames{
+      "January", "February", "March",     "April",   "May",      "June",
+      "July",    "August",   "September", "October", "November", "December"};
+  auto index = ordered_json::object();
+  for (const FieldMap& map : field_maps()) {
+    const bool is_warmth = map.field == &field::temperature;
+    if ((!is_warmth && map.field != &field::precipitation) || !state.has(*map.field)) continue;
+    for (int m = 0; m < Climatology::kMonths; ++m) {
+      const auto& values = is_warmth ? months.temperature_c[m] : months.precipitation_mm[m];
+      auto entry = classes_entry(map);
+      entry["name"] = map.field->name;
+      entry["title"] = fmt::format("{} in {}", map.title, kNames[m]);
+      if (!is_warmth) {
+        for (auto& stop : entry["stops"]) stop = stop.get<double>() / Climatology::kMonths;
+        entry["units"] = "mm month-1";
+        entry["shown_units"] = "mm per month";
+      }
+      index[std::string(map.field->name)].push_back(
+          layers.described(fmt::format("globe-{}-{}", map.field->name, m + 1),
+                           std::vector<double>(values.begin(), values.end()), false,
+                           std::move(entry), shown_cells(map, state, thinning), kLevels));
+    }
   }
   return index;
 }
@@ -410,6 +428,7 @@ constexpr const char* kSection = R"(<section id="globe" hidden>
 <label><input data-part="plates" type="checkbox"> plates</label>
 <label><input data-part="wind" type="checkbox"> winds</label>
 <label><input data-part="graticule" type="checkbox"> graticule</label>
+<label>Month <input data-part="month" type="range" min="0" max="12" value="0"> <output data-part="month-name">year</output></label>
 <label>Time <input data-part="frame" type="range" min="0" value="0"> <output data-part="time">today</output></label>
 </div>
 <div class="globe-legend" data-part="legend"></div>
@@ -418,10 +437,11 @@ constexpr const char* kSection = R"(<section id="globe" hidden>
 
 }  // namespace
 
-std::string globe_markup(const State& state, const std::vector<GlobeFrame>& frames) {
+std::string globe_markup(const State& state, const std::vector<GlobeFrame>& frames,
+                         const std::optional<PlanetMonths>& months) {
   const Grid& grid = state.grid();
   if (grid.topology() != Topology::sphere || !state.has(field::elevation)) return {};
-  const Thinning thinning(grid);
+  const Thinning thinning(grid, kMostColumns);
   Layers layers(state, thinning);
   const MapPage page(grid, MapView());
   const MapFrame frame(page);
@@ -439,6 +459,9 @@ std::string globe_markup(const State& state, const std::vector<GlobeFrame>& fram
   index["wind"] = winds_of(state);
   index["boundaries"] = boundaries_of(state, frame);
   index["frames"] = add_frames(frames, thinning, layers);
+  index["months"] = months && months->cells.size() == thinning.size()
+                        ? add_months(*months, state, thinning, layers)
+                        : ordered_json::object();
   index["layers"] = layers.index;
   return fmt::format(
       "{}{}<script type=\"application/json\" "

@@ -135,7 +135,7 @@ class Surface {
   }
 
   [[nodiscard]] double sea_ice(double annual_mean_c) const {
-    return frozen_share(annual_mean_c, model_.ice_temperature_c, model_.ice_width_k);
+    return sea_ice_share(model_, annual_mean_c);
   }
 
   /// Sunlight that a cell absorbs in each month, less what melts its sea ice.
@@ -195,6 +195,10 @@ double TemperatureCycle::month_c(std::size_t cell, int month) const {
     sum += (harmonics_[k][cell] * month_phase(k, month)).real();
   }
   return sum;
+}
+
+double sea_ice_share(const EnergyBalance& model, double annual_mean_c) {
+  return frozen_share(annual_mean_c, model.ice_temperature_c, model.ice_width_k);
 }
 
 void gyre_heat(const Grid& grid, const EnergyBalance& model, bool retrograde,

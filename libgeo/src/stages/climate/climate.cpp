@@ -30,7 +30,7 @@ constexpr double kDaysPerMonth = 365.25 / kMonths;
 /// The outputs of the stage.
 struct Outputs {
   std::span<float> temperature, temperature_range, precipitation, seasonality, wind_east,
-      wind_north, coast, evaporation;
+      wind_north, coast, evaporation, sea_ice;
   std::span<std::int8_t> koppen;
 };
 
@@ -280,6 +280,19 @@ MonthlyFields months_of(std::shared_ptr<const ClimateFrame> frame,
       };
 }
 
+/// The sun of the model is a mean over the day. Where a day is as long as air takes to cool, day
+/// and night have climates of their own, and a planet that always shows its star the same face has
+/// nothing else.
+void warn_of_slow_rotation(const Circulation& circulation, Context& context) {
+  constexpr double kRadiativeTime_h = 30.0 * 24.0;  // of the troposphere (Pierrehumbert 2010)
+  if (circulation.rotation_period_h <= kRadiativeTime_h) return;
+  context.warnings.push_back(
+      fmt::format("climate.rotation_period_h = {:g}: days longer than {:g} h, let alone a tidally "
+                  "locked planet, "
+                  "have a day side and a night side, and this climate knows only the mean of both",
+                  circulation.rotation_period_h, kRadiativeTime_h));
+}
+
 class ClimateStage final : public Stage {
  public:
   explicit ClimateStage(ClimateParameters parameters) : p_(std::move(parameters)) {}
@@ -288,12 +301,17 @@ class ClimateStage final : public Stage {
 
   void run(StageIo& io, Context& context) const override {
     const auto elevation = io.read(field::elevation);
-    const Outputs out{
-        io.write(field::temperature),       io.write(field::temperature_range),
-        io.write(field::precipitation),     io.write(field::precipitation_seasonality),
-        io.write(field::wind_east),         io.write(field::wind_north),
-        io.write(field::distance_to_coast), io.write(field::potential_evaporation),
-        io.write(field::koppen_class)};
+    const Outputs out{io.write(field::temperature),
+                      io.write(field::temperature_range),
+                      io.write(field::precipitation),
+                      io.write(field::precipitation_seasonality),
+                      io.write(field::wind_east),
+                      io.write(field::wind_north),
+                      io.write(field::distance_to_coast),
+                      io.write(field::potential_evaporation),
+                      io.write(field::sea_ice_area_fraction),
+                      io.write(field::koppen_class)};
+    warn_of_slow_rotation(p_.seasonal.circulation, context);
     distance_to_coast(io.grid(), elevation, out.coast);
     context.advance(0.2);
 
@@ -416,6 +434,11 @@ class ClimateStage final : public Stage {
           }
         }
         seasons.row(j, elevation, humidity, out, months, scratch);
+        for (std::size_t i = 0; i < nx; ++i) {
+          const bool at_sea = elevation[begin + i] < 0.0F;
+          out.sea_ice[begin + i] =
+              at_sea ? static_cast<float>(sea_ice_share(model.energy, temperature[i])) : 0.0F;
+        }
       }
     }
     errors.rethrow();
@@ -452,7 +475,8 @@ class ClimateStage final : public Stage {
                   {},
                   {&field::temperature, &field::temperature_range, &field::precipitation,
                    &field::precipitation_seasonality, &field::wind_east, &field::wind_north,
-                   &field::distance_to_coast, &field::potential_evaporation, &field::koppen_class},
+                   &field::distance_to_coast, &field::potential_evaporation,
+                   &field::sea_ice_area_fraction, &field::koppen_class},
                   /*own_grid=*/false,
                   /*feels_events=*/true};
 };

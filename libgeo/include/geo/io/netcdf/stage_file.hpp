@@ -66,6 +66,10 @@ Snapshot read_netcdf(const std::filesystem::path& path);
 /// The same of those fields alone that `wanted` says yes to; perhaps none.
 Snapshot read_netcdf(const std::filesystem::path& path,
                      const std::function<bool(const FieldSpec&)>& wanted);
+/// One month, from 0 for January, of a field of months that a stage file has beside those of the
+/// year (`field::monthly()`), cell by cell; empty where it has none. For files of one's own: the
+/// netCDF library reads it here. Throws as read_netcdf.
+std::vector<float> read_month(const std::filesystem::path& path, const FieldSpec& spec, int month);
 /// What a frame holds to go on from. InputError when the file is no frame.
 Checkpoint read_checkpoint(const std::filesystem::path& path);
 /// Provenance of a stage file.

@@ -48,6 +48,10 @@ void gyre_heat(const Grid& grid, const EnergyBalance& model, bool retrograde,
                std::span<const double> latitude_deg, std::span<const float> land_fraction,
                std::span<double> heat_w_m2);
 
+/// Share of the sea that ice covers where the mean of the year is a temperature:
+///   1 / (1 + exp((T - ice_temperature) / ice_width)), none without a width.
+[[nodiscard]] double sea_ice_share(const EnergyBalance& model, double annual_mean_c);
+
 /// Temperature at sea level through the year, in harmonics of the time of the year t (0 to 1):
 ///   T(t) = mean + Re(sum over k of harmonic_k e^(2 pi i k t)).
 class TemperatureCycle {
