@@ -9,7 +9,7 @@
 namespace geo {
 
 struct GlacialErosion {
-  double abrasion = 1e-6;          ///< lowering of the bed over the way that ice has moved
+  double abrasion = 7e-7;          ///< lowering of the bed over the way that ice has moved
   double overdeepening = 1.5;      ///< steepest climb of a bed over the slope of the ice above it
   double till_share = 0.3;         ///< of the debris that melts out and stays where it does
   double most_till_m = 60.0;       ///< laid on a cell at once

@@ -37,7 +37,7 @@ struct ErosionParameters {
   double glacial_share = 0.3;
   double glacial_cooling_k = 6.0;
   std::int64_t glacial_cycles = 4;
-  double abrasion = 1e-6;
+  double abrasion = 7e-7;
   double overdeepening = 1.5;
   double till_share = 0.3;
   double grounding_m = 300.0;
