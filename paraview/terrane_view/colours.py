@@ -58,6 +58,8 @@ LOOKS = {
     "erosion_rate": Look("Erosion, m/yr", sea=PALE),
     "uplift_rate": Look("Uplift, m/yr", sea=PALE),
     "sediment_thickness": Look("Sediment, m"),
+    "ice_thickness": Look("Ice, m"),
+    "glacial_erosion": Look("Taken by ice, m"),
     "deposition_rate": Look("Deposition, m/yr"),
     "sediment_flux": Look("Sediment carried, m³/yr", sea=PALE, logarithmic=True),
     "slope": Look("Slope, m/m", sea=PALE),

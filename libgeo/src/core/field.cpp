@@ -229,6 +229,18 @@ const Field<float> sediment_flux{{.name = "sediment_flux",
                                   .type = Type::float32,
                                   .cell_methods = "area: point",
                                   .least = 0.0}};
+const Field<float> ice_thickness{
+    {.name = "ice_thickness",
+     .units = "m",
+     .standard_name = "land_ice_thickness",
+     .doc = "ice of glaciers and ice sheets, mean of the cell; elevation is their surface",
+     .type = Type::float32,
+     .least = 0.0}};
+const Field<float> glacial_erosion{
+    {.name = "glacial_erosion",
+     .units = "m",
+     .doc = "rock that ice has taken from the bed, less what it has laid down there",
+     .type = Type::float32}};
 const Field<float> erodibility{{.name = "erodibility",
                                 .units = "yr-1",
                                 .doc = "stream-power erodibility K, with m = 0.5 and n = 1",
@@ -449,6 +461,8 @@ std::span<const FieldSpec* const> all() {
                                                             &sediment_thickness,
                                                             &deposition_rate,
                                                             &sediment_flux,
+                                                            &ice_thickness,
+                                                            &glacial_erosion,
                                                             &crust_thickness_change,
                                                             &drainage_area,
                                                             &inflow_area,

@@ -72,6 +72,7 @@ extern const Field<std::int8_t> rock_type;
 extern const Field<float> elevation;
 extern const Field<float> uplift_rate, erosion_rate, erodibility;
 extern const Field<float> sediment_thickness, deposition_rate, sediment_flux;
+extern const Field<float> ice_thickness, glacial_erosion;
 extern const Field<float> thickening_rate, crust_thickness_change;
 extern const Field<double> drainage_area, inflow_area;
 extern const Field<float> inflow_discharge;

@@ -318,6 +318,7 @@ void draw_line(MapCanvas& canvas, const std::vector<RiverPoint>& line, double sh
 }  // namespace
 
 FrozenGround::FrozenGround(const State& state) {
+  if (state.has(field::ice_thickness)) ice_m_ = state.read(field::ice_thickness);
   if (!state.has(field::temperature) || !state.has(field::temperature_range)) return;
   mean_c_ = state.read(field::temperature);
   range_k_ = state.read(field::temperature_range);

@@ -22,17 +22,23 @@ struct RiverNetwork {
   float least_flow = 0.0F, most_flow = 0.0F;
 };
 
-/// Land where frozen all year, as far as a state knows: what falls there leaves as ice.
+/// Land under ice; where a state does not know its thickness, land where frozen all year: what
+/// falls there leaves as ice.
 class FrozenGround {
  public:
   explicit FrozenGround(const State& state);
-  [[nodiscard]] bool is_known() const { return !mean_c_.empty(); }
+  [[nodiscard]] bool is_known() const { return knows_ice() || !mean_c_.empty(); }
+  /// Whether it is the ice itself that is known.
+  [[nodiscard]] bool knows_ice() const { return !ice_m_.empty(); }
   [[nodiscard]] bool at(Index i) const {
+    constexpr float kSeen_m = 10.0F;
+    if (knows_ice()) return ice_m_[i] >= kSeen_m;
     return is_known() && mean_c_[i] + 0.5F * range_k_[i] < 0.0F;
   }
+  [[nodiscard]] const char* name() const { return knows_ice() ? "ice" : "frozen all year"; }
 
  private:
-  std::span<const float> mean_c_, range_k_;
+  std::span<const float> ice_m_, mean_c_, range_k_;
 };
 
 /// True where the state has what rivers are drawn from.

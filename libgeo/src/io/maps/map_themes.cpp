@@ -57,16 +57,28 @@ Rgb by_cover(float cover, const Sea& sea, const Land& land) {
   return cover == 1.0F ? land() : mix(sea(), land(), cover);
 }
 
-// Hypsometric colours that break at the shore, under the light.
+/// Share of each pixel that is under ice or frozen all year; empty where that is not known.
+Raster sample_ice(const Scene& scene) {
+  const FrozenGround frozen(scene.state);
+  if (!frozen.is_known()) return {};
+  return sample_mean(scene.frame, Filter::linear,
+                     [&](Index c) { return frozen.at(c) ? 1.0F : 0.0F; });
+}
+
+// Hypsometric colours that break at the shore, under the light; ice, where it is known, white.
 void paint_relief(const Scene& scene, MapCanvas& canvas, const ColourMap& sea,
                   const ColourMap& land) {
   const MapBase& base = scene.base;
+  const Raster ice = FrozenGround(scene.state).knows_ice() ? sample_ice(scene) : Raster();
   canvas.paint_rows([&](int y, ColourRow& row) {
     for (int x = 0; x < base.shade.width; ++x) {
       const float cover = base.land_cover.at(x, y);
       const Rgb tint = by_cover(
           cover, [&] { return sea.smooth(base.sea_m.at(x, y)); },
-          [&] { return land.smooth(base.land_m.at(x, y)); });
+          [&] {
+            const Rgb ground = land.smooth(base.land_m.at(x, y));
+            return ice.values.empty() ? ground : mix(ground, kIce, 0.85F * ice.at(x, y));
+          });
       row.set(x, tint, 0.42F + 0.36F * cover);
     }
     shade(row, base, y);
@@ -104,14 +116,6 @@ Raster sample_extent(const FieldMap& map, const Scene& scene) {
     return where([=](Index i) { return (elevation[i] >= 0.0F) == land; });
   }
   return where([](Index) { return true; });
-}
-
-/// Share of each pixel that is frozen all year; empty where that is not known.
-Raster sample_ice(const Scene& scene) {
-  const FrozenGround frozen(scene.state);
-  if (!frozen.is_known()) return {};
-  return sample_mean(scene.frame, Filter::linear,
-                     [&](Index c) { return frozen.at(c) ? 1.0F : 0.0F; });
 }
 
 /// Whether any land on a map is mostly ice.
@@ -192,7 +196,7 @@ void draw_categories(const CategoryMap& map, const Scene& scene, MapCanvas& canv
     std::replace(name.begin(), name.end(), '_', ' ');
     items.emplace_back(colour_of(flag.value), name);
   }
-  if (shows_ice(base, ice)) items.emplace_back(kIce, kIceName);
+  if (shows_ice(base, ice)) items.emplace_back(kIce, FrozenGround(scene.state).name());
   canvas.category_legend(items);
 }
 
@@ -222,7 +226,7 @@ void draw_river_map(const Scene& scene, MapCanvas& canvas) {
   draw_rivers(canvas, rivers, kRiver);
   canvas.frame();
   std::vector<std::pair<Rgb, std::string>> areas{{kLake, "lakes"}};
-  if (shows_ice(base, ice)) areas.emplace_back(kIce, kIceName);
+  if (shows_ice(base, ice)) areas.emplace_back(kIce, FrozenGround(scene.state).name());
   canvas.line_legend(kRiver, river_key(rivers, scene.state), areas);
 }
 

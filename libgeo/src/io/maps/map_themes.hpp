@@ -37,7 +37,7 @@ struct CategoryMap {
   const Field<std::int8_t>* field;
   const char *file, *title, *units, *caption;
   float pale_sea;        ///< by how much the sea's own categories fade
-  bool has_ice = false;  ///< land that is frozen all year is white
+  bool has_ice = false;  ///< ice, or land that is frozen all year, is white
 };
 
 /// Those of every run.
@@ -56,6 +56,5 @@ inline constexpr Rgb kPaleSea{0.85F, 0.90F, 0.925F};
 inline constexpr Rgb kPaleLand{0.945F, 0.935F, 0.905F};
 /// Land that is frozen all year, and its name in legends.
 inline constexpr Rgb kIce{0.955F, 0.97F, 0.985F};
-inline constexpr const char* kIceName = "frozen all year";
 
 }  // namespace geo::io

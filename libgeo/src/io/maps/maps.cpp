@@ -111,6 +111,7 @@ std::vector<const FieldSpec*> map_fields() {
                                        &field::wind_east,
                                        &field::wind_north,
                                        &field::temperature_range,
+                                       &field::ice_thickness,
                                        &field::flow_receiver,
                                        &field::drainage_area,
                                        &field::discharge};

@@ -314,7 +314,7 @@ double centre_of(const State& state) {
   return rounded(std::atan2(east, north) * 180.0 / M_PI);
 }
 
-/// 2 where land is frozen all year, 1 elsewhere; empty where none is.
+/// 2 where land is under ice or frozen all year, 1 elsewhere; empty where none is.
 std::vector<std::uint8_t> frozen_cells(const State& state, const Thinning& thinning) {
   const FrozenGround frozen(state);
   const Grid& grid = state.grid();
@@ -335,7 +335,7 @@ void add_categories(const CategoryMap& map, const State& state, const Thinning& 
                     Layers& layers) {
   auto entry = categories_entry(*map.field, map.title);
   const auto cells = map.has_ice ? frozen_cells(state, thinning) : std::vector<std::uint8_t>();
-  if (!cells.empty()) entry["over"] = {{"colour", hex(kIce)}, {"name", kIceName}};
+  if (!cells.empty()) entry["over"] = {{"colour", hex(kIce)}, {"name", FrozenGround(state).name()}};
   layers.add(*map.field, std::move(entry), cells);
 }
 

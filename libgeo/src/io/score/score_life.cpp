@@ -78,11 +78,27 @@ void measure_biomes(const State& state, Figures& figures) {
   figures["biome_tundra"] = without_ice[static_cast<int>(Biome::tundra)];
 }
 
+void measure_glaciers(const State& state, Figures& figures) {
+  constexpr float kLeastM = 10.0F;
+  const auto elevation = state.read(field::elevation), ice = state.read(field::ice_thickness);
+  double land = 0.0, covered = 0.0;
+  for (Index c = 0; c < state.grid().size(); ++c) {
+    if (elevation[c] < 0.0F) continue;
+    const double area = state.grid().area_m2(state.grid().row(c));
+    land += area;
+    if (ice[c] >= kLeastM) covered += area;
+  }
+  if (land > 0.0) figures["glaciers"] = 100.0 * covered / land;
+}
+
 }  // namespace
 
 void measure_life(const State& state, Figures& figures) {
   if (state.has(field::koppen_class)) measure_koppen(state, figures);
   if (state.has(field::biome)) measure_biomes(state, figures);
+  if (state.has(field::ice_thickness) && state.has(field::elevation)) {
+    measure_glaciers(state, figures);
+  }
 }
 
 }  // namespace geo::io

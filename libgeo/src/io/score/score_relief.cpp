@@ -79,6 +79,15 @@ void measure_local_relief(const State& state, Figures& figures) {
   figures["flat_land"] = 100.0 * shares_between(grid, range, kFlat).front();
 }
 
+/// Ice frays the coasts that it reaches: fjords and sounds between skerries.
+void measure_fjords(const State& state, Figures& figures) {
+  constexpr double kStepDeg = 0.4, kLatitudeDeg = 50.0, kReachM = 5e4;
+  const CoarseField relief = coarsen(state, field::elevation, kStepDeg);
+  if (relief.grid->ny() < std::lround(180.0 / kStepDeg)) return;
+  const double share = share_of_sounds(*relief.grid, relief.values, kLatitudeDeg, kReachM);
+  figures["fjords"] = 100.0 * share;
+}
+
 }  // namespace
 
 void measure_relief(const State& state, Figures& figures) {
@@ -98,6 +107,7 @@ void measure_relief(const State& state, Figures& figures) {
   measure_shares(relief, figures);
   measure_local_relief(state, figures);
   measure_spectrum(state, figures);
+  measure_fjords(state, figures);
 }
 
 }  // namespace geo::io

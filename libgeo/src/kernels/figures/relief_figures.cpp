@@ -1,7 +1,9 @@
 #include "geo/kernels/figures/relief_figures.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <string>
 
 #include "geo/core/error.hpp"
@@ -69,6 +71,32 @@ std::vector<float> local_relief_m(const Grid& grid, std::span<const float> eleva
     }
   }
   return relief;
+}
+
+double share_of_sounds(const Grid& grid, std::span<const float> elevation_m, double latitude_deg,
+                       double reach_m) {
+  check_shape(grid, elevation_m);
+  const auto meets_land = [&](Index cell, int k) {
+    double way_m = 0.0;
+    for (Index at = cell;;) {
+      way_m += grid.distances_m(grid.row(at))[k];
+      at = grid.neighbour(at, k);
+      if (at == kNoCell || at == cell || way_m > reach_m) return false;
+      if (elevation_m[at] >= 0.0F) return true;
+    }
+  };
+  double coastal = 0.0, between = 0.0;
+  for (int j = 0; j < grid.ny(); ++j) {
+    if (std::abs(grid.latitude_deg(j)) < latitude_deg) continue;
+    for (Index cell = grid.cell(0, j); cell < grid.cell(0, j) + grid.nx(); ++cell) {
+      if (elevation_m[cell] >= 0.0F) continue;
+      const bool north = meets_land(cell, kNorth), south = meets_land(cell, kSouth);
+      const bool east = meets_land(cell, kEast), west = meets_land(cell, kWest);
+      if (north || south || east || west) coastal += grid.area_m2(j);
+      if ((north && south) || (east && west)) between += grid.area_m2(j);
+    }
+  }
+  return coastal > 0.0 ? between / coastal : std::numeric_limits<double>::quiet_NaN();
 }
 
 std::vector<SeaPart> parts_of_sea(const Grid& grid, std::span<const float> elevation_m) {

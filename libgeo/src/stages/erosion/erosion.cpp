@@ -5,6 +5,7 @@
 #include <cmath>
 #include <initializer_list>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "geo/kernels/water/flow_graph.hpp"
@@ -12,6 +13,7 @@
 #include "geo/stages/erosion/ground.hpp"
 #include "geo/stages/erosion/landscape.hpp"
 #include "geo/stages/erosion/seas.hpp"
+#include "ice_age.hpp"
 #include "stages/relief/climate_of_land.hpp"
 #include "stages/relief/finish_relief.hpp"
 #include "stages/relief/relief_events.hpp"
@@ -52,6 +54,34 @@ std::vector<Parameter> ErosionParameters::declarations() {
               "times that the climate is found anew while the relief changes, with discharge = "
               "rain",
               "design"),
+      choice("erosion.ice.model", ice_model, {"none", "plastic"},
+             "whether ice forms where more snow falls than melts, as perfectly plastic ice, and "
+             "works on its bed, with discharge = rain",
+             "nye1951"),
+      real("erosion.ice.stress_kpa", ice_stress_kpa, "kPa", 1.0, 1000.0,
+           "stress at the base of the ice", "reeh1982"),
+      real("erosion.ice.ice_melt_mm_k_d", ice_melt_mm_k_d, "mm K-1 day-1", 0.1, 100.0,
+           "melt of ice per degree-day above freezing, as water", "braithwaite1995"),
+      real("erosion.ice.snow_melt_mm_k_d", snow_melt_mm_k_d, "mm K-1 day-1", 0.1, 100.0,
+           "melt of snow per degree-day above freezing, as water", "braithwaite1995"),
+      real("erosion.ice.glacial_time_yr", glacial_time_yr, "yr", 0.0, 1e9,
+           "last part of the run in which cold and warm times take turns and ice works on its bed",
+           "lisiecki2005"),
+      real("erosion.ice.glacial_share", glacial_share, "1", 0.0, 1.0,
+           "share of the cold times in that", "lisiecki2005"),
+      real("erosion.ice.glacial_cooling_k", glacial_cooling_k, "K", 0.0, 100.0,
+           "by how much the mean of the planet is colder in the cold times than today",
+           "tierney2020"),
+      integer("erosion.ice.glacial_cycles", glacial_cycles, "1", 1, 1000,
+              "times in all that cold and warm ice are found anew", "design"),
+      real("erosion.ice.abrasion", abrasion, "1", 0.0, 1.0,
+           "lowering of the bed over the way that ice has moved on it", "humphrey1994"),
+      real("erosion.ice.overdeepening", overdeepening, "1", 0.0, 100.0,
+           "steepest climb of a bed over the slope of the ice above", "alley2003"),
+      real("erosion.ice.till_share", till_share, "1", 0.0, 1.0,
+           "share of the debris that stays on land where the ice around it melts", "design"),
+      real("erosion.ice.grounding_m", grounding_m, "m", 0.0, 5000.0,
+           "depth of today's sea in which ice stands in the cold times", "design"),
       real("erosion.strait_sill_m", strait_sill_m, "m", 0.0, 10000.0,
            "highest land over which high stands of the sea join a sea to the ocean of a whole "
            "planet "
@@ -187,10 +217,14 @@ void report(const ErosionParameters& p, const Landscape<float>& landscape, Budge
 class ErosionStage final : public Stage {
  public:
   [[nodiscard]] const StageInfo& info() const override {
-    static const StageInfo kWithout = described({});
-    static const StageInfo kWith =
-        described({&field::sediment_thickness, &field::deposition_rate, &field::sediment_flux});
-    return parameters_.deposits() ? kWith : kWithout;
+    static const std::array<StageInfo, 4> kInfo = [] {
+      std::array<StageInfo, 4> info;
+      for (int kind = 0; kind < 4; ++kind) {
+        info[kind] = described(/*deposits=*/kind % 2 != 0, /*freezes=*/kind / 2 != 0);
+      }
+      return info;
+    }();
+    return kInfo[(parameters_.deposits() ? 1 : 0) + (parameters_.freezes() ? 2 : 0)];
   }
   [[nodiscard]] std::vector<Parameter> parameters() override { return parameters_.declarations(); }
 
@@ -235,13 +269,35 @@ class ErosionStage final : public Stage {
       return reshape([&] { return events.strike(step, elevation); });
     };
     const bool follows_rain = parameters_.discharge == "rain" && has_climate(grid, context);
+    std::optional<IceAge> ice;
+    if (parameters_.freezes() && follows_rain && steps > 0) {
+      ice.emplace(parameters_, grid, context.planet);
+    }
+    const std::span<float> scoured =
+        parameters_.freezes() ? io.write(field::glacial_erosion) : std::span<float>{};
+    std::fill(scoured.begin(), scoured.end(), 0.0F);
+    bool coast_moved = false;
     for (std::int64_t step = 0; step < steps; ++step) {
-      const bool struck = strike(step);
+      const bool struck = strike(step) || std::exchange(coast_moved, false);
       if (follows_rain && is_turn_of_climate(step)) {
         climate = climate_of_land(grid, elevation, context);
       }
       if (struck || step % parameters_.route_every == 0) route();
-      landscape.step(drainage, /*builds_deltas=*/step + 1 == steps);
+      const double ice_yr =
+          ice ? ice->years_of_step(static_cast<double>(steps - step - 1) * parameters_.time_step_yr)
+              : 0.0;
+      IceWork ice_work;
+      if (ice_yr > 0.0) {
+        ice_work = [&](std::span<float> relief) {
+          std::vector<float> before(relief.begin(), relief.end());
+          std::vector<double> let_out = ice->work(*climate, ice_yr, relief);
+#pragma omp parallel for schedule(static)
+          for (std::size_t c = 0; c < relief.size(); ++c) scoured[c] += before[c] - relief[c];
+          return let_out;
+        };
+        coast_moved = true;
+      }
+      landscape.step(drainage, /*builds_deltas=*/step + 1 == steps, ice_work);
       context.advance(static_cast<double>(step + 1) / static_cast<double>(steps + 1));
     }
     if (steps > 0) {
@@ -258,12 +314,15 @@ class ErosionStage final : public Stage {
       reshape([&] { return keep_sea_share(parameters_, grid, elevation, sea_share); });
     }
     strike(steps);
+    if (ice) ice->settle_today(*climate, elevation);
     climate.reset();  // files have the area
+    if (ice) landscape.sink(ice->sunk_m());
     route();
     write_rates(io, landscape, drainage, erodibility);
     if (parameters_.deposits()) write_sediment(io, landscape.sediment());
     write_crust(io, landscape);
     report(parameters_, landscape, context.budget);
+    if (parameters_.freezes()) lay_ice(io, ice ? &*ice : nullptr, context.budget);
     if (thickening.empty()) add_uniform_uplift(elevation, uplift);
   }
 
@@ -273,7 +332,7 @@ class ErosionStage final : public Stage {
     const std::int64_t climates = parameters_.climates, steps = parameters_.steps;
     return step * climates / steps != (step - 1) * climates / steps || step == 0;
   }
-  static StageInfo described(std::initializer_list<const FieldSpec*> of_sediment) {
+  static StageInfo described(bool deposits, bool freezes) {
     StageInfo info{
         "erosion",
         "rivers and hillslopes wear the land down",
@@ -285,7 +344,13 @@ class ErosionStage final : public Stage {
          &field::flow_receiver, &field::crust_thickness_change},
         /*own_grid=*/false,
         /*feels_events=*/true};
-    info.writes.insert(info.writes.end(), of_sediment);
+    const auto also = [&](std::initializer_list<const FieldSpec*> fields) {
+      info.writes.insert(info.writes.end(), fields);
+    };
+    if (deposits) {
+      also({&field::sediment_thickness, &field::deposition_rate, &field::sediment_flux});
+    }
+    if (freezes) also({&field::ice_thickness, &field::glacial_erosion});
     return info;
   }
   void write_rates(StageIo& io, const Landscape<float>& landscape, const Drainage& drainage,
@@ -313,6 +378,24 @@ class ErosionStage final : public Stage {
     for (std::size_t cell = 0; cell < change_m.size(); ++cell) {
       change_m[cell] = static_cast<float>(landscape.crust_change_m()[cell]);
     }
+  }
+  /// The relief that others see is the surface of the ice, and water flows over that.
+  void lay_ice(StageIo& io, const IceAge* ice, Budget& budget) const {
+    const Grid& grid = io.grid();
+    const std::span<float> elevation = io.write(field::elevation);
+    const std::span<float> thickness = io.write(field::ice_thickness);
+    if (ice == nullptr) return std::fill(thickness.begin(), thickness.end(), 0.0F);
+    std::copy(ice->thickness_m().begin(), ice->thickness_m().end(), thickness.begin());
+#pragma omp parallel for schedule(static)
+    for (std::size_t c = 0; c < elevation.size(); ++c) elevation[c] += thickness[c];
+    ice->report(budget);
+    if (budget["ice_m3"] == 0.0) return;
+    Drainage drainage;
+    drain(parameters_, grid, elevation, find_outlets(grid, elevation), drainage);
+    std::copy(drainage.area_m2.begin(), drainage.area_m2.end(),
+              io.write(field::drainage_area).begin());
+    std::copy(drainage.graph.receiver.begin(), drainage.graph.receiver.end(),
+              io.write(field::flow_receiver).begin());
   }
   void write_sediment(StageIo& io, const SedimentRecord& sediment) const {
     const auto copy = [&](const std::vector<float>& from, const Field<float>& to, double factor) {

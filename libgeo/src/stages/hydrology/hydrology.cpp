@@ -101,6 +101,19 @@ void write_discharge(const Drainage& d, const Bytes& sea, std::span<const double
   }
 }
 
+/// Hollows that ice has scoured are no dams of a coarse relief: their pits keep their sills.
+Bytes with_scoured_basins(const Grid& grid, std::span<const float> z,
+                          std::span<const float> scoured_m, Bytes outlets) {
+  if (scoured_m.empty()) return outlets;
+  constexpr float kScoured_m = 20.0F;
+  std::vector<Index> receiver(grid.size());
+  steepest_receivers(grid, z, outlets, receiver);
+  for (Index c = 0; c < grid.size(); ++c) {
+    if (receiver[c] == c && scoured_m[c] >= kScoured_m) outlets[c] = 1;
+  }
+  return outlets;
+}
+
 /// Water does not leave where it comes in.
 Bytes without_inflow(Bytes outlets, std::span<const double> inflow_area) {
   for (std::size_t c = 0; c < inflow_area.size(); ++c) {
@@ -139,11 +152,13 @@ class HydrologyStage final : public Stage {
                                       io.read(field::potential_evaporation), water, loss);
     const double inflow = add_inflow(io.read_optional(field::inflow_discharge), water);
     context.advance(0.1);
-    shape_valleys(
-        grid,
+    const Bytes closed =
         by_area() ? outlets
-                  : with_closed_basins(grid, z, outlets, water, loss, 1e6 * p_.closed_basin_km2),
-        sea, water, inflow_area, z);
+                  : with_closed_basins(grid, z, outlets, water, loss, 1e6 * p_.closed_basin_km2);
+    const Bytes kept =
+        with_scoured_basins(grid, z, io.read_optional(field::glacial_erosion), closed);
+    shape_valleys(grid, closed, kept, sea, water, inflow_area,
+                  io.read_optional(field::ice_thickness), z);
     context.advance(0.5);
 
     const Drainage d = drain(grid, z, outlets, water, loss);
@@ -217,13 +232,13 @@ class HydrologyStage final : public Stage {
     graph.accumulate(area);
   }
 
-  /// False dams cut and valleys carved, as wide as cells are high where meridians converge; rivers
-  /// are those that flow while every depression overflows.
-  void shape_valleys(const Grid& grid, const Bytes& outlets, const Bytes& sea,
+  /// False dams cut, but for those of basins in `kept`, and valleys carved, as wide as cells are
+  /// high where meridians converge; rivers are those that flow while every depression overflows.
+  void shape_valleys(const Grid& grid, const Bytes& outlets, const Bytes& kept, const Bytes& sea,
                      std::span<const double> runoff, std::span<const double> inflow_area,
-                     std::span<float> z) const {
+                     std::span<const float> ice_m, std::span<float> z) const {
     const std::vector<float> before(z.begin(), z.end());
-    breach_dams(grid, outlets, {p_.breach_depth_m, p_.breach_length_km * 1000}, z);
+    breach_dams(grid, kept, {p_.breach_depth_m, p_.breach_length_km * 1000}, z);
     const FlowGraph graph = route_water(grid, z, outlets).graph;
     double threshold_m3_s = 0.0;
     const std::vector<double> discharge =
@@ -235,6 +250,10 @@ class HydrologyStage final : public Stage {
       carve_valleys(grid, graph, sea, discharge, law, z);
     }
     widen_valleys<float>(grid, before, sea, z);
+    // Water runs below ice, not into it.
+    for (std::size_t c = 0; c < ice_m.size(); ++c) {
+      if (ice_m[c] > 0.0F) z[c] = before[c];
+    }
   }
 
   [[nodiscard]] Bytes frozen(const Lakes& lakes, std::span<const float> temperature) const {
@@ -278,7 +297,8 @@ class HydrologyStage final : public Stage {
                   "runoff, lakes, rivers and basins; valleys carved by rivers",
                   {&field::elevation, &field::temperature, &field::precipitation,
                    &field::potential_evaporation},
-                  {&field::inflow_area, &field::inflow_discharge},
+                  {&field::inflow_area, &field::inflow_discharge, &field::ice_thickness,
+                   &field::glacial_erosion},
                   {&field::elevation, &field::slope, &field::flow_direction, &field::flow_receiver,
                    &field::drainage_area, &field::discharge, &field::river_intensity,
                    &field::lake_depth, &field::lake_id, &field::basin_id, &field::stream_order}};

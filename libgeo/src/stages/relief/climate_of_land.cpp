@@ -11,7 +11,6 @@ namespace geo {
 namespace {
 
 constexpr int kMostColumns = 512;
-constexpr float kLapse_K_m = 6.5e-3F;
 
 }  // namespace
 

@@ -13,6 +13,13 @@ namespace geo {
 /// one value per cell (InputError otherwise). Cost: linear.
 std::vector<float> local_relief_m(const Grid& grid, std::span<const float> elevation_m);
 
+/// Share of the coastal sea poleward of a latitude that lies between land: of the sea with land
+/// within `reach_m` to the north, east, south or west, that with land there on two opposite sides.
+/// NaN without any. `elevation_m` has one value per cell (InputError otherwise) of a grid with
+/// latitudes; land is 0 and above. Cost: cells times reach over cell.
+double share_of_sounds(const Grid& grid, std::span<const float> elevation_m, double latitude_deg,
+                       double reach_m);
+
 /// A part of the sea that no water joins to another: cells below 0, side by side or corner to
 /// corner.
 struct SeaPart {

@@ -28,6 +28,19 @@ struct ErosionParameters {
   double reference_runoff_mm_yr = 300.0;
   double least_runoff_mm_yr = 5.0;
   std::int64_t climates = 2;
+  std::string ice_model = "plastic";
+  // Of the ice, where the discharge is "rain".
+  double ice_stress_kpa = 80.0;
+  double ice_melt_mm_k_d = 8.0;
+  double snow_melt_mm_k_d = 3.0;
+  double glacial_time_yr = 2.6e6;
+  double glacial_share = 0.3;
+  double glacial_cooling_k = 6.0;
+  std::int64_t glacial_cycles = 4;
+  double abrasion = 7e-7;
+  double overdeepening = 1.5;
+  double till_share = 0.3;
+  double grounding_m = 300.0;
   double strait_sill_m = 300.0;
   double strait_land_km = 3000.0;
   double strait_depth_m = 60.0;
@@ -62,6 +75,8 @@ struct ErosionParameters {
   [[nodiscard]] std::vector<Parameter> declarations();
   /// Whether rivers lay down what they cannot carry.
   [[nodiscard]] bool deposits() const { return model == "sediment" && deposition > 0.0; }
+  /// Whether ice is looked for at all.
+  [[nodiscard]] bool freezes() const { return ice_model != "none" && discharge == "rain"; }
 };
 
 /// Landscape evolution, dz/dt = U - K A^m S^n + (G / A) Q + kappa lap(z) on land (Braun & Willett

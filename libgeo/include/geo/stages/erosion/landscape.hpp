@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "geo/core/numeric.hpp"
@@ -15,6 +17,7 @@
 #include "geo/kernels/numerics/area_sum.hpp"
 #include "geo/kernels/numerics/diffusion.hpp"
 #include "geo/kernels/numerics/smoothing.hpp"
+#include "geo/kernels/water/flow_graph.hpp"
 #include "geo/kernels/water/valley_width.hpp"
 #include "geo/stages/erosion/drainage.hpp"
 #include "geo/stages/erosion/seas.hpp"
@@ -37,6 +40,9 @@ struct SedimentRecord {
   std::vector<float> thickness_m, laid_m;
   std::vector<float> carried_m3_yr;
 };
+
+/// Ice that changes a relief, m: returns the rock that it lets out to the water of each cell, m3.
+using IceWork = std::function<std::vector<double>(std::span<float> elevation_m)>;
 
 /// One run of the landscape: rivers, hillslopes and rebound work on a relief, step by step, along
 /// the drainage that each step is given. V as in core/numeric.hpp; derivatives are those with the
@@ -84,11 +90,12 @@ class Landscape {
     before_.assign(z_.begin(), z_.end());
     breach_sills(grid_, drainage.graph, z_);
     book_lowering();
-    if (deposits()) carry(drainage.graph);
+    carry(drainage.graph);
   }
 
-  /// `builds_deltas`: the step ends at a time when the sea has stood still for a while.
-  void step(const Drainage& drainage, bool builds_deltas = false) {
+  /// `builds_deltas`: the step ends at a time when the sea has stood still for a while. `ice`, if
+  /// any, works after the rivers; where it lets the sea in, the coast moves.
+  void step(const Drainage& drainage, bool builds_deltas = false, const IceWork& ice = {}) {
     builds_deltas_ = builds_deltas;
     raise();
     before_.assign(z_.begin(), z_.end());
@@ -102,8 +109,15 @@ class Landscape {
     creep();
     widen_valleys<V>(grid_, before_, outlets_, z_);
     book_lowering();
-    if (deposits()) carry(drainage.graph);
+    carry(drainage.graph, ice);
     if (p_.rebound_fraction > 0.0) rebound();
+  }
+
+  /// Rock that sinks under a load that is none of its own, m per cell, as a part of the rebound.
+  void sink(std::span<const float> by_m) {
+    before_.assign(z_.begin(), z_.end());
+    on_land([&](Index cell) { z_[cell] -= V(by_m[cell]); });
+    rock_.rebound += volume_since_before();
   }
 
   /// Blueprint 4.6: part of the way back to the isostatic elevation.
@@ -244,9 +258,45 @@ class Landscape {
     }
   }
   /// Takes what this step lowered down the rivers and lays it at sea.
-  void carry(const FlowGraph& graph) {
-    std::vector<Number> volume_m3 =
-        sediment_outflow<V>(grid_, graph, std::span<const V>(before_), std::span<const V>(z_));
+  void carry(const FlowGraph& graph, const IceWork& ice = {}) {
+    std::vector<Number> volume_m3;
+    if (deposits()) {
+      volume_m3 =
+          sediment_outflow<V>(grid_, graph, std::span<const V>(before_), std::span<const V>(z_));
+      record_on_land(volume_m3);
+    }
+    if constexpr (kRecords) {
+      if (ice) return let_ice_work(graph, ice, volume_m3);
+    }
+    if (deposits()) spread_at_sea(volume_m3);
+  }
+  /// What ice takes and what it lays down; what it lets out goes down the rivers with
+  /// `volume_m3`, which theirs have brought.
+  void let_ice_work(const FlowGraph& graph, const IceWork& ice, std::vector<double>& volume_m3) {
+    const std::vector<V> before_rivers = std::exchange(before_, {z_.begin(), z_.end()});
+    std::vector<double> let_out_m3 = ice(z_);
+    rock_.eroded -= volume_since_before();
+#pragma omp parallel for schedule(static)
+    for (Index cell = 0; cell < grid_.size(); ++cell) {
+      if (outlets_[cell] == 0) lowered_[cell] += before_[cell] - z_[cell];
+      crust_change_m_[cell] += Number(z_[cell]) - Number(before_[cell]);
+    }
+    if (deposits()) {
+      for (const Index cell : graph.order) {
+        const Index to = graph.receiver[cell];
+        if (to != cell) let_out_m3[to] += let_out_m3[cell];
+      }
+#pragma omp parallel for schedule(static)
+      for (Index cell = 0; cell < grid_.size(); ++cell) volume_m3[cell] += let_out_m3[cell];
+      record_on_land(volume_m3);
+      before_.assign(z_.begin(), z_.end());
+      spread_at_sea(volume_m3);
+    }
+    outlets_ = find_outlets(grid_, z_);
+    before_ = before_rivers;
+  }
+  /// Lays at sea what has come to its shores.
+  void spread_at_sea(std::vector<Number>& volume_m3) {
     std::vector<std::uint8_t> sea(grid_.size());
     std::vector<Number> room_m(grid_.size(), Number(0.0)), supply_m(grid_.size(), Number(0.0));
     const Number wave_base_m = active_(p_.wave_base_m);
@@ -254,7 +304,6 @@ class Landscape {
     for (Index cell = 0; cell < grid_.size(); ++cell) {
       sea[cell] = outlets_[cell] != 0 && value_of(z_[cell]) < 0.0 ? 1 : 0;
     }
-    record_on_land(volume_m3);
     build_at_mouths(sea, volume_m3);
 #pragma omp parallel for schedule(static)
     for (Index cell = 0; cell < grid_.size(); ++cell) {

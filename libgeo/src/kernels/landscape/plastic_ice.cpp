@@ -1,0 +1,191 @@
+#include "geo/kernels/landscape/plastic_ice.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <queue>
+#include <utility>
+
+#include "geo/core/error.hpp"
+
+namespace geo {
+namespace {
+
+constexpr float kUnreached = std::numeric_limits<float>::infinity();
+
+void check_shape(const Grid& grid, std::size_t size, const char* name) {
+  if (size == static_cast<std::size_t>(grid.size())) return;
+  throw InputError(
+      fmt::format("ice: {} has {} values on a grid of {} cells", name, size, grid.size()));
+}
+
+/// s of (s - b)(s - a) = k d.
+double rise_along(double bed, double from, double kd) {
+  return 0.5 * (bed + from + std::sqrt((bed - from) * (bed - from) + 4.0 * kd));
+}
+
+/// s of (s - b) |∇s| = k from neighbours `a` and `c`, dx and dy away; `above` is no less than it.
+double rise_between(double bed, double a, double dx, double c, double dy, double k, double above) {
+  const double x2 = 1.0 / (dx * dx), y2 = 1.0 / (dy * dy);
+  // The product of convex functions that rise: Newton's steps come down to the root.
+  double s = above;
+  for (int step = 0; step < 12; ++step) {
+    const double h = s - bed, u = s - a, v = s - c;
+    const double gradient2 = u * u * x2 + v * v * y2;
+    const double value = h * h * gradient2 - k * k;
+    const double slope = 2.0 * h * gradient2 + 2.0 * h * h * (u * x2 + v * y2);
+    const double change = value / slope;
+    s -= change;
+    if (!(change > 1e-5 * h)) break;
+  }
+  return s;
+}
+
+class March {
+ public:
+  March(const Grid& grid, double k_m, std::span<const float> bed_m,
+        std::span<const IceGround> ground)
+      : grid_(grid), k_m_(k_m), bed_m_(bed_m), ground_(ground) {
+    surface_.height_m.assign(bed_m.size(), kUnreached);
+    surface_.lowest.resize(bed_m.size());
+    settled_.assign(bed_m.size(), 0);
+  }
+
+  IceSurface run() {
+    bool any = false;
+    for (Index cell = 0; cell < grid_.size(); ++cell) {
+      surface_.lowest[cell] = cell;
+      if (ground_[cell] != IceGround::away) continue;
+      settle_margin(cell);
+      any = true;
+    }
+    if (!any) {
+      const auto lowest = std::min_element(bed_m_.begin(), bed_m_.end()) - bed_m_.begin();
+      surface_.order.push_back(static_cast<Index>(lowest));
+      settle_margin(static_cast<Index>(lowest));
+    }
+    for (Index cell = 0; cell < grid_.size(); ++cell) {
+      if (settled_[cell] != 0 && (!any || touches_ice(cell))) reach_neighbours(cell);
+    }
+    while (!front_.empty()) {
+      const auto [height, cell] = front_.top();
+      front_.pop();
+      if (settled_[cell] != 0 || height > surface_.height_m[cell]) continue;
+      settled_[cell] = 1;
+      surface_.order.push_back(cell);
+      reach_neighbours(cell);
+    }
+    return std::move(surface_);
+  }
+
+ private:
+  using Entry = std::pair<float, Index>;
+
+  void settle_margin(Index cell) {
+    surface_.height_m[cell] = std::max(bed_m_[cell], 0.0F);
+    settled_[cell] = 1;
+  }
+  [[nodiscard]] bool touches_ice(Index cell) const {
+    for (int k = 0; k < kDirections; ++k) {
+      const Index to = grid_.neighbour(cell, k);
+      if (to != kNoCell && ground_[to] != IceGround::away) return true;
+    }
+    return false;
+  }
+  void reach_neighbours(Index from) {
+    for (int k = 0; k < kDirections; ++k) {
+      const Index cell = grid_.neighbour(from, k);
+      if (cell == kNoCell || settled_[cell] != 0) continue;
+      const float height =
+          std::max(static_cast<float>(rise(cell, from, k)), surface_.height_m[from]);
+      if (height >= surface_.height_m[cell]) continue;
+      surface_.height_m[cell] = height;
+      surface_.lowest[cell] = from;
+      front_.emplace(height, cell);
+    }
+  }
+  /// Height of `cell`, reached from a settled neighbour in whose direction k it lies.
+  [[nodiscard]] double rise(Index cell, Index from, int k) const {
+    const double bed = bed_m_[cell], below = surface_.height_m[from];
+    if (ground_[cell] == IceGround::bare) return std::max(bed, below);
+    const int i = grid_.column(cell), j = grid_.row(cell);
+    const int back = grid_.back_direction(grid_.row(from), k);
+    const auto& distance = grid_.distances_m(j);
+    const double along = rise_along(bed, below, k_m_ * distance[back]);
+    if (back % 2 != 0) return along;  // diagonal
+    const bool east_west = back == kEast || back == kWest;
+    const auto lower = [&](int first, int second) {
+      double best = kUnreached, apart = 1.0;
+      for (const int side : {first, second}) {
+        const Index to = grid_.neighbour(i, j, side);
+        if (to == kNoCell || settled_[to] == 0) continue;
+        if (surface_.height_m[to] < best) best = surface_.height_m[to], apart = distance[side];
+      }
+      return std::pair{best, apart};
+    };
+    const auto [other, apart] = east_west ? lower(kNorth, kSouth) : lower(kEast, kWest);
+    if (!(other < along)) return along;
+    return rise_between(bed, below, distance[back], other, apart, k_m_, along);
+  }
+
+  const Grid& grid_;
+  double k_m_;
+  std::span<const float> bed_m_;
+  std::span<const IceGround> ground_;
+  IceSurface surface_;
+  std::vector<std::uint8_t> settled_;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front_;
+};
+
+}  // namespace
+
+IceSurface plastic_ice_surface(const Grid& grid, double k_m, std::span<const float> bed_m,
+                               std::span<const IceGround> ground) {
+  check_shape(grid, bed_m.size(), "the bed");
+  check_shape(grid, ground.size(), "the ground");
+  if (!(k_m > 0.0 && std::isfinite(k_m))) {
+    throw InputError(fmt::format("ice: stress over weight of {} m, must be positive", k_m));
+  }
+  return March(grid, k_m, bed_m, ground).run();
+}
+
+IceFlux ice_flux(const Grid& grid, std::span<const float> bed_m, std::span<const IceGround> ground,
+                 const IceSurface& surface, std::span<const float> balance_m_yr) {
+  check_shape(grid, bed_m.size(), "the bed");
+  check_shape(grid, ground.size(), "the ground");
+  check_shape(grid, balance_m_yr.size(), "the balance");
+  check_shape(grid, surface.height_m.size(), "the surface");
+  IceFlux flux;
+  flux.through_m3_yr.assign(bed_m.size(), 0.0);
+  flux.share.assign(bed_m.size(), 0.0F);
+  flux.melted.assign(bed_m.size(), 0.0F);
+  const IceOutflow outflow(grid, surface);
+  for (auto at = surface.order.rbegin(); at != surface.order.rend(); ++at) {
+    const Index cell = *at;
+    const double area_m2 = grid.area_m2(grid.row(cell));
+    double& through = flux.through_m3_yr[cell];
+    const double own = balance_m_yr[cell] * area_m2;
+    if (own > 0.0 && (bed_m[cell] >= 0.0F || through > 0.0)) {
+      through += own;
+      flux.accumulated_m3_yr += own;
+    }
+    if (through <= 0.0) continue;
+    double melt = std::clamp(-own, 0.0, through);
+    flux.share[cell] = own < 0.0 ? static_cast<float>(std::min(1.0, through / -own)) : 1.0F;
+    if (surface.lowest[cell] == cell) melt = through;  // a world without a margin
+    flux.melted[cell] = static_cast<float>(melt / through);
+    flux.melted_m3_yr += melt;
+    const double leaves = through - melt;
+    if (leaves <= 0.0) continue;
+    outflow.visit(cell, [&](Index to, double part) {
+      flux.through_m3_yr[to] += part * leaves;
+      if (ground[to] != IceGround::away) return;
+      (bed_m[to] < 0.0F ? flux.calved_m3_yr : flux.melted_m3_yr) += part * leaves;
+    });
+  }
+  return flux;
+}
+
+}  // namespace geo

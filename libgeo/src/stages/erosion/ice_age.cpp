@@ -1,0 +1,170 @@
+#include "ice_age.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "geo/kernels/numerics/area_sum.hpp"
+#include "geo/kernels/numerics/smoothing.hpp"
+#include "stages/relief/climate_of_land.hpp"
+
+namespace geo {
+namespace {
+
+constexpr double kIceOverMantle = 910.0 / 3300.0;
+/// Air holds less vapour as it cools, and rains less: about so much per kelvin (Huybrechts 2002).
+constexpr double kDrier_1_K = 0.05;
+constexpr double kMostMelt_m_yr = 12.0;  ///< of water: where no tongue gets through
+constexpr float kThinnest_m = 1.0F, kAshore_m = 1.0F;
+constexpr float kLeastShare = 0.02F;
+
+}  // namespace
+
+IceAge::IceAge(const ErosionParameters& parameters, const Grid& grid, const Planet& planet)
+    : p_(parameters), grid_(grid) {
+  snow_.snow_melt_mm_k_d = p_.snow_melt_mm_k_d;
+  snow_.ice_melt_mm_k_d = p_.ice_melt_mm_k_d;
+  erosion_.abrasion = p_.abrasion;
+  erosion_.overdeepening = p_.overdeepening;
+  erosion_.till_share = p_.till_share;
+  k_m_ = 1e3 * p_.ice_stress_kpa / (snow_.ice_kg_m3 * planet.gravity_m_s2);
+  next_.assign(grid.size(), IceGround::bare);
+  sunk_m_.assign(grid.size(), 0.0F);
+}
+
+double IceAge::years_of_step(double before_today_yr) const {
+  return std::clamp(p_.glacial_time_yr - before_today_yr, 0.0, p_.time_step_yr);
+}
+
+std::vector<double> IceAge::work(const LandClimate& climate, double years_yr,
+                                 std::span<float> elevation_m) {
+  constexpr int kGrowing = 4, kMelting = 2;
+  const double cycle_yr = p_.glacial_time_yr / static_cast<double>(p_.glacial_cycles);
+  const int cycles = std::max(1, static_cast<int>(std::lround(years_yr / cycle_yr)));
+  std::vector<double> let_out_m3(elevation_m.size(), 0.0);
+  const auto live = [&](const Age& age, double share) {
+    if (share <= 0.0) return;
+    settle(climate, age, elevation_m);
+    const std::vector<double> let_out = erode_under_ice(
+        grid_, erosion_, share * years_yr / cycles, surface_, flux_, ground_, sunk_m_, elevation_m);
+#pragma omp parallel for schedule(static)
+    for (std::size_t c = 0; c < let_out.size(); ++c) let_out_m3[c] += let_out[c];
+    weigh(elevation_m);
+  };
+  for (int cycle = 0; cycle < cycles; ++cycle) {
+    live({p_.glacial_cooling_k, p_.grounding_m, kGrowing}, p_.glacial_share);
+    live({0.0, 0.0, kMelting}, 1.0 - p_.glacial_share);
+  }
+  return let_out_m3;
+}
+
+void IceAge::settle_today(const LandClimate& climate, std::span<const float> elevation_m) {
+  constexpr int kRounds = 4;
+  const Age today{0.0, 0.0, kRounds};
+  settle(climate, today, elevation_m);
+  weigh(elevation_m);
+  settle(climate, today, elevation_m);
+  thickness_m_.assign(elevation_m.size(), 0.0F);
+#pragma omp parallel for schedule(static)
+  for (Index c = 0; c < grid_.size(); ++c) {
+    if (elevation_m[c] < 0.0F) continue;
+    if (ground_[c] == IceGround::iced) {
+      const float whole = surface_.height_m[c] - bed_m_[c];
+      thickness_m_[c] = flux_.share[c] * whole;
+      if (thickness_m_[c] < kThinnest_m) thickness_m_[c] = 0.0F;
+    }
+    sunk_m_[c] =
+        std::clamp(sunk_m_[c], 0.0F, std::max(0.0F, elevation_m[c] + thickness_m_[c] - kAshore_m));
+  }
+}
+
+void IceAge::settle(const LandClimate& climate, const Age& age,
+                    std::span<const float> elevation_m) {
+  bed_m_.resize(elevation_m.size());
+#pragma omp parallel for schedule(static)
+  for (std::size_t c = 0; c < bed_m_.size(); ++c) bed_m_[c] = elevation_m[c] - sunk_m_[c];
+  sort_ground(climate, age, elevation_m);
+  std::vector<float> balance_m_yr(elevation_m.size());
+  for (int round = 0; round < age.rounds; ++round) {
+    ground_ = next_;
+    surface_ = plastic_ice_surface(grid_, k_m_, bed_m_, ground_);
+    balance(climate, age, elevation_m, balance_m_yr);
+    flux_ = ice_flux(grid_, bed_m_, ground_, surface_, balance_m_yr);
+#pragma omp parallel for schedule(static)
+    for (std::size_t c = 0; c < next_.size(); ++c) {
+      if (next_[c] == IceGround::away) continue;
+      next_[c] = flux_.share[c] > kLeastShare ? IceGround::iced : IceGround::bare;
+    }
+  }
+}
+
+double IceAge::cooling_k(const Age& age, int row) const {
+  // The poles cool more than twice as much as the equator, the mean is 1 (Tierney et al. 2020).
+  const double sine = std::sin(grid_.latitude_deg(row) * std::numbers::pi / 180.0);
+  return age.cooling_k * (0.7 + 0.9 * sine * sine);
+}
+
+/// Ice keeps to where it could live.
+void IceAge::sort_ground(const LandClimate& climate, const Age& age,
+                         std::span<const float> elevation_m) {
+  const double warmest = 1e3 * kMostMelt_m_yr / snow_.ice_melt_mm_k_d;
+#pragma omp parallel for schedule(dynamic, 8)
+  for (int j = 0; j < grid_.ny(); ++j) {
+    const double cooling = cooling_k(age, j);
+    for (Index c = grid_.cell(0, j); c < grid_.cell(0, j) + grid_.nx(); ++c) {
+      const bool stands = elevation_m[c] >= -age.grounding_m;
+      if (stands) {
+        const double mean_c = climate.sea_level_temperature_c[c] - cooling -
+                              kLapse_K_m * std::max(0.0F, elevation_m[c]);
+        if (frost_of_year(snow_, mean_c, climate.range_k[c]).degree_days <= warmest) {
+          if (next_[c] == IceGround::away) next_[c] = IceGround::bare;
+          continue;
+        }
+      }
+      next_[c] = IceGround::away;
+    }
+  }
+}
+
+void IceAge::balance(const LandClimate& climate, const Age& age, std::span<const float> elevation_m,
+                     std::span<float> balance_m_yr) const {
+#pragma omp parallel for schedule(dynamic, 8)
+  for (int j = 0; j < grid_.ny(); ++j) {
+    const double cooling = cooling_k(age, j);
+    for (Index c = grid_.cell(0, j); c < grid_.cell(0, j) + grid_.nx(); ++c) {
+      if (ground_[c] == IceGround::away) continue;
+      const double ground = std::max(0.0F, elevation_m[c]), surface = surface_.height_m[c];
+      const double mean_c = climate.sea_level_temperature_c[c] - cooling - kLapse_K_m * surface;
+      const double colder_k = cooling + kLapse_K_m * std::max(0.0, surface - ground);
+      const double rain = climate.precipitation_mm_yr[c] * std::exp(-kDrier_1_K * colder_k);
+      balance_m_yr[c] =
+          static_cast<float>(snow_balance_m_yr(snow_, mean_c, climate.range_k[c], rain));
+    }
+  }
+}
+
+/// How far the ice of this time holds the ground down.
+void IceAge::weigh(std::span<const float> elevation_m) {
+  const auto part = static_cast<float>(p_.rebound_fraction > 0.0 ? kIceOverMantle : 0.0);
+#pragma omp parallel for schedule(static)
+  for (Index c = 0; c < grid_.size(); ++c) {
+    sunk_m_[c] = 0.0F;
+    if (ground_[c] != IceGround::iced || elevation_m[c] < 0.0F) continue;
+    sunk_m_[c] = part * flux_.share[c] * std::max(0.0F, surface_.height_m[c] - bed_m_[c]);
+  }
+  if (p_.rebound_length_km > 0.0) smooth_broadly(grid_, sunk_m_, 1e3 * p_.rebound_length_km);
+#pragma omp parallel for schedule(static)
+  for (Index c = 0; c < grid_.size(); ++c) sunk_m_[c] = std::max(0.0F, sunk_m_[c]);
+}
+
+void IceAge::report(Budget& budget) const {
+  budget["ice_snow_m3_yr"] = flux_.accumulated_m3_yr;
+  budget["ice_melt_m3_yr"] = flux_.melted_m3_yr;
+  budget["ice_calving_m3_yr"] = flux_.calved_m3_yr;
+  budget["ice_closing_error"] =
+      (flux_.accumulated_m3_yr - flux_.melted_m3_yr - flux_.calved_m3_yr) /
+      std::max(1.0, flux_.accumulated_m3_yr);
+  budget["ice_m3"] = area_sum<double>(grid_, [&](Index c) { return thickness_m_[c]; });
+}
+
+}  // namespace geo

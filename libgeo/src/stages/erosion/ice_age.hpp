@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "geo/core/planet.hpp"
+#include "geo/core/stage.hpp"
+#include "geo/kernels/landscape/glacial_erosion.hpp"
+#include "geo/kernels/landscape/plastic_ice.hpp"
+#include "geo/kernels/landscape/snow_balance.hpp"
+#include "geo/stages/erosion/drainage.hpp"
+
+namespace geo {
+
+/// Glaciers and ice sheets through the cold and the warm times of a run's last `glacial_time_yr`.
+/// Each has a climate of its own: the given one, and one colder by `glacial_cooling_k`, more at the
+/// poles. Ice grows from what it was in the time before: a few rounds of surface (plastic ice on a
+/// bed that its weight holds down), snow balance at that surface, and flux, which says what is
+/// covered next.
+class IceAge {
+ public:
+  IceAge(const ErosionParameters& parameters, const Grid& grid, const Planet& planet);
+
+  /// How much of a step that ends `before_today_yr` ago belongs to the ice, yr.
+  [[nodiscard]] double years_of_step(double before_today_yr) const;
+  /// Lets the ice of `years_yr` work on a relief; see IceWork.
+  [[nodiscard]] std::vector<double> work(const LandClimate& climate, double years_yr,
+                                         std::span<float> elevation_m);
+  /// Ice on the land of today, once its relief is finished.
+  void settle_today(const LandClimate& climate, std::span<const float> elevation_m);
+
+  /// Of today, m; mean of the cell.
+  [[nodiscard]] std::span<const float> thickness_m() const { return thickness_m_; }
+  /// By how much its weight holds down the land beneath and beside it, m; the surface of the ice,
+  /// and land without it, stay above the sea.
+  [[nodiscard]] std::span<const float> sunk_m() const { return sunk_m_; }
+  /// Snow, melt and calving, and how far they close.
+  void report(Budget& budget) const;
+
+ private:
+  /// A time of one climate.
+  struct Age {
+    double cooling_k;
+    double grounding_m;  ///< deepest sea that ice stands in
+    int rounds;
+  };
+  void settle(const LandClimate& climate, const Age& age, std::span<const float> elevation_m);
+  void sort_ground(const LandClimate& climate, const Age& age, std::span<const float> elevation_m);
+  void balance(const LandClimate& climate, const Age& age, std::span<const float> elevation_m,
+               std::span<float> balance_m_yr) const;
+  void weigh(std::span<const float> elevation_m);
+  [[nodiscard]] double cooling_k(const Age& age, int row) const;
+
+  const ErosionParameters& p_;
+  const Grid& grid_;
+  SnowLaw snow_;
+  GlacialErosion erosion_;
+  double k_m_;
+  std::vector<IceGround> next_, ground_;  ///< what will be covered, and what the flux stands on
+  std::vector<float> bed_m_, sunk_m_, thickness_m_;
+  IceSurface surface_;
+  IceFlux flux_;
+};
+
+}  // namespace geo
