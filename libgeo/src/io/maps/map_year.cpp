@@ -16,6 +16,10 @@ constexpr std::array<const char*, Climatology::kMonths> kNames{
 constexpr int kColumns = 4, kPanel_px = 340, kGap_px = 14, kMargin_px = 40, kName_px = 26;
 constexpr int kTop_px = 70, kLegend_px = 60;
 
+/// A month's rain has the colours of a year with this many times as much; with twelve, classes would
+/// not end at round numbers.
+constexpr float kRainOfAYear = 12.5F;
+
 /// Where the panels of one quantity stand, four beside each other.
 struct Block {
   int left, top, width, height;  ///< of one panel: width, height
@@ -87,12 +91,10 @@ MapFile draw_year_file(const PlanetMonths& months, std::span<const float> elevat
   const int width_px = warmth.right() + kMargin_px, height_px = rain.bottom() + kLegend_px + 10;
   Canvas canvas(width_px, height_px);
   const ColourMap degrees("temperature"), millimetres("precipitation");
-  // Twelve times a month's rain in the colours of the year's.
-  constexpr float kMonthsAYear = Climatology::kMonths;
   for (int m = 0; m < Climatology::kMonths; ++m) {
     paint_month(canvas, warmth, m, months.temperature_c[m], 1.0F, degrees, elevation_m,
                 months.cells);
-    paint_month(canvas, rain, m, months.precipitation_mm[m], kMonthsAYear, millimetres, elevation_m,
+    paint_month(canvas, rain, m, months.precipitation_mm[m], kRainOfAYear, millimetres, elevation_m,
                 months.cells);
   }
   canvas.pixels_done();
@@ -111,7 +113,7 @@ MapFile draw_year_file(const PlanetMonths& months, std::span<const float> elevat
     }
   }
   legend(canvas, warmth, degrees, 1.0F);
-  legend(canvas, rain, millimetres, kMonthsAYear);
+  legend(canvas, rain, millimetres, kRainOfAYear);
   const auto path = folder / "year.png";
   canvas.save(path);
   return {path, "The year", "Temperature and precipitation of each month.", width_px, height_px};

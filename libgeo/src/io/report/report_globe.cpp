@@ -397,7 +397,8 @@ ordered_json add_months(const PlanetMonths& months, const State& state, const Th
       entry["name"] = map.field->name;
       entry["title"] = fmt::format("{} in {}", map.title, kNames[m]);
       if (!is_warmth) {
-        for (auto& stop : entry["stops"]) stop = stop.get<double>() / Climatology::kMonths;
+        // Not twelve: classes end at round numbers.
+        for (auto& stop : entry["stops"]) stop = stop.get<double>() / 12.5;
         entry["units"] = "mm month-1";
         entry["shown_units"] = "mm per month";
       }

@@ -20,6 +20,7 @@
 #include "io/config/event_words.hpp"
 #include "io/drawing/map_canvas.hpp"
 #include "io/maps/map_set.hpp"
+#include "io/maps/map_year.hpp"
 #include "io/report/report_globe.hpp"
 #include "io/report/side_by_side.hpp"
 
