@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 #include "geo/core/error.hpp"
@@ -43,6 +44,19 @@ TEST(PartsOfSea, AreJoinedOverTheSeamThePolesAndCorners) {
   EXPECT_EQ(count_landlocked(parts, 3000.0, 1e20), 1);
   EXPECT_EQ(count_landlocked(parts, 3000.0, 1.9 * grid.area_m2(3)), 2);
   EXPECT_EQ(count_landlocked({}, 3000.0, 1.0), 0);
+}
+
+TEST(ReliefFigures, SoundsAreSeaBetweenLandWithinReach) {
+  const Grid grid = Grid::sphere(360, 180);
+  std::vector<float> z(grid.size(), -100.0F);
+  const auto land = [&](int i, int j) { z[grid.cell(i, j)] = 100.0F; };
+  // Two walls a cell apart along a meridian, 60 to 69 degrees north: cells of 111 km by 50 km.
+  for (int j = 150; j < 160; ++j) land(100, j), land(102, j);
+  const double between = share_of_sounds(grid, z, 50.0, 6e4);
+  // Beside each wall one cell is coast, between them each cell is a sound; north and south of the
+  // walls the sea is 111 km away.
+  EXPECT_NEAR(between, 1.0 / 3.0, 1e-12);
+  EXPECT_TRUE(std::isnan(share_of_sounds(grid, z, 75.0, 6e4))) << "no coast";
 }
 
 }  // namespace

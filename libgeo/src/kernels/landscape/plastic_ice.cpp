@@ -67,7 +67,11 @@ class March {
       settle_margin(static_cast<Index>(lowest));
     }
     for (Index cell = 0; cell < grid_.size(); ++cell) {
-      if (settled_[cell] != 0 && (!any || touches_ice(cell))) reach_neighbours(cell);
+      if (settled_[cell] != 0) continue;
+      for (int k = 0; k < kDirections; ++k) {
+        const Index margin = grid_.neighbour(cell, k);
+        if (margin != kNoCell && settled_[margin] != 0) reach(cell, margin, k);
+      }
     }
     while (!front_.empty()) {
       const auto [height, cell] = front_.top();
@@ -87,31 +91,26 @@ class March {
     surface_.height_m[cell] = std::max(bed_m_[cell], 0.0F);
     settled_[cell] = 1;
   }
-  [[nodiscard]] bool touches_ice(Index cell) const {
-    for (int k = 0; k < kDirections; ++k) {
-      const Index to = grid_.neighbour(cell, k);
-      if (to != kNoCell && ground_[to] != IceGround::away) return true;
-    }
-    return false;
-  }
   void reach_neighbours(Index from) {
+    const int i = grid_.column(from), j = grid_.row(from);
     for (int k = 0; k < kDirections; ++k) {
-      const Index cell = grid_.neighbour(from, k);
+      const Index cell = grid_.neighbour(i, j, k);
       if (cell == kNoCell || settled_[cell] != 0) continue;
-      const float height =
-          std::max(static_cast<float>(rise(cell, from, k)), surface_.height_m[from]);
-      if (height >= surface_.height_m[cell]) continue;
-      surface_.height_m[cell] = height;
-      surface_.lowest[cell] = from;
-      front_.emplace(height, cell);
+      reach(cell, from, grid_.back_direction(j, k));
     }
   }
-  /// Height of `cell`, reached from a settled neighbour in whose direction k it lies.
-  [[nodiscard]] double rise(Index cell, Index from, int k) const {
+  /// From a settled neighbour, which lies in direction k of `cell`.
+  void reach(Index cell, Index from, int k) {
+    const float height = std::max(static_cast<float>(rise(cell, from, k)), surface_.height_m[from]);
+    if (height >= surface_.height_m[cell]) return;
+    surface_.height_m[cell] = height;
+    surface_.lowest[cell] = from;
+    front_.emplace(height, cell);
+  }
+  [[nodiscard]] double rise(Index cell, Index from, int back) const {
     const double bed = bed_m_[cell], below = surface_.height_m[from];
     if (ground_[cell] == IceGround::bare) return std::max(bed, below);
     const int i = grid_.column(cell), j = grid_.row(cell);
-    const int back = grid_.back_direction(grid_.row(from), k);
     const auto& distance = grid_.distances_m(j);
     const double along = rise_along(bed, below, k_m_ * distance[back]);
     if (back % 2 != 0) return along;  // diagonal

@@ -72,7 +72,7 @@ std::vector<Parameter> ErosionParameters::declarations() {
       real("erosion.ice.glacial_cooling_k", glacial_cooling_k, "K", 0.0, 100.0,
            "by how much the mean of the planet is colder in the cold times than today",
            "tierney2020"),
-      integer("erosion.ice.glacial_cycles", glacial_cycles, "1", 1, 1000,
+      integer("erosion.ice.glacial_cycles", glacial_cycles, "1", 1, 100,
               "times in all that cold and warm ice are found anew", "design"),
       real("erosion.ice.abrasion", abrasion, "1", 0.0, 1.0,
            "lowering of the bed over the way that ice has moved on it", "humphrey1994"),

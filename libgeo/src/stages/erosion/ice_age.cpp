@@ -38,7 +38,7 @@ double IceAge::years_of_step(double before_today_yr) const {
 
 std::vector<double> IceAge::work(const LandClimate& climate, double years_yr,
                                  std::span<float> elevation_m) {
-  constexpr int kGrowing = 4, kMelting = 2;
+  constexpr int kGrowing = 3, kMelting = 2;
   const double cycle_yr = p_.glacial_time_yr / static_cast<double>(p_.glacial_cycles);
   const int cycles = std::max(1, static_cast<int>(std::lround(years_yr / cycle_yr)));
   std::vector<double> let_out_m3(elevation_m.size(), 0.0);
@@ -59,7 +59,7 @@ std::vector<double> IceAge::work(const LandClimate& climate, double years_yr,
 }
 
 void IceAge::settle_today(const LandClimate& climate, std::span<const float> elevation_m) {
-  constexpr int kRounds = 4;
+  constexpr int kRounds = 3;
   const Age today{0.0, 0.0, kRounds};
   settle(climate, today, elevation_m);
   weigh(elevation_m);
@@ -116,7 +116,9 @@ void IceAge::sort_ground(const LandClimate& climate, const Age& age,
       if (stands) {
         const double mean_c = climate.sea_level_temperature_c[c] - cooling -
                               kLapse_K_m * std::max(0.0F, elevation_m[c]);
-        if (frost_of_year(snow_, mean_c, climate.range_k[c]).degree_days <= warmest) {
+        // The mean alone has so many degree-days.
+        const bool may_be = snow_.year_d * mean_c <= warmest;
+        if (may_be && frost_of_year(snow_, mean_c, climate.range_k[c]).degree_days <= warmest) {
           if (next_[c] == IceGround::away) next_[c] = IceGround::bare;
           continue;
         }

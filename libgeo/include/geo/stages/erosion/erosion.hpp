@@ -76,7 +76,9 @@ struct ErosionParameters {
   /// Whether rivers lay down what they cannot carry.
   [[nodiscard]] bool deposits() const { return model == "sediment" && deposition > 0.0; }
   /// Whether ice is looked for at all.
-  [[nodiscard]] bool freezes() const { return ice_model != "none" && discharge == "rain"; }
+  [[nodiscard]] bool freezes() const {
+    return ice_model != "none" && discharge == "rain" && steps > 0;
+  }
 };
 
 /// Landscape evolution, dz/dt = U - K A^m S^n + (G / A) Q + kappa lap(z) on land (Braun & Willett
@@ -87,6 +89,8 @@ struct ErosionParameters {
 /// what was taken from it and sink under what was laid on it. With the discharge "rain" the area A
 /// counts for as much as it yields: the climate stage is run within on a coarse grid, `climates`
 /// times, and runoff over the reference weighs cells; on whole planets whose run has that stage.
+/// There ice forms in the last `glacial_time_yr`, in cold and warm times by turns, and works on its
+/// bed after the rivers; that of today lies on the finished relief, whose surface is then its.
 /// Before the first step and after the last straits join seas behind low sills to the ocean of a
 /// whole planet; those that stay cut off fill to the brim and become land. In the last step rivers
 /// build deltas. With no steps the relief stays as it is and the present rate of incision is

@@ -1,0 +1,157 @@
+// Ice of the erosion stage.
+#include <gtest/gtest.h>
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+
+#include "geo/kernels/numerics/area_sum.hpp"
+#include "geo/stages/erosion/erosion.hpp"
+#include "geo/stages/stages.hpp"
+
+namespace geo {
+namespace {
+
+/// Three continents from pole to pole, with ranges along the middle.
+State freeze_planet(Budget& budget, const std::map<std::string, std::string>& settings = {}) {
+  const Pipeline pipeline = make_pipeline();
+  auto stage = make_erosion_stage();
+  const auto own = stage->parameters();
+  find_parameter(own, "erosion.steps")->set_text("3");
+  for (const auto& [key, text] : settings) find_parameter(own, key)->set_text(text);
+  State state(std::make_shared<const Grid>(Grid::sphere(96, 48)));
+  const Grid& grid = state.grid();
+  const auto z = state.update(field::elevation);
+  for (Index c = 0; c < grid.size(); ++c) {
+    const int across = grid.column(c) % 32;
+    z[c] = across < 16 ? 150.0F * static_cast<float>(std::min(across, 15 - across) + 1) : -4000.0F;
+  }
+  Context context;
+  context.configuration = pipeline.parameters();
+  StageIo io(state, stage->info());
+  stage->run(io, context);
+  budget = context.budget;
+  return state;
+}
+
+template <class Value>
+double land_mean(const State& state, double south_deg, double north_deg, Value&& value) {
+  const Grid& grid = state.grid();
+  const auto z = state.read(field::elevation);
+  double sum = 0.0, area = 0.0;
+  for (Index c = 0; c < grid.size(); ++c) {
+    const double latitude = std::abs(grid.latitude_deg(grid.row(c)));
+    if (z[c] < 0.0F || latitude < south_deg || latitude > north_deg) continue;
+    sum += grid.area_m2(grid.row(c)) * value(c);
+    area += grid.area_m2(grid.row(c));
+  }
+  return sum / area;
+}
+
+TEST(Ice, LiesTowardsThePolesAndElevationIsItsSurface) {
+  Budget budget;
+  const State state = freeze_planet(budget);
+  const auto ice = state.read(field::ice_thickness);
+  const auto z = state.read(field::elevation);
+  const auto thickness = [&](Index c) { return double{ice[c]}; };
+  EXPECT_GT(land_mean(state, 70, 90, thickness), 500.0);
+  EXPECT_LT(land_mean(state, 0, 40, thickness), 1.0);
+  for (Index c = 0; c < state.grid().size(); ++c) {
+    EXPECT_TRUE(ice[c] == 0.0F || ice[c] >= 1.0F);
+    if (ice[c] > 0.0F) EXPECT_GT(z[c], 0.0F);
+  }
+  const double volume = area_sum<double>(state.grid(), thickness);
+  EXPECT_NEAR(budget.at("ice_m3"), volume, 1e-9 * volume);
+}
+
+TEST(Ice, BudgetsOfIceRockAndSedimentClose) {
+  for (const char* model : {"sediment", "detachment"}) {
+    Budget budget;
+    (void)freeze_planet(budget, {{"erosion.model", model}});
+    EXPECT_GT(budget.at("ice_snow_m3_yr"), 0.0);
+    EXPECT_GT(budget.at("ice_melt_m3_yr"), 0.0);
+    for (const auto& [name, value] : budget) {
+      if (name.ends_with("closing_error")) EXPECT_LT(std::abs(value), 1e-12) << model << name;
+    }
+  }
+}
+
+TEST(Ice, OfColdTimesWorksWhereThatOfTodayDoesNotReach) {
+  Budget warm, cold, none;
+  const State state = freeze_planet(cold);
+  const State without = freeze_planet(warm, {{"erosion.ice.glacial_share", "0"}});
+  const auto scoured = [](const State& s) {
+    const auto taken = s.read(field::glacial_erosion);
+    return land_mean(s, 45, 65, [&](Index c) { return std::max(0.0, double{taken[c]}); });
+  };
+  EXPECT_GT(scoured(state), 1.5 * scoured(without));
+  EXPECT_GT(cold.at("rock_eroded_m3"), warm.at("rock_eroded_m3"));
+  const auto taken = state.read(field::glacial_erosion);
+  EXPECT_LT(land_mean(state, 0, 20, [&](Index c) { return std::abs(double{taken[c]}); }), 1.0);
+  const State bare = freeze_planet(none, {{"erosion.ice.model", "none"}});
+  EXPECT_FALSE(bare.has(field::ice_thickness));
+  EXPECT_EQ(none.count("ice_m3"), 0U);
+}
+
+TEST(Ice, LetsTheSeaIntoColdCoasts) {
+  Budget with, without;
+  const State state = freeze_planet(with),
+              bare = freeze_planet(without, {{"erosion.ice.abrasion", "0"}});
+  const auto sea = [](const State& s) {
+    const auto z = s.read(field::elevation);
+    const Grid& grid = s.grid();
+    double sum = 0.0;
+    for (Index c = 0; c < grid.size(); ++c) {
+      const bool cold = std::abs(grid.latitude_deg(grid.row(c))) > 55.0;
+      if (cold && z[c] < 0.0F) sum += grid.area_m2(grid.row(c));
+    }
+    return sum;
+  };
+  EXPECT_GT(sea(state), sea(bare));
+}
+
+TEST(Ice, HoldsTheGroundDownAsFarAsMantleFloatsIt) {
+  Budget with, without;
+  const State state = freeze_planet(with, {{"erosion.ice.abrasion", "0"}});
+  const State stiff =
+      freeze_planet(without, {{"erosion.ice.abrasion", "0"}, {"erosion.ice.model", "none"}});
+  const auto ice = state.read(field::ice_thickness);
+  const auto surface = state.read(field::elevation), ground = stiff.read(field::elevation);
+  double sunk = 0.0, load = 0.0;
+  const Grid& grid = state.grid();
+  for (Index c = 0; c < grid.size(); ++c) {
+    if (ice[c] <= 0.0F || ground[c] < 0.0F) continue;
+    sunk += grid.area_m2(grid.row(c)) * (ground[c] - (surface[c] - ice[c]));
+    load += grid.area_m2(grid.row(c)) * ice[c];
+  }
+  // 910 / 3300, less what the plate carries beside the ice.
+  EXPECT_GT(sunk / load, 0.20);
+  EXPECT_LT(sunk / load, 0.31);
+}
+
+#ifdef _OPENMP
+TEST(Ice, SameBitsForAnyNumberOfThreads) {
+  const int threads = omp_get_max_threads();
+  Budget one, four;
+  omp_set_num_threads(1);
+  const State first = freeze_planet(one);
+  omp_set_num_threads(4);
+  const State second = freeze_planet(four);
+  omp_set_num_threads(threads);
+  const auto same = [&](const Field<float>& field) {
+    const auto a = first.read(field), b = second.read(field);
+    return std::equal(a.begin(), a.end(), b.begin());
+  };
+  EXPECT_TRUE(same(field::elevation));
+  EXPECT_TRUE(same(field::ice_thickness));
+  EXPECT_TRUE(same(field::glacial_erosion));
+  EXPECT_EQ(one, four);
+}
+#endif
+
+}  // namespace
+}  // namespace geo
