@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <grp.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -90,14 +89,19 @@ void Running::send(int signal_number) const {
   if (!ended_) ::kill(process_, signal_number);
 }
 
-void Running::note(int status) {
+void Running::note(int status, const rusage& used) {
   ended_ = true;
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  processor_s_ = seconds(used.ru_utime) + seconds(used.ru_stime);
   code_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
 bool Running::alive() {
   int status = 0;
-  if (!ended_ && ::waitpid(process_, &status, WNOHANG) == process_) note(status);
+  rusage used{};
+  if (!ended_ && ::wait4(process_, &status, WNOHANG, &used) == process_) note(status, used);
   return !ended_;
 }
 
@@ -111,8 +115,9 @@ bool Running::until(const std::function<bool()>& condition) {
 
 Outcome Running::finish() {
   int status = 0;
-  if (!ended_ && ::waitpid(process_, &status, 0) == process_) note(status);
-  return {code_, text_of(folder_ / "out"), text_of(folder_ / "err")};
+  rusage used{};
+  if (!ended_ && ::wait4(process_, &status, 0, &used) == process_) note(status, used);
+  return {code_, text_of(folder_ / "out"), text_of(folder_ / "err"), processor_s_};
 }
 
 std::string Running::err_so_far() const { return text_of(folder_ / "err"); }

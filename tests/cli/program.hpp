@@ -1,5 +1,6 @@
 #pragma once
 
+#include <sys/resource.h>
 #include <sys/types.h>
 
 #include <filesystem>
@@ -14,6 +15,7 @@ namespace geo {
 struct Outcome {
   int code = -1;  ///< exit code, or 128 + signal as a shell shows it
   std::string out, err;
+  double processor_s = 0.0;  ///< of all its threads, however busy the machine is
 };
 
 /// How `terrane` is called: arguments and circumstances.
@@ -48,12 +50,13 @@ class Running {
   [[nodiscard]] std::string environment() const;
 
  private:
-  void note(int status);
+  void note(int status, const rusage& used);
 
   std::filesystem::path folder_;
   pid_t process_ = -1;
   bool ended_ = false;
   int code_ = -1;
+  double processor_s_ = 0.0;
 };
 
 /// Runs `terrane` to its end.

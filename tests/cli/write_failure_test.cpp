@@ -4,6 +4,7 @@
 #include <sys/mount.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
 
 #include "cli/folder_contents.hpp"
@@ -106,6 +107,26 @@ TEST(WriteFailure, APlanetFromItsSeedTellsItToo) {
                .working_folder = {},
                .file_size_limit_bytes = 60000L});
   expect_refusal(outcome, "cannot write ", "File too large");
+  expect_no_temporary_files(folder / "out");
+}
+
+// The library that writes pictures has a word of its own on standard error unless it is kept from
+// it.
+TEST(WriteFailure, PicturesTellItInOneLine) {
+  const TemporaryFolder folder;
+  ReliefFile{}.write(folder / "relief.nc");
+  ASSERT_EQ(terrane(quick_run(folder / "relief.nc", folder / "out")).code, 0);
+  const Outcome outcome = terrane({.arguments = {"maps", folder / "out"},
+                                   .environment = {},
+                                   .working_folder = {},
+                                   .file_size_limit_bytes = 20000L});
+  EXPECT_EQ(outcome.code, 4);
+  const auto lines = lines_of(outcome.err);
+  EXPECT_EQ(std::count_if(lines.begin(), lines.end(),
+                          [](const auto& line) { return line.find("rror") != line.npos; }),
+            1)
+      << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr(".png: File too large"));
   expect_no_temporary_files(folder / "out");
 }
 

@@ -242,6 +242,31 @@ class Faults:
             shutil.rmtree(self.folder / f"{name}-away", ignore_errors=True)
         print(f"{name}: folder removed, replaced and read-only", flush=True)
 
+    def rights_lost(self, name, arguments):
+        """The folder's rights go in mid-run: of a user who has none beyond them."""
+        powers = "-dac_override,-dac_read_search"
+        bound = ["setpriv", "--bounding-set", powers, "--inh-caps", powers] if os.geteuid() == 0 else []
+        if bound and subprocess.run([*bound, "true"], capture_output=True, check=False).returncode != 0:
+            self.skipped.append("rights lost: may not give up root's")
+            return
+        straight, _ = self.straight(name, arguments)
+        for mode in (0o500, 0o000):
+            for begun in ("config.toml", "02-isostasy.nc"):
+                what = f"rights of the folder {mode:03o} once {begun} is there"
+                out = self.folder / f"{name}-rights"
+                shutil.rmtree(out, ignore_errors=True)
+                running = subprocess.Popen([*bound, self.program, *arguments, "-o", str(out)], stdin=subprocess.DEVNULL,
+                                           stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=self.environment)
+                while not (out / begun).exists() and running.poll() is None:
+                    time.sleep(0.002)
+                out.chmod(mode)
+                code, _, err = self.finish(running)
+                out.chmod(0o700)
+                require(code == 4, f"{what}: exit {code}: {err}")
+                self.one_line(err, what)
+                self.resumed(arguments, out, straight)
+        print(f"{name}: rights of the folder lost at 4 moments", flush=True)
+
     def streams(self):
         """Closed and broken standard streams."""
         out = self.folder / "streams"
@@ -303,6 +328,7 @@ def main():
         faults.locales()
         faults.signals("planet", PLANET)
         faults.folder_taken("planet-folder", PLANET)
+        faults.rights_lost("planet-rights", PLANET)
         faults.full_disk("planet-disk", PLANET, chosen.levels)
         faults.disk_that_fills("planet-filling", PLANET, chosen.levels)
         faults.kills("planet-kills", PLANET, chosen.kills)

@@ -302,6 +302,31 @@ TEST(Plates, OfOceansCarryTheAgeOfTheirFloor) {
   }
 }
 
+// A stagnant lid: nothing moves, nothing meets, and no ridge makes floor.
+TEST(Plates, OnePlateHasNoBoundaries) {
+  PlatesParameters p;
+  p.growth.count = 1;
+  const State state = planet(64, 7, p);
+  const auto same = [&](const auto& values, auto value) {
+    return std::all_of(values.begin(), values.end(), [&](auto v) { return v == value; });
+  };
+  EXPECT_TRUE(same(state.read(field::plate_id), 0));
+  EXPECT_TRUE(same(state.read(field::boundary_type), 0));
+  EXPECT_TRUE(same(state.read(field::boundary_strength), 0.0F));
+  EXPECT_TRUE(same(state.read(field::orogeny_type), 0));
+  EXPECT_TRUE(same(state.read(field::plate_velocity_east), 0.0F));
+  EXPECT_TRUE(same(state.read(field::plate_velocity_north), 0.0F));
+  const auto land = state.read(field::continental_fraction);
+  const auto age_myr = state.read(field::crust_age);
+  int floor = 0;
+  for (Index c = 0; c < state.grid().size(); ++c) {
+    if (land[c] >= 0.5F) continue;
+    ASSERT_EQ(age_myr[c], static_cast<float>(p.oldest_floor_myr));
+    ++floor;
+  }
+  EXPECT_GT(floor, state.grid().size() / 3);
+}
+
 TEST(Plates, OfPlanetsOfAnySizeGrow) {
   for (const double radius_km : {1.0, 1e6}) {
     State state(std::make_shared<Grid>(Grid::sphere(64, 32, {1e3 * radius_km, 0.0})));

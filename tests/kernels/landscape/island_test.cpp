@@ -362,7 +362,7 @@ TEST(RiverCourses, ThatRunAlongTheEdgeAndMeetNearItLeaveTogether) {
   std::vector<double> area(river.fine.size());
   std::vector<float> inflow(river.fine.size());
   const auto crossings = find_inflow(river.cells, river.water(), river.z, area, inflow);
-  ASSERT_EQ(crossings.size(), 3U);  // two come in, one goes out
+  ASSERT_EQ(crossings.rivers.size(), 3U);  // two come in, one goes out
   std::vector<std::uint8_t> outlets = find_outlets(river.fine, river.z);
   for (Index c = 0; c < river.fine.size(); ++c) {
     if (area[c] > 0.0) outlets[c] = 0;
@@ -372,7 +372,7 @@ TEST(RiverCourses, ThatRunAlongTheEdgeAndMeetNearItLeaveTogether) {
   std::vector<double> water(inflow.begin(), inflow.end());
   route_water(river.fine, river.z, outlets).graph.accumulate(water);
   double most_m3_s = 0.0;
-  for (const RiverCrossing& crossing : crossings) {
+  for (const RiverCrossing& crossing : crossings.rivers) {
     most_m3_s = std::max(most_m3_s, water[crossing.edge_cell]);
   }
   // Less what falls within the plane.
@@ -385,8 +385,9 @@ TEST(Inflow, RiverEntersWithWhatGatheredOutside) {
   std::vector<double> area(river.fine.size());
   std::vector<float> inflow(river.fine.size());
   const auto crossings = find_inflow(river.cells, river.water(), river.z, area, inflow);
-  ASSERT_EQ(crossings.size(), 2U);  // in and out
-  const Index first = crossings.front().planet_cell, second = crossings.back().planet_cell;
+  ASSERT_EQ(crossings.rivers.size(), 2U);  // in and out
+  const Index first = crossings.rivers.front().planet_cell,
+              second = crossings.rivers.back().planet_cell;
   const Index in = river.area_m2[first] < river.area_m2[second] ? first : second;
   double entered_m2 = 0.0, entered_m3_s = 0.0;
   for (Index c = 0; c < river.fine.size(); ++c) {
@@ -411,7 +412,7 @@ TEST(RiverCourses, LeaveNoDamAndRaiseNothing) {
   // Whether water gets from where it comes in to where it goes out without rising higher.
   const auto passes_below = [&](float limit_m) {
     std::vector<std::uint8_t> reached(river.fine.size());
-    std::vector<Index> front{crossings.back().edge_cell};
+    std::vector<Index> front{crossings.rivers.back().edge_cell};
     while (!front.empty()) {
       const Index c = front.back();
       front.pop_back();
@@ -421,10 +422,10 @@ TEST(RiverCourses, LeaveNoDamAndRaiseNothing) {
         if (const Index next = river.fine.neighbour(c, k); next != kNoCell) front.push_back(next);
       }
     }
-    return reached[crossings.front().edge_cell] != 0;
+    return reached[crossings.rivers.front().edge_cell] != 0;
   };
-  const float river_m =
-      std::max(river.z[crossings.front().edge_cell], river.z[crossings.back().edge_cell]);
+  const float river_m = std::max(river.z[crossings.rivers.front().edge_cell],
+                                 river.z[crossings.rivers.back().edge_cell]);
   EXPECT_FALSE(passes_below(river_m + 50.0F)) << "interpolation dams nothing: no case";
   const std::vector<float> before = river.z;
   RiverCourses courses = trace_river_courses(river.cells, river.water(), crossings, 1, river.z);
@@ -433,7 +434,7 @@ TEST(RiverCourses, LeaveNoDamAndRaiseNothing) {
   for (Index c = 0; c < river.fine.size(); ++c) {
     ASSERT_LE(river.z[c], before[c]);
     if (!river.fine.is_open_edge(river.fine.column(c), river.fine.row(c))) continue;
-    if (c == crossings.front().edge_cell || c == crossings.back().edge_cell) continue;
+    if (c == crossings.rivers.front().edge_cell || c == crossings.rivers.back().edge_cell) continue;
     ASSERT_EQ(river.z[c], before[c]);
   }
 }

@@ -100,10 +100,14 @@ void write_chunk(png_structp png, const char* name, std::span<const std::uint8_t
   png_write_chunk(png, reinterpret_cast<png_const_bytep>(name), data.data(), data.size());
 }
 
+/// What libpng does not like ends in setjmp, without the line that it would print itself.
+[[noreturn]] void give_up(png_structp png, png_const_charp /*message*/) { png_longjmp(png, 1); }
+void ignore(png_structp /*png*/, png_const_charp /*message*/) {}
+
 // Kept free of objects with destructors, for libpng leaves it with longjmp on errors.
 bool write_chunks(std::FILE* stream, std::span<const std::uint8_t> header,
                   std::span<const std::uint8_t> image) {
-  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, give_up, ignore);
   if (png == nullptr) return false;
   if (setjmp(png_jmpbuf(png)) != 0) {
     png_destroy_write_struct(&png, nullptr);

@@ -282,13 +282,15 @@ std::vector<float> winding(const PlanetCells& cells, std::uint64_t seed) {
 }  // namespace
 
 RiverCourses trace_river_courses(const PlanetCells& cells, const PlanetWater& water,
-                                 std::span<const RiverCrossing> crossings, std::uint64_t seed,
+                                 const Crossings& crossings, std::uint64_t seed,
                                  std::span<const float> elevation_m) {
   const std::vector<float> noise = winding(cells, seed);
   Beds beds(cells, water, elevation_m);
   Network network(cells.fine(), elevation_m, noise, beds.strip());
   std::map<Index, Index> crossing_of;
-  for (const auto& [planet_cell, edge_cell] : crossings) crossing_of[planet_cell] = edge_cell;
+  for (const auto& [planet_cell, edge_cell] : crossings.rivers) {
+    crossing_of[planet_cell] = edge_cell;
+  }
 
   // For each place of the courses, the planet cell that its step goes to.
   std::vector<Index> goal_of;
@@ -313,6 +315,17 @@ RiverCourses trace_river_courses(const PlanetCells& cells, const PlanetWater& wa
     }
     goal_of.resize(network.size(), to);
     on_lake.resize(network.size(), beds.on_lake(from) && beds.on_lake(to) ? 1 : 0);
+  }
+  for (const auto& [cell, edge_cell] : crossings.brooks) {
+    const End goal = beds(cell);
+    // Where nothing goes on there is no river to go to.
+    if (network.place(edge_cell) != Network::kNone || network.place(goal.cell) == Network::kNone) {
+      continue;
+    }
+    const double level_m = std::max(0.0, static_cast<double>(elevation_m[edge_cell]));
+    const auto joins = [&](std::int32_t /*place*/) { return true; };
+    network.connect({edge_cell, level_m}, goal, std::max(2, 2 * beds.reach(cell)), joins, true);
+    on_lake.resize(network.size(), 0);
   }
   RiverCourses courses = network.take();
   constexpr float kSteepest = 0.15F, kUneven = 0.8F;

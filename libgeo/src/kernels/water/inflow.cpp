@@ -74,15 +74,17 @@ bool falls_inward(const Grid& fine, Index edge_cell, std::span<const float> z) {
   return false;
 }
 
-/// Lowest of some edge cells that falls inward and where nothing leaves; kNoCell if there is none.
+/// Of some edge cells that fall inward and where nothing leaves, the lowest that is not below a
+/// level, or else the highest; kNoCell if there is none.
 Index lowest_inward(const Grid& fine, std::span<const Index> edge, std::span<const float> z,
-                    std::span<const std::uint8_t> leaves) {
-  Index lowest = kNoCell;
+                    std::span<const std::uint8_t> leaves, float level_m) {
+  Index best = kNoCell;
   for (const Index c : edge) {
     if (leaves[c] != 0 || !falls_inward(fine, c, z)) continue;
-    if (lowest == kNoCell || z[c] < z[lowest]) lowest = c;
+    const bool high = z[c] >= level_m;
+    if (best == kNoCell || (z[best] < level_m ? z[c] > z[best] : high && z[c] < z[best])) best = c;
   }
-  return lowest;
+  return best;
 }
 
 /// A step of the planet's water over the edge.
@@ -111,10 +113,9 @@ std::vector<Passage> find_passages(const PlanetCells& cells, const PlanetWater& 
 
 }  // namespace
 
-std::vector<RiverCrossing> find_inflow(const PlanetCells& cells, const PlanetWater& water,
-                                       std::span<float> elevation_m,
-                                       std::span<double> inflow_area_m2,
-                                       std::span<float> inflow_m3_s) {
+Crossings find_inflow(const PlanetCells& cells, const PlanetWater& water,
+                      std::span<float> elevation_m, std::span<double> inflow_area_m2,
+                      std::span<float> inflow_m3_s) {
   const Grid& planet = cells.planet();
   const PlanetWindow window(cells, water.receiver);
   const Discharge discharge(cells, water);
@@ -131,7 +132,7 @@ std::vector<RiverCrossing> find_inflow(const PlanetCells& cells, const PlanetWat
     return std::max(0.0, planet.area_m2(planet.row(cell)) - inside);
   };
 
-  std::vector<RiverCrossing> crossings;
+  Crossings crossings;
   std::map<Index, Index> entry_of;
   std::vector<std::uint8_t> taken(elevation_m.size()), leaves(elevation_m.size());
   for (const auto& [from, to, outward] : find_passages(cells, water, window)) {
@@ -142,14 +143,14 @@ std::vector<RiverCrossing> find_inflow(const PlanetCells& cells, const PlanetWat
                                     : window.frame().crossing(start, end, reach_m);
     const Index lowest = lowest_land(stretch, elevation_m, taken);
     if (lowest == kNoCell) {  // straight into the sea, or out of it
-      if (outward) crossings.push_back({from, stretch.middle()});
+      if (outward) crossings.rivers.push_back({from, stretch.middle()});
       continue;
     }
     const double way = outward ? 1.0 - stretch.share : stretch.share;
     const double level_m = std::lerp(std::max(water.elevation_m[from], 0.0F),
                                      std::max(water.elevation_m[to], 0.0F), way);
     elevation_m[lowest] = std::min(elevation_m[lowest], static_cast<float>(level_m));
-    crossings.push_back({from, lowest});
+    crossings.rivers.push_back({from, lowest});
     taken[lowest] = 1;
     if (outward) {
       leaves[lowest] = 1;
@@ -162,10 +163,12 @@ std::vector<RiverCrossing> find_inflow(const PlanetCells& cells, const PlanetWat
   for (const auto& [cell, edge] : land_edges(cells, elevation_m)) {
     if (!window.inside(cell) || water.elevation_m[cell] < 0.0F) continue;
     const auto river = entry_of.find(cell);
-    const Index entry = river != entry_of.end()
-                            ? river->second
-                            : lowest_inward(cells.fine(), edge, elevation_m, leaves);
-    if (entry != kNoCell) enter(entry, cell, outside_m2(cell));
+    const Index entry = river != entry_of.end() ? river->second
+                                                : lowest_inward(cells.fine(), edge, elevation_m,
+                                                                leaves, water.elevation_m[cell]);
+    if (entry == kNoCell) continue;
+    enter(entry, cell, outside_m2(cell));
+    if (river == entry_of.end()) crossings.brooks.push_back({cell, entry});
   }
   return crossings;
 }

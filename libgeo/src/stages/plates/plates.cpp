@@ -17,7 +17,7 @@ std::vector<Parameter> PlatesParameters::declarations() {
              "collide and break on a sphere through time; drift and collide as height maps on a "
              "torus; or there is one at rest whose heights follow a hypsography",
              "cortial2019"),
-      integer("plates.count", growth.count, "1", 2, 100, "number of plates", "tectonica2026"),
+      integer("plates.count", growth.count, "1", 1, 100, "number of plates", "tectonica2026"),
       real("plates.speed_cm_yr", growth.speed_cm_yr, "cm yr-1", 0.1, 50.0,
            "middle of the plates' speeds", "tectonica2026"),
       real("plates.growth.mantle_heat", growth.mantle_heat, "1", 0.0, 1.0,

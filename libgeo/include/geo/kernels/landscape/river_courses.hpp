@@ -24,7 +24,8 @@ inline constexpr std::int32_t kCourseEnds = -1;
 ///
 /// The water of each planet cell gets a course from the lowest place near the centre of the cell to
 /// that near the centre of the next, or to another course that goes there as well; at the edge,
-/// from or to where it crosses. It is the path of least
+/// from or to where it crosses. Brooks come last and end in the first course they meet. It is the
+/// path of least
 ///   integral of exp(1.2 n) (1 + 6 s^2) (1 + max(0, z - b) / 20 m) ds,
 /// b = level - min(level / 2, 100 m), level = the planet's, linear between, n = noise of unit
 /// variance, s = 1 at the edge to 0 an eighth of a planet cell from it, over the fine relief. It
@@ -34,7 +35,7 @@ inline constexpr std::int32_t kCourseEnds = -1;
 /// plains near the level of the sea have no other way out. `elevation_m`: one value per fine cell.
 /// Cost: n log n in the fine cells that each step passes. The same bits for any number of threads.
 RiverCourses trace_river_courses(const PlanetCells& cells, const PlanetWater& water,
-                                 std::span<const RiverCrossing> crossings, std::uint64_t seed,
+                                 const Crossings& crossings, std::uint64_t seed,
                                  std::span<const float> elevation_m);
 
 /// Opens courses in a relief, so that what flows in one of them stays in it.

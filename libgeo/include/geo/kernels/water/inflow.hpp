@@ -24,6 +24,13 @@ struct RiverCrossing {
   Index edge_cell = kNoCell;    ///< of the fine grid
 };
 
+/// Where water of a planet crosses the edge of a part of it.
+struct Crossings {
+  std::vector<RiverCrossing> rivers;  ///< in and out; straight out to sea, the sea there
+  /// Where what falls on the part of a cell beyond the edge comes in without a river.
+  std::vector<RiverCrossing> brooks;
+};
+
 /// Water that enters a part of a planet from outside, for a fine plane in an equal-area projection.
 ///
 /// A planet cell counts as inside if its centre lies on the plane, or less than half a cell beyond
@@ -33,15 +40,14 @@ struct RiverCrossing {
 /// cell sinks to the planet's level, interpolated between the two, so that the coarse relief dams
 /// no river at the edge. What gathered outside (drainage area and discharge) enters there. What
 /// falls on as much of an inside cell as lies beyond the edge comes in with the largest of its
-/// rivers from outside, or else at the lowest of its edge cells whose ground falls inward. So
-/// rivers keep their area and discharge, and no ground counts twice. No edge cell that water comes
+/// rivers from outside, or else as a brook, at the lowest of its edge cells whose ground falls
+/// inward and is not below the planet's, from which it can get to the river of that cell. So rivers
+/// keep their area and discharge, and no ground counts twice. No edge cell that water comes
 /// in over is to be an outlet; where water leaves, none enters. On a lake, whose cells all carry
 /// the discharge of the whole, discharge goes by the share of the drainage area. Outputs: one value
-/// per fine cell, 0 elsewhere; `elevation_m` of the fine cells: in and out. Returns every crossing,
-/// in and out, and, where water goes straight out to sea, the sea there.
-std::vector<RiverCrossing> find_inflow(const PlanetCells& cells, const PlanetWater& water,
-                                       std::span<float> elevation_m,
-                                       std::span<double> inflow_area_m2,
-                                       std::span<float> inflow_m3_s);
+/// per fine cell, 0 elsewhere; `elevation_m` of the fine cells: in and out.
+Crossings find_inflow(const PlanetCells& cells, const PlanetWater& water,
+                      std::span<float> elevation_m, std::span<double> inflow_area_m2,
+                      std::span<float> inflow_m3_s);
 
 }  // namespace geo
