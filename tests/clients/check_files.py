@@ -29,6 +29,8 @@ STANDARD_NAMES = {
     "eastward_wind": "m s-1",
     "northward_wind": "m s-1",
     "water_volume_transport_in_river_channel": "m3 s-1",
+    "land_ice_thickness": "m",
+    "sea_ice_area_fraction": "1",
     "projection_x_coordinate": "m",
     "projection_y_coordinate": "m",
 }
