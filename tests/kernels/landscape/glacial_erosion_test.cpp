@@ -145,7 +145,7 @@ TEST(GlacialErosion, MorainesLieWhereIceEnds) {
   for (Index c = 0; c < grid.size(); ++c) {
     const int i = grid.column(c);
     z[c] = static_cast<float>(10.0 + 20.0 * i + 100.0 * std::abs(grid.row(c) - 4));
-    balance[c] = i > 30 ? 1.0F : -6.0F;
+    balance[c] = i > 30 ? 1.0F : -25.0F;
     if (i == 0) ground[c] = IceGround::away;
   }
   const auto before = z;
