@@ -87,11 +87,17 @@ class Faults:
         left = [p.name for p in out.rglob("*") if p.name.endswith(".tmp")]
         require(not left, f"temporary files are left: {left}")
 
+    @staticmethod
+    def ended(out):
+        """Whether all has been done; --resume alone would go on beyond its --to."""
+        manifest = out / "manifest.json"
+        return manifest.exists() and json.loads(manifest.read_text())["complete"]
+
     def resumed(self, arguments, out, straight, codes=(0,)):
         """The folder goes on to what the undisturbed run has made."""
         if not (out / "config.toml").exists():  # ended before anything was written
             resume = [*arguments, "--overwrite"]
-        elif arguments[0] == "calibrate":
+        elif arguments[0] == "calibrate" or self.ended(out):
             resume = [*arguments, "--resume"]
         else:
             resume = ["run", "--resume"]
@@ -117,7 +123,7 @@ class Faults:
             running = self.start(arguments, out)
             for life in range(self.random.choice((1, 1, 2))):  # some are killed in their second life too
                 if life > 0:
-                    if arguments[0] != "run" or not (out / "config.toml").exists():
+                    if arguments[0] != "run" or not (out / "config.toml").exists() or self.ended(out):
                         break
                     running = self.start(["run", "--resume"], out)
                 try:
