@@ -129,7 +129,8 @@ class Faults:
                 begun = time.monotonic()
                 try:
                     running.wait(self.random.uniform(0.0, seconds))
-                    seconds = min(seconds, time.monotonic() - begun)  # the machine has become less busy
+                    if life == 0:  # it has done all: the machine is less busy than it was
+                        seconds = min(seconds, time.monotonic() - begun)
                 except subprocess.TimeoutExpired:
                     hit += 1
                 running.kill()
