@@ -22,9 +22,9 @@ PLANET = ["run", "--preset", "preview", "--grid", "96x48", "--to", "island", "--
           "--threads", "2"]
 DRIFT = ["run", "--preset", "sphere", "--grid", "64x32", "--to", "erosion", "--no-maps", "--set",
          "plates.sphere.samples=3000", "--set", "plates.sphere.time_myr=120", "--set", "plates.sphere.frames_myr=10", "--threads", "2"]
-FIT = ["calibrate", "--target", "earth", "--preset", "preview", "--set", "run.grid=64x32", "--set",
-       "calibration.seeds=1", "--set", "calibration.held_out_seeds=1", "--set", "calibration.iterations=6",
-       "--threads", "2"]
+FIT = ["calibrate", "--target", "earth", "--preset", "preview", "--set", "calibration.grid=64x32", "--set",
+       "calibration.seeds=1", "--set", "calibration.held_out=2", "--set", "calibration.held_out_grid=", "--set",
+       "calibration.iterations=3", "--set", "climate.resolution_deg=10", "--threads", "2"]
 
 
 class Failure(Exception):
@@ -87,11 +87,17 @@ class Faults:
         left = [p.name for p in out.rglob("*") if p.name.endswith(".tmp")]
         require(not left, f"temporary files are left: {left}")
 
+    @staticmethod
+    def ended(out):
+        """Whether all has been done; --resume alone would go on beyond its --to."""
+        manifest = out / "manifest.json"
+        return manifest.exists() and json.loads(manifest.read_text())["complete"]
+
     def resumed(self, arguments, out, straight, codes=(0,)):
         """The folder goes on to what the undisturbed run has made."""
         if not (out / "config.toml").exists():  # ended before anything was written
             resume = [*arguments, "--overwrite"]
-        elif arguments[0] == "calibrate":
+        elif arguments[0] == "calibrate" or self.ended(out):
             resume = [*arguments, "--resume"]
         else:
             resume = ["run", "--resume"]
@@ -117,11 +123,14 @@ class Faults:
             running = self.start(arguments, out)
             for life in range(self.random.choice((1, 1, 2))):  # some are killed in their second life too
                 if life > 0:
-                    if arguments[0] != "run" or not (out / "config.toml").exists():
+                    if arguments[0] != "run" or not (out / "config.toml").exists() or self.ended(out):
                         break
                     running = self.start(["run", "--resume"], out)
+                begun = time.monotonic()
                 try:
                     running.wait(self.random.uniform(0.0, seconds))
+                    if life == 0:  # it has done all: the machine is less busy than it was
+                        seconds = min(seconds, time.monotonic() - begun)
                 except subprocess.TimeoutExpired:
                     hit += 1
                 running.kill()
