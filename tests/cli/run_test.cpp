@@ -152,9 +152,11 @@ TEST_F(Run, PredictsTheFilesOfAnIslandOfAnySize) {
   EXPECT_LT(predicted, 2.5 * written);
 }
 
-// Most of a small run is its climates, three of them, which cost what their air does. What is
-// predicted holds for a machine as busy as it is just then, hence the least of some.
+// Most of a small run is its climates, three of them, which cost what their air does. A machine
+// that is busy with other tests slows some down and not others, so that only the two runs are held
+// against each other closely, and each against its prediction within an order of size.
 TEST_F(Run, PredictsTheTimeOfDearAndCheapClimates) {
+  std::vector<double> took_s, predicted_s;
   for (const std::string air_deg : {"3", "10"}) {
     SCOPED_TRACE(air_deg);
     std::vector<std::string> arguments{
@@ -166,16 +168,17 @@ TEST_F(Run, PredictsTheTimeOfDearAndCheapClimates) {
     const Outcome ran = terrane(arguments);
     ASSERT_EQ(ran.code, 0) << ran.err;
     arguments.emplace_back("--dry-run");
-    double least_s = 1e9;
-    for (int k = 0; k < 5; ++k) {
-      const std::string told = terrane(arguments).out;
-      const auto at = told.find("time    about ");
-      ASSERT_NE(at, std::string::npos) << told;
-      least_s = std::min(least_s, std::stod(told.substr(at + 14)));
-    }
-    EXPECT_GT(least_s, 0.5 * ran.processor_s);
-    EXPECT_LT(least_s, 2.5 * ran.processor_s);
+    const std::string told = terrane(arguments).out;
+    const auto at = told.find("time    about ");
+    ASSERT_NE(at, std::string::npos) << told;
+    took_s.push_back(ran.processor_s);
+    predicted_s.push_back(std::stod(told.substr(at + 14)));
+    EXPECT_GT(predicted_s.back(), 0.2 * took_s.back());
+    EXPECT_LT(predicted_s.back(), 5.0 * took_s.back());
   }
+  const double dearer = took_s[0] / took_s[1], told_dearer = predicted_s[0] / predicted_s[1];
+  EXPECT_GT(told_dearer, 0.5 * dearer);
+  EXPECT_LT(told_dearer, 2.5 * dearer);
 }
 
 TEST_F(Run, QuietSaysNothing) {

@@ -12,7 +12,7 @@ const std::map<std::string_view, std::string_view> kStandardNames{
     {"height_above_mean_sea_level", "m"}, {"air_temperature", "K"},
     {"lwe_precipitation_rate", "m s-1"},  {"eastward_wind", "m s-1"},
     {"northward_wind", "m s-1"},          {"water_volume_transport_in_river_channel", "m3 s-1"},
-    {"land_ice_thickness", "m"},
+    {"land_ice_thickness", "m"},          {"sea_ice_area_fraction", "1"},
 };
 
 TEST(Vocabulary, HasOneRowPerName) {

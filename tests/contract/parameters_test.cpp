@@ -23,7 +23,7 @@ std::vector<std::string> spellings(std::string base) {
   static const std::map<std::string, std::vector<std::string>> kShort{
       {"day", {"d"}},     {"degree", {"deg"}}, {"degC", {"degc", "c"}}, {"K", {"k", "c"}},
       {"Mm", {"1000km"}}, {"hPa", {"hpa"}},    {"Pa", {"pa"}},          {"N", {"n"}},
-      {"W", {"w"}},       {"J", {"j"}},        {"Myr", {"myr"}}};
+      {"W", {"w"}},       {"J", {"j"}},        {"Myr", {"myr"}},        {"kPa", {"kpa"}}};
   const auto known = kShort.find(base);
   if (known != kShort.end()) return known->second;
   return {base};
@@ -62,9 +62,11 @@ TEST_F(EveryParameter, HasANameOfItsOwnInTheSectionOfItsOwner) {
   std::set<std::string_view> names;
   for (const Parameter& p : all) {
     EXPECT_TRUE(names.insert(p.name).second) << p.name << " is declared twice";
-    // "stage.key", or "stage.model.key" of one of the stage's models.
+    // "stage.key", "stage.model.key" of one of the stage's models, or "stage.process.key" of a
+    // process that has models of its own.
     const std::string_view section = p.section();
-    if (const auto dot = section.find('.'); dot != std::string_view::npos) {
+    const bool is_process = find_parameter(all, std::string(section) + ".model") != nullptr;
+    if (const auto dot = section.find('.'); dot != std::string_view::npos && !is_process) {
       const Parameter* model = find_parameter(all, std::string(section.substr(0, dot)) + ".model");
       ASSERT_NE(model, nullptr) << p.name;
       EXPECT_THAT(model->choices, testing::Contains(section.substr(dot + 1))) << p.name;

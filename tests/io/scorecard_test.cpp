@@ -53,6 +53,8 @@ State whole_planet(int nx = 480) {
   fill(field::lake_depth, [&](Index c) { return column(c) == 3 ? 5.0 : 0.0; });
   fill(field::sediment_flux, [&](Index c) { return column(c) == nx - 1 ? 1e6 : 0.0; });
   fill(field::erosion_rate, [](Index) { return 40e-6; });
+  fill(field::ice_thickness,
+       [&](Index c) { return land(c) && grid.row(c) % 30 == 0 ? 900.0 : 0.0; });
   fill(field::koppen_class, [&](Index c) { return land(c) ? 1 + grid.row(c) % 30 : 0; });
   fill(field::biome, [&](Index c) { return land(c) ? 1 + grid.row(c) % 11 : 0; });
   fill(field::plate_velocity_north, [](Index) { return 0.0; });
