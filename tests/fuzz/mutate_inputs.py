@@ -107,8 +107,22 @@ class Trial:
             if code != 0:
                 sys.exit(error)
         shutil.copy(self.sound / "run" / "03-erosion.nc", self.sound / "relief.nc")
-        subprocess.run(["gdal_translate", "-q", f"NETCDF:{self.sound}/relief.nc:elevation",
-                        str(self.sound / "relief.tif")], check=False)
+        for name, corners in (("relief", ()), ("exemplar", ("-a_ullr", "10", "46", "14", "44"))):
+            subprocess.run(["gdal_translate", "-q", *corners, f"NETCDF:{self.sound}/relief.nc:elevation",
+                            str(self.sound / f"{name}.tif")], check=False)
+        (self.sound / "exemplars").mkdir(exist_ok=True)
+        shutil.copy(self.sound / "exemplar.tif", self.sound / "exemplars")
+        for arguments in (self.dem(f"{self.sound}/relief.nc:elevation"), self.dem(self.sound / "relief.tif"),
+                          self.exemplars(self.sound / "exemplars")):
+            code, error = self.run(*arguments)  # refused unchanged they would try nothing
+            if code != 0:
+                sys.exit(error)
+
+    def dem(self, file):
+        return "run", "--dem", file, "--dry-run", "-o", self.folder / "new"
+
+    def exemplars(self, folder):
+        return (*self.dem(f"{self.sound}/relief.nc:elevation"), "--exemplars", folder)
 
     def write(self, source, change, target):
         target.parent.mkdir(parents=True, exist_ok=True)
@@ -122,13 +136,14 @@ class Trial:
 
     def relief(self):
         file = self.write(self.sound / "relief.nc", changed_hdf5, self.folder / "in.nc")
-        return file, self.dice.choice((("run", "--dem", f"{file}:elevation", "--dry-run", "-o", self.folder / "new"),
-                                       ("score", file), ("info", file)))
+        return file, self.dice.choice((self.dem(f"{file}:elevation"), ("score", file), ("info", file)))
 
     def geotiff(self):
-        file = self.write(self.sound / "relief.tif", changed_bytes, self.folder / "exemplars" / "in.tif")
-        return file, ("run", "--dem", f"{self.sound}/relief.nc:elevation", "--exemplars", file.parent, "--dry-run",
-                      "-o", self.folder / "new")
+        if self.dice.random() < 0.5:
+            file = self.write(self.sound / "relief.tif", changed_bytes, self.folder / "in.tif")
+            return file, self.dem(file)
+        file = self.write(self.sound / "exemplar.tif", changed_bytes, self.folder / "exemplars" / "in.tif")
+        return file, self.exemplars(file.parent)
 
     def frame(self):
         frames = sorted((self.sound / "drift" / "frames").glob("*.nc"))
