@@ -316,8 +316,7 @@ Relief read_plain(const RasterQuestion& question, const std::filesystem::path& p
                   RasterFormat format) {
   const std::string shown = path.string();
   try {
-    ImageMeaning meaning{
-        .range = {}, .window = {}, .least = question.least, .most = question.most};
+    ImageMeaning meaning{.range = {}, .window = {}, .least = question.least, .most = question.most};
     if (!question.range.empty()) meaning.range = parse_range("--dem-range", question.range);
     if (!question.window.empty()) meaning.window = parse_box("--dem-window", question.window);
     const PlainRaster raster = format == RasterFormat::png       ? read_png_raster(path, meaning)

@@ -16,8 +16,8 @@ constexpr std::array<const char*, Climatology::kMonths> kNames{
 constexpr int kColumns = 4, kPanel_px = 340, kGap_px = 14, kMargin_px = 40, kName_px = 26;
 constexpr int kTop_px = 70, kLegend_px = 60;
 
-/// A month's rain has the colours of a year with this many times as much; with twelve, classes would
-/// not end at round numbers.
+/// A month's rain has the colours of a year with this many times as much; with twelve, classes
+/// would not end at round numbers.
 constexpr float kRainOfAYear = 12.5F;
 
 /// Where the panels of one quantity stand, four beside each other.

@@ -20,9 +20,9 @@ struct GlobeFrame {
 
 /// A section of the report with a globe that turns under the mouse: heights, and every mapped field
 /// of the state as a layer in the colours of its map; rivers, boundaries of plates and winds as
-/// lines; `frames` and `months` under sliders. All of it lies in the page. Grids of more than 1024 columns are
-/// thinned to cells of their own, whose values are the file's to 16 bits of the layer's range.
-/// Empty for what is no whole planet with an elevation.
+/// lines; `frames` and `months` under sliders. All of it lies in the page. Grids of more than 1024
+/// columns are thinned to cells of their own, whose values are the file's to 16 bits of the layer's
+/// range. Empty for what is no whole planet with an elevation.
 std::string globe_markup(const State& state, const std::vector<GlobeFrame>& frames = {},
                          const std::optional<PlanetMonths>& months = {});
 

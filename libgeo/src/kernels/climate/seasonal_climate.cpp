@@ -136,10 +136,9 @@ void SeasonalYear::begin_month(int m, const TemperatureCycle& temperature) {
   month.zonal_wind_m_s = thermal_wind_m_s(grid_, model_.circulation, latitude_deg_, zonal_c);
   const std::vector<double> trough_deg = trough_latitudes_deg(
       grid_, latitude_deg_, month.temperature_c, zonal_c, model_.itcz_locality);
-  const std::vector<float> eddies =
-      eddy_strength(grid_, latitude_deg_, month.temperature_c, zonal_c,
-                    model_.eddy_gradient_k_1000km, model_.eddy_locality, model_.eddy_reach_km,
-                    !model_.circulation.retrograde);
+  const std::vector<float> eddies = eddy_strength(
+      grid_, latitude_deg_, month.temperature_c, zonal_c, model_.eddy_gradient_k_1000km,
+      model_.eddy_locality, model_.eddy_reach_km, !model_.circulation.retrograde);
   month.sun_w_m2.resize(grid_.ny());
   for (int j = 0; j < grid_.ny(); ++j) {
     const double insolation = month.sun_w_m2[j] =
@@ -185,10 +184,10 @@ void SeasonalYear::heat_air(Month& month) const {
   for (std::size_t cell = 0; cell < size_; ++cell) {
     const double warmer_k =
         month.temperature_c[cell] - zonal_c[grid_.row(static_cast<Index>(cell))];
-    const double heating = kWattsPerMillimetreADay * month.rain_mm_d[cell] +
-                           (model_.sensible_w_m2_k * land_[cell] +
-                            model_.sensible_sea_w_m2_k * (1.0F - land_[cell])) *
-                               warmer_k;
+    const double heating =
+        kWattsPerMillimetreADay * month.rain_mm_d[cell] +
+        (model_.sensible_w_m2_k * land_[cell] + model_.sensible_sea_w_m2_k * (1.0F - land_[cell])) *
+            warmer_k;
     month.heating_w_m2[cell] += static_cast<float>(kRelaxed * (heating - month.heating_w_m2[cell]));
   }
 }
