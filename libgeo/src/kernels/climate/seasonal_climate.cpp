@@ -136,9 +136,9 @@ void SeasonalYear::begin_month(int m, const TemperatureCycle& temperature) {
   month.zonal_wind_m_s = thermal_wind_m_s(grid_, model_.circulation, latitude_deg_, zonal_c);
   const std::vector<double> trough_deg = trough_latitudes_deg(
       grid_, latitude_deg_, month.temperature_c, zonal_c, model_.itcz_locality);
-  const std::vector<float> eddies = eddy_strength(
-      grid_, latitude_deg_, month.temperature_c, zonal_c, model_.eddy_gradient_k_1000km,
-      model_.eddy_locality, model_.eddy_reach_km, !model_.circulation.retrograde);
+  const std::vector<float> eddies =
+      eddy_strength(grid_, latitude_deg_, month.temperature_c, zonal_c,
+                    model_.eddy_gradient_k_1000km, model_.eddy_locality);
   month.sun_w_m2.resize(grid_.ny());
   for (int j = 0; j < grid_.ny(); ++j) {
     const double insolation = month.sun_w_m2[j] =
@@ -184,10 +184,8 @@ void SeasonalYear::heat_air(Month& month) const {
   for (std::size_t cell = 0; cell < size_; ++cell) {
     const double warmer_k =
         month.temperature_c[cell] - zonal_c[grid_.row(static_cast<Index>(cell))];
-    const double heating =
-        kWattsPerMillimetreADay * month.rain_mm_d[cell] +
-        (model_.sensible_w_m2_k * land_[cell] + model_.sensible_sea_w_m2_k * (1.0F - land_[cell])) *
-            warmer_k;
+    const double heating = kWattsPerMillimetreADay * month.rain_mm_d[cell] +
+                           model_.sensible_w_m2_k * land_[cell] * warmer_k;
     month.heating_w_m2[cell] += static_cast<float>(kRelaxed * (heating - month.heating_w_m2[cell]));
   }
 }
@@ -227,8 +225,7 @@ std::vector<float> SeasonalYear::convective_excess_k(const Month& month) const {
     const double humidity = 0.622 * saturation_pressure_pa(surface_c) / kSurfacePressure_pa *
                             std::min(1.0, month.column_mm[cell] / month.saturated_mm[cell]);
     energy_k[cell] =
-        static_cast<float>(model_.convection_dry_share * (surface_c + kDryLapse_k_m * height_m) +
-                           kLatentOverHeat_k * humidity);
+        static_cast<float>(surface_c + kDryLapse_k_m * height_m + kLatentOverHeat_k * humidity);
   }
   const std::vector<double> around_k =
       smooth_rows(latitude_deg_, row_means<float>(grid_, energy_k), kReach_deg);

@@ -113,27 +113,10 @@ std::vector<double> trough_latitudes_deg(const Grid& grid, std::span<const doubl
   return running_mean(trough, reach);
 }
 
-/// Values along a parallel as they arrive from upwind: the mean over what lies there, weighted by
-/// exp(-distance / reach).
-void carry_downwind(std::span<float> row, double spacing_m, double reach_m, bool eastwards) {
-  const std::size_t n = row.size();
-  const double kept = std::exp(-spacing_m / reach_m);
-  const auto at = [&](std::size_t k) -> float& { return eastwards ? row[k] : row[n - 1 - k]; };
-  // Once round the planet tells what arrives at the first cell.
-  double arriving = 0.0;
-  for (std::size_t k = 0; k < n; ++k) arriving = kept * arriving + (1.0 - kept) * at(k);
-  arriving /= 1.0 - std::pow(kept, static_cast<double>(n));
-  for (std::size_t k = 0; k < n; ++k) {
-    arriving = kept * arriving + (1.0 - kept) * at(k);
-    at(k) = static_cast<float>(arriving);
-  }
-}
-
 std::vector<float> eddy_strength(const Grid& grid, std::span<const double> latitude_deg,
                                  std::span<const float> temperature_c,
                                  std::span<const double> zonal_temperature_c,
-                                 double reference_k_1000km, double locality, double reach_km,
-                                 bool eastwards) {
+                                 double reference_k_1000km, double locality) {
   const int nx = grid.nx(), ny = grid.ny();
   std::vector<float> strength(static_cast<std::size_t>(grid.size()), 0.0F);
   if (latitude_deg[0] == latitude_deg[ny - 1]) return strength;  // a torus at one latitude
@@ -156,10 +139,6 @@ std::vector<float> eddy_strength(const Grid& grid, std::span<const double> latit
       const double local = std::hypot(along_x, along_y);
       strength[grid.cell(i, j)] =
           static_cast<float>((zonal + locality * (local - zonal)) / reference_k_1000km);
-    }
-    if (locality > 0.0 && reach_km > 0.0) {
-      carry_downwind(std::span(strength).subspan(grid.cell(0, j), nx), grid.spacing_east_m(j),
-                     1000.0 * reach_km, eastwards);
     }
   }
   return strength;

@@ -26,18 +26,15 @@ struct SeasonalClimate {
       0.218;  ///< how far the trough follows the warmest latitude of each meridian
   double sensible_w_m2_k =
       5.88;  ///< heating of the air where the surface is warmer than its parallel
-  double sensible_sea_w_m2_k = 0.0;  ///< the same over the sea
   double base_diffusivity_m2_s = 3e6;
   double eddy_diffusivity_m2_s = 3.35e5;  ///< at the reference temperature gradient
   double eddy_rain = 12.0;                ///< extra rain-out activity there
   double eddy_gradient_k_1000km = 4.0;    ///< the reference gradient
-  double eddy_locality = 0.0;     ///< how far eddies follow the local gradient, not the parallel's
-  double eddy_reach_km = 2500.0;  ///< over which westerlies carry eddies downstream
-  double ascent_time_d = 9.88;    ///< convergence over this time multiplies rain-out by e
-  double descent_time_d = 1.58;   ///< the same of the descent that stationary waves make
+  double eddy_locality = 0.0;    ///< how far eddies follow the local gradient, not the parallel's
+  double ascent_time_d = 9.88;   ///< convergence over this time multiplies rain-out by e
+  double descent_time_d = 1.58;  ///< the same of the descent that stationary waves make
   double ascent_smoothing_km = 496.0;  ///< over which ascent is felt
-  double convection_1_k = 0.0506;     ///< by which rain-out grows with relative moist static energy
-  double convection_dry_share = 1.0;  ///< of its dry part that counts
+  double convection_1_k = 0.0506;  ///< by which rain-out grows with relative moist static energy
   double convection_latitude_deg = 35.9;  ///< to which the free atmosphere is level
   double orographic_share = 0.0;  ///< of the mean height by which moist air is lifted over a cell
   double blocking_height_m = 5.24e3;  ///< height at which relief halves the moist flow
