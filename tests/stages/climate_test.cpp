@@ -141,6 +141,43 @@ TEST(Climate, SlowPlanetsHaveWideCellsAndRetrogradeOnesTradesFromTheWest) {
   EXPECT_GT(zonal_wind(23.934, true)[grid->cell(0, 18)], 0.0F);
 }
 
+TEST(Climate, DaysAsLongAsAirTakesToCoolAreWarnedOf) {
+  const auto grid = std::make_shared<Grid>(Grid::sphere(64, 32));
+  const std::vector<float> sea(static_cast<std::size_t>(grid->size()), -3000.0F);
+  const auto warnings = [&](double hours) {
+    ClimateParameters p = quick();
+    p.seasonal.circulation.rotation_period_h = hours;
+    Context context;
+    run(grid, sea, p, context);
+    return context.warnings;
+  };
+  EXPECT_TRUE(warnings(240.0).empty());
+  ASSERT_EQ(warnings(2000.0).size(), 1U);
+  EXPECT_NE(warnings(2000.0).front().find("tidally locked"), std::string::npos);
+}
+
+TEST(Climate, ColdSeaIsUnderIceAndLandAndWarmSeaAreNot) {
+  const auto grid = std::make_shared<Grid>(Grid::sphere(64, 32));
+  std::vector<float> elevation(static_cast<std::size_t>(grid->size()), -3000.0F);
+  for (Index c = 0; c < grid->size(); ++c) {
+    if (grid->column(c) < 16) elevation[c] = 100.0F;
+  }
+  const State state = run(grid, elevation, quick());
+  const auto ice = state.read(field::sea_ice_area_fraction), mean = state.read(field::temperature);
+  double most = 0.0;
+  for (Index c = 0; c < grid->size(); ++c) {
+    if (elevation[c] >= 0.0F) {
+      ASSERT_EQ(ice[c], 0.0F);
+    } else if (mean[c] > 10.0F) {
+      ASSERT_LT(ice[c], 0.01F);
+    } else if (mean[c] < -20.0F) {
+      ASSERT_GT(ice[c], 0.9F);
+    }
+    most = std::max<double>(most, ice[c]);
+  }
+  EXPECT_GT(most, 0.5);
+}
+
 TEST(Climate, AllThatEvaporatesRains) {
   const double precise = 1e-6;  // floats hold each cell's rain to 6e-8
   for (const double lift_height_m : {300.0, 1450.0, 1e6}) {
