@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
-#include <optional>
 
 #include "geo/core/error.hpp"
 #include "geo/io/input/plate_outlines.hpp"
@@ -117,9 +115,10 @@ std::vector<PlateOutline> plates_of_raster(const Relief& numbers, const Table& r
           rectangle(south, north, raster.columns.edges[first], raster.columns.edges[end]));
     });
   }
-  if (plates.size() < 2)
+  if (plates.size() < 2) {
     refuse(fmt::format("has {} plate{}: must have 2 or more", plates.size(),
                        plates.size() == 1 ? "" : "s"));
+  }
   std::vector<PlateOutline> outlines;
   outlines.reserve(plates.size());
   for (auto& [number, plate] : plates) outlines.push_back(std::move(plate));

@@ -270,7 +270,7 @@ class ErosionStage final : public Stage {
     };
     const bool follows_rain = parameters_.discharge == "rain" && has_climate(grid, context);
     std::optional<IceAge> ice;
-    if (parameters_.freezes() && follows_rain && steps > 0) {
+    if (parameters_.freezes() && follows_rain) {
       ice.emplace(parameters_, grid, context.planet);
     }
     const std::span<float> scoured =
