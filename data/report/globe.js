@@ -398,13 +398,10 @@
     redraw();
   }
 
-  const MONTHS = ["year", "January", "February", "March", "April", "May", "June", "July", "August", "September",
-    "October", "November", "December"];
-
   /** A month of the layer, 0 for the year; layers without months stay as they are. */
   async function showMonth(number) {
     month = number;
-    part("month-name").textContent = MONTHS[month];
+    part("month-name").textContent = month ? index.month_names[month - 1] : "year";
     if (!frame) await show(layer.name);
   }
 

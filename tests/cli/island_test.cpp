@@ -124,6 +124,22 @@ TEST_F(Island, FurtherOnesAreNumberedAndListed) {
   EXPECT_TRUE(std::equal(digests.begin(), digests.end(), now.begin()));
 }
 
+// The report was written anew without its globe, and without the year.
+TEST_F(Island, TheReportKeepsWhatItHasOfThePlanet) {
+  Words arguments = quick_run(relief_, out_, {"--to", "biomes", "--set", "output.monthly=true"});
+  std::erase(arguments, "--no-maps");
+  ASSERT_EQ(terrane(arguments).code, 0);
+  const auto shows = [&](const char* what) {
+    return text_of(out_ / "report.html").find(what) != std::string::npos;
+  };
+  ASSERT_TRUE(shows("id=\"globe\"") && shows("maps/year.png") && !shows("maps/island.png"));
+  const Outcome outcome = island({"--size", "48,32", "--cell", "8000"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_TRUE(shows("maps/island.png"));
+  EXPECT_TRUE(shows("id=\"globe\""));
+  EXPECT_TRUE(shows("maps/year.png"));
+}
+
 TEST_F(Island, ManifestTellsWhatAndWhere) {
   run();
   const Outcome made =

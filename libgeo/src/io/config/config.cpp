@@ -208,6 +208,11 @@ std::string configured_text(std::string_view toml, std::string_view name) {
   return root.at_path(name).value_or(std::string());
 }
 
+bool configured_flag(std::string_view toml, std::string_view name) {
+  const toml::table root = parse(toml, "config.toml");
+  return root.at_path(name).value_or(false);
+}
+
 std::string first_difference(std::string_view before, std::string_view after,
                              std::span<const std::string> sections,
                              std::span<const std::string_view> ignored_names) {

@@ -1,6 +1,5 @@
 #include "map_year.hpp"
 
-#include <array>
 #include <string>
 
 #include "io/drawing/map_canvas.hpp"
@@ -9,16 +8,8 @@
 namespace geo::io {
 namespace {
 
-constexpr std::array<const char*, Climatology::kMonths> kNames{
-    "January", "February", "March",     "April",   "May",      "June",
-    "July",    "August",   "September", "October", "November", "December"};
-
 constexpr int kColumns = 4, kPanel_px = 340, kGap_px = 14, kMargin_px = 40, kName_px = 26;
 constexpr int kTop_px = 70, kLegend_px = 60;
-
-/// A month's rain has the colours of a year with this many times as much; with twelve, classes
-/// would not end at round numbers.
-constexpr float kRainOfAYear = 12.5F;
 
 /// Where the panels of one quantity stand, four beside each other.
 struct Block {
@@ -109,7 +100,7 @@ MapFile draw_year_file(const PlanetMonths& months, std::span<const float> elevat
     canvas.text(block.left, block.top - 6, title);
     canvas.font(16);
     for (int m = 0; m < Climatology::kMonths; ++m) {
-      canvas.text(block.x(m), block.y(m) - 7, kNames[m]);
+      canvas.text(block.x(m), block.y(m) - 7, kMonthNames[m]);
     }
   }
   legend(canvas, warmth, degrees, 1.0F);

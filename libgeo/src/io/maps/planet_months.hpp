@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "geo/core/climatology.hpp"
@@ -24,6 +25,26 @@ struct Thinning {
 
   int step, nx, ny;
 };
+
+/// Values of a grid's cells at those of a page.
+template <class T>
+std::vector<T> thinned(std::span<const T> values, const Grid& grid, const Thinning& cells) {
+  std::vector<T> out;
+  out.reserve(cells.size());
+  for (int j = 0; j < cells.ny; ++j) {
+    for (int i = 0; i < cells.nx; ++i) {
+      out.push_back(values[grid.cell(cells.column(i), cells.row(j))]);
+    }
+  }
+  return out;
+}
+
+inline constexpr std::array<const char*, Climatology::kMonths> kMonthNames{
+    "January", "February", "March",     "April",   "May",      "June",
+    "July",    "August",   "September", "October", "November", "December"};
+/// A month's rain has the colours of a year with this many times as much; with twelve, classes
+/// would not end at round numbers.
+inline constexpr float kRainOfAYear = 12.5F;
 
 /// The year of a planet as far as pictures show it, on the cells of a page.
 struct PlanetMonths {

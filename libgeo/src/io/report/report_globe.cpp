@@ -32,23 +32,22 @@ using nlohmann::ordered_json;
 constexpr std::uint16_t kNothing = 65535;
 
 /// Values of the page's cells as double, NaN where there is none.
-std::vector<double> thinned(const State& state, const FieldSpec& spec, const Thinning& thinning) {
-  const Grid& grid = state.grid();
-  std::vector<double> out;
-  out.reserve(static_cast<std::size_t>(thinning.nx) * thinning.ny);
-  std::visit(
+std::vector<double> shown_values(const State& state, const FieldSpec& spec,
+                                 const Thinning& thinning) {
+  return std::visit(
       [&]<class T>(const std::vector<T>& values) {
-        for (int j = 0; j < thinning.ny; ++j) {
-          for (int i = 0; i < thinning.nx; ++i) {
-            const T value = values[grid.cell(thinning.column(i), thinning.row(j))];
-            const bool is_missing = std::is_integral_v<T> && value == static_cast<T>(spec.missing);
-            out.push_back(is_missing ? std::numeric_limits<double>::quiet_NaN()
-                                     : static_cast<double>(value));
+        const std::vector<T> cells = thinned(std::span<const T>(values), state.grid(), thinning);
+        std::vector<double> out(cells.begin(), cells.end());
+        if constexpr (std::is_integral_v<T>) {
+          for (std::size_t k = 0; k < out.size(); ++k) {
+            if (cells[k] == static_cast<T>(spec.missing)) {
+              out[k] = std::numeric_limits<double>::quiet_NaN();
+            }
           }
         }
+        return out;
       },
       *state.values(spec));
-  return out;
 }
 
 std::string hex(Rgb colour) {
@@ -122,7 +121,7 @@ class Layers {
   Layers(const State& state, const Thinning& thinning) : state_(state), thinning_(thinning) {}
 
   void add(const FieldSpec& spec, ordered_json entry, const std::vector<std::uint8_t>& shown = {}) {
-    add_values(spec.name, thinned(state_, spec, thinning_), spec.type != Type::float32,
+    add_values(spec.name, shown_values(state_, spec, thinning_), spec.type != Type::float32,
                std::move(entry), shown);
   }
   void add_values(std::string_view name, const std::vector<double>& values, bool whole_numbers,
@@ -218,7 +217,7 @@ ordered_json plates_entry(const State& state, const MapFrame& frame) {
 std::vector<std::uint8_t> shown_cells(const FieldMap& map, const State& state,
                                       const Thinning& thinning) {
   if (map.extent == Extent::everywhere) return {};
-  const auto elevation = thinned(state, field::elevation, thinning);
+  const auto elevation = shown_values(state, field::elevation, thinning);
   std::vector<std::uint8_t> shown(elevation.size());
   if (map.extent == Extent::land) {
     for (std::size_t k = 0; k < shown.size(); ++k) shown[k] = elevation[k] >= 0.0 ? 1 : 0;
@@ -226,8 +225,8 @@ std::vector<std::uint8_t> shown_cells(const FieldMap& map, const State& state,
   }
   const bool knows = state.has(field::continental_fraction);
   const auto continent =
-      knows ? thinned(state, field::continental_fraction, thinning) : std::vector<double>();
-  const auto age = thinned(state, *map.field, thinning);
+      knows ? shown_values(state, field::continental_fraction, thinning) : std::vector<double>();
+  const auto age = shown_values(state, *map.field, thinning);
   constexpr double kOldestFloor_myr = 250.0;  // older crust at sea is stretched continent
   for (std::size_t k = 0; k < shown.size(); ++k) {
     const bool floor = knows ? continent[k] < 0.5 : elevation[k] < 0.0;
@@ -351,8 +350,8 @@ void add_layers(const State& state, const Thinning& thinning, const MapFrame& fr
   }
   if (state.has(field::plate_id)) layers.add(field::plate_id, plates_entry(state, frame));
   if (state.has(field::wind_east) && state.has(field::wind_north)) {
-    auto speed = thinned(state, field::wind_east, thinning);
-    const auto north = thinned(state, field::wind_north, thinning);
+    auto speed = shown_values(state, field::wind_east, thinning);
+    const auto north = shown_values(state, field::wind_north, thinning);
     for (std::size_t k = 0; k < speed.size(); ++k) speed[k] = std::hypot(speed[k], north[k]);
     auto entry = entry_of("Wind", "m s-1", "smooth");
     put_stops(entry, ColourMap("wind_speed").stops(), 1.0);
@@ -374,7 +373,8 @@ ordered_json add_frames(const std::vector<GlobeFrame>& frames, const Thinning& t
     auto entry = entry_of("Elevation", "m", "smooth");
     entry["time_myr"] = frame.time_myr;
     index.push_back(layers.described(fmt::format("globe-frame-{}", index.size()),
-                                     thinned(frame.state, relief, own), false, std::move(entry)));
+                                     shown_values(frame.state, relief, own), false,
+                                     std::move(entry)));
   }
   return index;
 }
@@ -384,9 +384,6 @@ ordered_json add_frames(const std::vector<GlobeFrame>& frames, const Thinning& t
 ordered_json add_months(const PlanetMonths& months, const State& state, const Thinning& thinning,
                         Layers& layers) {
   constexpr int kLevels = 1000;
-  constexpr std::array<const char*, Climatology::kMonths> kNames{
-      "January", "February", "March",     "April",   "May",      "June",
-      "July",    "August",   "September", "October", "November", "December"};
   auto index = ordered_json::object();
   for (const FieldMap& map : field_maps()) {
     const bool is_warmth = map.field == &field::temperature;
@@ -395,10 +392,9 @@ ordered_json add_months(const PlanetMonths& months, const State& state, const Th
       const auto& values = is_warmth ? months.temperature_c[m] : months.precipitation_mm[m];
       auto entry = classes_entry(map);
       entry["name"] = map.field->name;
-      entry["title"] = fmt::format("{} in {}", map.title, kNames[m]);
+      entry["title"] = fmt::format("{} in {}", map.title, kMonthNames[m]);
       if (!is_warmth) {
-        // Not twelve: classes end at round numbers.
-        for (auto& stop : entry["stops"]) stop = stop.get<double>() / 12.5;
+        for (auto& stop : entry["stops"]) stop = stop.get<double>() / kRainOfAYear;
         entry["units"] = "mm month-1";
         entry["shown_units"] = "mm per month";
       }
@@ -463,6 +459,7 @@ std::string globe_markup(const State& state, const std::vector<GlobeFrame>& fram
   index["months"] = months && months->cells.size() == thinning.size()
                         ? add_months(*months, state, thinning, layers)
                         : ordered_json::object();
+  index["month_names"] = kMonthNames;
   index["layers"] = layers.index;
   return fmt::format(
       "{}{}<script type=\"application/json\" "

@@ -206,6 +206,7 @@ std::vector<GlobeFrame> frames_of(const RunFolder& folder) {
 /// The year of the planet, where the run has written its months.
 std::optional<PlanetMonths> months_of(const RunFolder& folder, const Manifest& manifest,
                                       const Grid& grid) {
+  if (!configured_flag(read_text(folder.config()), "output.monthly")) return {};
   for (const StageRecord& record : manifest.stages) {
     if (is_island(record) || !holds(record, field::precipitation_seasonality.name)) continue;
     // That the file is the run's own is made sure of first.
@@ -213,19 +214,6 @@ std::optional<PlanetMonths> months_of(const RunFolder& folder, const Manifest& m
     return read_planet_months(folder.path() / netcdf_of(record), grid, kMostColumns);
   }
   return {};
-}
-
-/// Heights of the cells that pictures of months have.
-std::vector<float> heights_of(const State& state, const Thinning& cells) {
-  const auto elevation = state.read(field::elevation);
-  std::vector<float> heights;
-  heights.reserve(cells.size());
-  for (int j = 0; j < cells.ny; ++j) {
-    for (int i = 0; i < cells.nx; ++i) {
-      heights.push_back(elevation[state.grid().cell(cells.column(i), cells.row(j))]);
-    }
-  }
-  return heights;
 }
 
 /// What a report says besides what is measured and drawn.
@@ -280,10 +268,8 @@ std::vector<std::filesystem::path> draw_run(const RunFolder& folder, const MapVi
   // Scorecard and islands take longest, each on one thread, and are begun first.
   std::vector<std::function<void()>> pieces;
   pieces.emplace_back([&] { report.scorecard = scorecard_of(state); });
-  const auto months = all ? months_of(folder, manifest, state.grid()) : std::nullopt;
-  if (all) {
-    pieces.emplace_back([&] { report.globe = globe_markup(state, frames_of(folder), months); });
-  }
+  const auto months = months_of(folder, manifest, state.grid());
+  pieces.emplace_back([&] { report.globe = globe_markup(state, frames_of(folder), months); });
   std::vector<const StageRecord*> islands;
   for (const StageRecord& record : manifest.stages) {
     if (is_island(record)) islands.push_back(&record);
@@ -310,7 +296,8 @@ std::vector<std::filesystem::path> draw_run(const RunFolder& folder, const MapVi
   std::optional<MapFile> year;
   if (months && state.has(field::elevation)) {
     pieces.emplace_back([&] {
-      year = draw_year_file(*months, heights_of(state, months->cells), folder.maps(), note);
+      const auto heights = thinned(state.read(field::elevation), state.grid(), months->cells);
+      year = draw_year_file(*months, heights, folder.maps(), note);
     });
   }
   do_side_by_side(pieces);

@@ -47,6 +47,9 @@ std::string first_difference(std::string_view before, std::string_view after,
 /// The string that a configuration holds under "section.key"; empty when it holds none.
 std::string configured_text(std::string_view toml, std::string_view name);
 
+/// Whether a configuration holds "section.key" and it is true.
+bool configured_flag(std::string_view toml, std::string_view name);
+
 /// Whole text of a file. IoError when it cannot be read.
 std::string read_text(const std::filesystem::path& path);
 
