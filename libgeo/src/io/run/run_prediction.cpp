@@ -27,6 +27,7 @@ constexpr StageCost kStageCosts[] = {
 constexpr StageCost kUnknownStage{"", 500.0, 150.0};
 
 constexpr double kErosionStep_ns = 259.0;  // per cell
+constexpr double kIce_ns = 2000.0;         // per cell: cold and warm times, and today
 constexpr double kClimate_s = 2.0;         // air at 2 degrees
 constexpr double kClimateAir_deg = 2.0;
 constexpr double kClimateGrowth = 2.3;  // power of one over the air's resolution
@@ -43,7 +44,7 @@ constexpr double kMaps_s = 1.3;              // all maps at their default width,
 constexpr double kMaps_bytes = 12e6;
 constexpr double kMapWidth_px = 1800.0;
 constexpr double kParallelShare = 0.67;  // of the time, Amdahl
-constexpr double kReference_s = 0.0154;  // MachineSpeed::one_thread_s where the costs were measured
+constexpr double kReference_s = 0.0102;  // MachineSpeed::one_thread_s where the costs were measured
 
 double value_bytes(const FieldSpec& spec) {
   switch (spec.type) {
@@ -114,10 +115,11 @@ double plates_seconds(const Settings& settings) {
 
 double erosion_seconds(const Settings& settings, double cells) {
   const double steps = settings.number("erosion.steps");
-  const double climates = settings.is("erosion.discharge", "rain")
-                              ? std::min(settings.number("erosion.climates"), steps)
-                              : 0.0;
-  return climates * climate_seconds(settings) + 1e-9 * kErosionStep_ns * steps * cells;
+  const double rivers_s = 1e-9 * kErosionStep_ns * steps * cells;
+  if (!settings.is("erosion.discharge", "rain") || steps <= 0.0) return rivers_s;
+  const double ice_ns = settings.is("erosion.ice.model", "plastic") ? kIce_ns : 0.0;
+  return std::min(settings.number("erosion.climates"), steps) * climate_seconds(settings) +
+         rivers_s + 1e-9 * ice_ns * cells;
 }
 
 /// What a stage takes besides its cost per cell.
