@@ -12,15 +12,8 @@ import matplotlib
 matplotlib.use("Agg")
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "python.md"
-# A fit of the page's own size takes minutes, its planet of 512 x 256 cells half a minute.
-SMALL = {
-    'grid=(512, 256), to="climate"': 'grid=(64, 32), to="climate"',
-    'terrane.calibrate("earth", "earth", folder="fit", progress=True)':
-        'terrane.calibrate("earth", "earth", folder="fit", progress=True, parameters={'
-        '"calibration.free": ["planet.ocean_fraction"], "calibration.seeds": "1", "calibration.held_out": "",'
-        '"calibration.grid": "64x32", "calibration.held_out_grid": "64x32", "calibration.iterations": 2,'
-        '"calibration.profiles": False})',
-}
+# A planet of 512 x 256 cells takes half a minute.
+SMALL = {'grid=(512, 256), to="climate"': 'grid=(64, 32), to="climate"'}
 
 
 class Page(unittest.TestCase):
@@ -40,10 +33,10 @@ class Page(unittest.TestCase):
                 exec(compile(text, str(PAGE), "exec"), names)
             finally:
                 os.chdir(home)
-            self.assertTrue((Path(scratch) / "fit").is_dir())
         self.assertGreater(names["planet"].score()["land_mean"].value, 0.0)
-        self.assertEqual(names["parameters"].planet.radius_km, 3390.0)
-        self.assertIn("2 iterations did not suffice", names["fit"].failure)
+        fitted = {parameter.name: parameter.fitted for parameter in names["fit"].parameters}
+        self.assertGreater(fitted["planet.ocean_fraction"], 0.65)  # from 0.62
+        self.assertEqual(names["parameters"]["planet.ocean_fraction"], fitted["planet.ocean_fraction"])
         self.assertLess(float(names["lower"].mean()), float(names["elevation"].mean()))
 
 
