@@ -1,16 +1,12 @@
 #include "grid_sampler.hpp"
 
 #include <algorithm>
-#include <array>
 #include <limits>
+
+#include "geo/kernels/remapping/cubic_weights.hpp"
 
 namespace geo::io {
 namespace {
-
-std::array<double, 4> cubic_weights(double t) {
-  return {0.5 * t * ((2.0 - t) * t - 1.0), 0.5 * (t * t * (3.0 * t - 5.0) + 2.0),
-          0.5 * t * ((4.0 - 3.0 * t) * t + 1.0), 0.5 * t * t * (t - 1.0)};
-}
 
 float mean_of_row(std::span<const float> row) {
   double sum = 0.0;

@@ -1,5 +1,9 @@
 #include "kernels/climate/row_preconditioner.hpp"
 
+#include <algorithm>
+
+#include "kernels/numerics/thomas.hpp"
+
 namespace geo {
 
 RowPreconditioner& RowPreconditioner::compute(const Matrix& matrix) {
@@ -37,39 +41,34 @@ RowPreconditioner& RowPreconditioner::compute(const Matrix& matrix) {
 void RowPreconditioner::factor_row(int row, const std::vector<Complex>& west,
                                    const std::vector<Complex>& own,
                                    const std::vector<Complex>& east) {
-  const std::size_t begin = static_cast<std::size_t>(row) * nx_;
-  Complex *upper = &upper_[begin], *inverse = &inverse_[begin], *corner = &corner_[begin];
-  std::copy(west.begin(), west.end(), west_.begin() + static_cast<std::ptrdiff_t>(begin));
+  const std::span<Complex> lower = part(west_, row), upper = part(upper_, row),
+                           inverse = part(inverse_, row), corner = part(corner_, row);
+  std::copy(west.begin(), west.end(), lower.begin());
+  std::copy(east.begin(), east.end(), upper.begin());
+  std::copy(own.begin(), own.end(), inverse.begin());
   // The matrix without its corners west[0] and east[n-1] is that plus u v^T,
   // u = (gamma, 0 ... east[n-1]), v = (1, 0 ... west[0] / gamma).
   const Complex gamma = -own[0];
-  const int last = nx_ - 1;
   last_share_[row] = west[0] / gamma;
-  inverse[0] = 1.0 / (own[0] - gamma);
-  corner[0] = gamma * inverse[0];
-  for (int i = 1; i < nx_; ++i) {
-    upper[i - 1] = east[i - 1] * inverse[i - 1];
-    const Complex diagonal = i == last ? own[i] - east[last] * west[0] / gamma : own[i];
-    inverse[i] = 1.0 / (diagonal - west[i] * upper[i - 1]);
-    const Complex edge = i == last ? east[last] : Complex(0.0);
-    corner[i] = (edge - west[i] * corner[i - 1]) * inverse[i];
-  }
-  for (int i = last - 1; i >= 0; --i) corner[i] -= upper[i] * corner[i + 1];
-  closing_[row] = 1.0 / (1.0 + corner[0] + last_share_[row] * corner[last]);
+  inverse.front() = own[0] - gamma;
+  inverse.back() -= east.back() * west[0] / gamma;
+  factor_tridiagonal<Complex>(lower, upper, inverse);
+  std::fill(corner.begin(), corner.end(), Complex(0.0));
+  corner.front() = gamma;
+  corner.back() = east.back();
+  solve_tridiagonal<Complex>(lower, upper, inverse, corner);
+  closing_[row] = 1.0 / (1.0 + corner.front() + last_share_[row] * corner.back());
 }
 
-void RowPreconditioner::solve_row(int row, Complex* values) const {
-  const std::size_t begin = static_cast<std::size_t>(row) * nx_;
-  const Complex *west = &west_[begin], *upper = &upper_[begin], *inverse = &inverse_[begin],
-                *corner = &corner_[begin];
-  values[0] *= inverse[0];
-  for (int i = 1; i < nx_; ++i) values[i] = (values[i] - west[i] * values[i - 1]) * inverse[i];
-  for (int i = nx_ - 2; i >= 0; --i) values[i] -= upper[i] * values[i + 1];
-  const Complex share = (values[0] + last_share_[row] * values[nx_ - 1]) * closing_[row];
+void RowPreconditioner::solve_row(int row, std::span<Complex> values) const {
+  solve_tridiagonal<Complex>(part(west_, row), part(upper_, row), part(inverse_, row), values);
+  const std::span<const Complex> corner = part(corner_, row);
+  const Complex share = (values.front() + last_share_[row] * values.back()) * closing_[row];
   for (int i = 0; i < nx_; ++i) values[i] -= share * corner[i];
 }
 
-void RowPreconditioner::take_others(int row, const Vector& solution, Complex* values) const {
+void RowPreconditioner::take_others(int row, const Vector& solution,
+                                    std::span<Complex> values) const {
   const std::size_t begin = static_cast<std::size_t>(row) * nx_;
   for (int i = 0; i < nx_; ++i) {
     for (std::size_t k = others_begin_[begin + i]; k < others_begin_[begin + i + 1]; ++k) {
@@ -84,8 +83,8 @@ RowPreconditioner::Vector RowPreconditioner::solve(const Vector& right) const {
   const auto relax = [&](int row) {
     const Eigen::Index begin = static_cast<Eigen::Index>(row) * nx_;
     std::copy_n(right.data() + begin, nx_, values.begin());
-    take_others(row, solution, values.data());
-    solve_row(row, values.data());
+    take_others(row, solution, values);
+    solve_row(row, values);
     std::copy(values.begin(), values.end(), solution.data() + begin);
   };
   for (int row = 0; row < ny_; ++row) relax(row);

@@ -2,6 +2,7 @@
 
 #include <Eigen/SparseCore>
 #include <complex>
+#include <span>
 #include <vector>
 
 namespace geo {
@@ -31,9 +32,13 @@ class RowPreconditioner {
   };
   void factor_row(int row, const std::vector<Complex>& west, const std::vector<Complex>& own,
                   const std::vector<Complex>& east);
-  void solve_row(int row, Complex* values) const;
+  void solve_row(int row, std::span<Complex> values) const;
   /// Takes from `values` of a row what other rows give it.
-  void take_others(int row, const Vector& solution, Complex* values) const;
+  void take_others(int row, const Vector& solution, std::span<Complex> values) const;
+  template <class Values>
+  [[nodiscard]] auto part(Values& of_all, int row) const {
+    return std::span(of_all).subspan(static_cast<std::size_t>(row) * nx_, nx_);
+  }
 
   int nx_ = 0, ny_ = 0;
   std::vector<Complex> west_, upper_, inverse_, corner_;  ///< per unknown

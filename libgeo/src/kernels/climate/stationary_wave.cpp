@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "geo/core/error.hpp"
+#include "kernels/numerics/thomas.hpp"
 
 namespace geo {
 namespace {
@@ -26,19 +27,6 @@ struct Parallel {
   Complex wave_number;  ///< i k, k = m / (a cos lat)
   [[nodiscard]] Complex inertia() const { return drag * drag + coriolis * coriolis; }
 };
-
-/// lower_j x_{j-1} + own_j x_j + upper_j x_{j+1} = right_j (Thomas algorithm); leaves x in `right`.
-void solve_tridiagonal(std::vector<Complex>& lower, std::vector<Complex>& own,
-                       std::vector<Complex>& upper, std::vector<Complex>& right) {
-  const std::size_t n = own.size();
-  for (std::size_t j = 1; j < n; ++j) {
-    const Complex factor = lower[j] / own[j - 1];
-    own[j] -= factor * upper[j - 1];
-    right[j] -= factor * right[j - 1];
-  }
-  right[n - 1] /= own[n - 1];
-  for (std::size_t j = n - 1; j-- > 0;) right[j] = (right[j] - upper[j] * right[j + 1]) / own[j];
-}
 
 /// The response of one zonal wave number.
 class Wave {
@@ -110,7 +98,8 @@ class Wave {
         own[j] -= per_width * beyond;
       }
     }
-    solve_tridiagonal(lower, own, upper, values);
+    factor_tridiagonal<Complex>(lower, upper, own);
+    solve_tridiagonal<Complex>(lower, upper, own, values);
   }
 
  private:
