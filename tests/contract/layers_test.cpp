@@ -5,6 +5,7 @@
 #include <map>
 #include <regex>
 
+#include "geo/stages/stages.hpp"
 #include "support.hpp"
 
 namespace geo {
@@ -78,6 +79,37 @@ TEST(Layers, PrivateHeadersStayInTheirLayer) {
       const bool of_another_room = include.header.starts_with(layer + "/");
       EXPECT_TRUE(of_another_room || fs::exists(include.file.parent_path() / include.header))
           << include.file << " includes " << include.header;
+    }
+  }
+}
+
+/// What opens and writes runs learns from StageInfo what a stage is: no names in strings, no keys of
+/// parameters; names of files in a run's folder are the public interface. Maps, masks and layers of a
+/// report have words of their own, some of them the same.
+TEST(Layers, FilesKnowNoStageByItsName) {
+  std::string names;
+  const Pipeline pipeline = make_pipeline();
+  for (const auto& stage : pipeline.stages()) {
+    names += (names.empty() ? "" : "|") + std::string(stage->info().name);
+  }
+  const std::regex name("[^=]\"(" + names + ")(\\.(?!pvd)[a-z_.]+)?\"");
+  std::vector<std::string> folders;
+  for (const std::string tree : {"libgeo/include/geo/", "libgeo/src/"}) {
+    folders.push_back(tree + "core");
+    for (const char* room :
+         {"config", "files", "input", "netcdf", "report", "run", "score", "vtk"}) {
+      if (fs::exists(test::repository() / (tree + "io/" + room))) {
+        folders.push_back(tree + "io/" + room);
+      }
+    }
+  }
+  for (const fs::path& path : test::files_in(folders, {".hpp", ".cpp"})) {
+    const std::string text = test::read_text(path);
+    for (std::sregex_iterator at(text.begin(), text.end(), name), end; at != end; ++at) {
+      const auto line = 1 + std::count(text.begin(), text.begin() + at->position(), '\n');
+      const auto begin = text.rfind('\n', at->position()) + 1;
+      if (text.substr(begin, at->position() - begin).find("//") != std::string::npos) continue;
+      ADD_FAILURE() << path << ':' << line << " names " << at->str().substr(1);
     }
   }
 }

@@ -10,7 +10,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   geo::fuzz::expect_value_or_refusal([&] {
     const geo::io::Manifest manifest = geo::io::read_manifest(file.path());
     for (const geo::io::StageRecord& stage : manifest.stages) {
-      static_cast<void>(geo::io::is_island(stage));
+      static_cast<void>(manifest.free_name(stage.name, 1));
       geo::fuzz::expect_value_or_refusal([&] { static_cast<void>(geo::io::netcdf_of(stage)); });
     }
     // What was accepted is written so that it reads back the same.

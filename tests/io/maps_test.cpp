@@ -486,6 +486,7 @@ TEST(Report, FiguresAreThoseOfTheLastStageThatWroteTheField) {
                      stage("hydrology", {record("discharge", 5.0), record("lake_id", 7.0),
                                          record("elevation", 2.0)}),
                      stage("island", {record("elevation", 3.0)})};
+  manifest.stages.back().own_grid = true;
   const auto fields = field_figures(manifest);
   ASSERT_EQ(fields.size(), 2U);  // a number of a lake is no figure
   EXPECT_EQ(fields[0].name, "elevation");

@@ -60,6 +60,14 @@ struct Hypsography {
 
 struct ExemplarLibrary;  // kernels/exemplar.hpp
 
+/// What a stage takes: processor time of one thread of the machine that costs were measured on
+/// (an Intel Xeon at 2.5 GHz, planets of 128 x 64 to 1024 x 512 cells), and memory.
+struct StageCost {
+  double per_cell_ns = 500.0;  ///< time for each cell of its grid
+  double fixed_s = 0.0;        ///< time whatever the grid
+  double cell_bytes = 150.0;   ///< memory per cell at its peak, all fields included
+};
+
 /// What a run gives a stage besides fields: the planet, the seed, and ways to be heard.
 struct Context {
   Planet planet;
@@ -150,6 +158,11 @@ class Stage {
   [[nodiscard]] virtual std::vector<Parameter> parameters() = 0;
   /// Computes. Every declared output is written or an Error thrown.
   virtual void run(StageIo& io, Context& context) const = 0;
+  /// What that takes with its present parameters. `configuration` has those of the whole pipeline,
+  /// as a stage may run others inside.
+  [[nodiscard]] virtual StageCost cost(std::span<const Parameter> /*configuration*/) const {
+    return {};
+  }
 };
 
 }  // namespace geo

@@ -125,7 +125,7 @@ std::vector<FieldFigures> field_figures(const Manifest& manifest) {
     if (!is_measured(*spec)) continue;
     const FieldRecord* last = nullptr;
     for (const StageRecord& stage : manifest.stages) {
-      if (stage.name.starts_with("island")) continue;  // a grid of its own
+      if (stage.own_grid) continue;
       for (const FieldRecord& field : stage.fields) {
         if (field.name == spec->name) last = &field;
       }

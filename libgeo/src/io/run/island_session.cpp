@@ -30,7 +30,7 @@ void write_collection_files(const RunFolder& folder, const Manifest& manifest) {
   for (const StageRecord& record : manifest.stages) {
     const auto netcdf = folder.path() / netcdf_of(record);
     const auto vti = std::filesystem::path(netcdf).replace_extension(".vti");
-    if (std::filesystem::exists(vti)) (is_island(record) ? islands : planet).push_back(vti);
+    if (std::filesystem::exists(vti)) (record.own_grid ? islands : planet).push_back(vti);
   }
   write_pvd(folder.collection(), planet);
   if (!islands.empty()) write_pvd(folder.islands(), islands);
@@ -48,15 +48,19 @@ IslandSession::IslandSession(const Pipeline& pipeline, int stage_number,
 
 void IslandSession::prepare(bool allow_other_build) {
   now_or_given();
-  stage_ = pipeline_.find("island");
+  const auto& stages = pipeline_.stages();
+  const auto island = std::find_if(stages.begin(), stages.end(),
+                                   [](const auto& stage) { return stage->info().own_grid; });
+  if (island == stages.end()) throw Bug("island: no stage has a grid of its own");
+  stage_ = static_cast<int>(island - stages.begin());
   folder_.open();  // nobody else adds to its manifest now
   manifest_ = read_manifest(folder_.manifest());
-  manifest_.check_builders("island", folder_.path(), allow_other_build,
+  manifest_.check_builders(stage_name(), folder_.path(), allow_other_build,
                            "terrane run --overwrite computes the planet again");
   for (const FieldSpec* spec : pipeline_.stages()[stage_]->info().reads) {
     const bool there = std::any_of(
         manifest_.stages.begin(), manifest_.stages.end(), [&](const StageRecord& record) {
-          return !is_island(record) &&
+          return !record.own_grid &&
                  std::any_of(record.fields.begin(), record.fields.end(),
                              [&](const FieldRecord& field) { return field.name == spec->name; });
         });
@@ -66,15 +70,19 @@ void IslandSession::prepare(bool allow_other_build) {
         folder_.path().string(), spec->name, folder_.path().string()));
   }
   folder_.check_writable(0.0);
-  if (asks_for_exemplars(parameters_, "island.detail"))
+  if (asks_for_exemplars(parameters_, fmt::format("{}.detail", stage_name())))
     exemplars_ = exemplars_of(settings_.exemplars, planet_);
+}
+
+std::string_view IslandSession::stage_name() const {
+  return pipeline_.stages()[stage_]->info().name;
 }
 
 State IslandSession::read_planet() const {
   const StageInfo& info = pipeline_.stages()[stage_]->info();
   std::optional<State> state;
   for (const StageRecord& record : manifest_.stages) {
-    if (is_island(record)) continue;
+    if (record.own_grid) continue;
     const Snapshot snapshot = read_recorded(folder_.path(), record, [&](const FieldSpec& spec) {
       return lists(info.reads, spec) || lists(info.optional, spec);
     });
@@ -94,7 +102,7 @@ std::string IslandSession::execute(const RunEvents& events) {
     throw ConfigurationError(fmt::format(
         "{} holds a part of a planet: an island needs the whole of one", folder_.path().string()));
   }
-  const std::string name = manifest_.free_island_name(manifest_.complete ? 1 : 2);
+  const std::string name = manifest_.free_name(stage_name(), manifest_.complete ? 1 : 2);
   const auto seed = static_cast<std::uint64_t>(settings_.seed);
   const auto& build = build_info();
   const Provenance provenance{
@@ -116,6 +124,7 @@ std::string IslandSession::execute(const RunEvents& events) {
   context.stop = events.stop;
   StageRecord record;
   record.name = name;
+  record.own_grid = true;
   record.on_command = true;
   record.builder = this_builder();
   FieldsAtHand at_hand;
@@ -125,7 +134,7 @@ std::string IslandSession::execute(const RunEvents& events) {
   };
   observer.after = [&](int, const State& island, const Context& told) {
     Snapshot snapshot;
-    snapshot.stage = "island";
+    snapshot.stage = stage_name();
     snapshot.grid = island.shared_grid();
     for (const FieldSpec* spec : pipeline_.stages()[stage_]->info().writes) {
       snapshot.fields.emplace_back(spec, island.values(*spec));

@@ -47,6 +47,7 @@ Json to_json(const StageRecord& stage) {
   Json fields = Json::object();
   for (const FieldRecord& field : stage.fields) fields[field.name] = to_json(field);
   Json json{{"name", stage.name}, {"seconds", stage.seconds}, {"budget", stage.budget}};
+  if (stage.own_grid) json["own_grid"] = true;
   if (stage.on_command) json["on_command"] = true;
   if (!stage.events.empty()) {
     json["events"] = Json::array();
@@ -92,8 +93,8 @@ EventRecord event_from(const Json& json) {
 StageRecord stage_from(const Json& json) {
   StageRecord stage;
   json.at("name").get_to(stage.name);
-  // Earlier versions did not tell, and left the first name to the run.
-  stage.on_command = json.value("on_command", stage.name.starts_with("island-"));
+  stage.own_grid = json.value("own_grid", false);
+  stage.on_command = json.value("on_command", false);
   json.at("seconds").get_to(stage.seconds);
   for (const auto& [name, value] : json.at("budget").items()) {
     stage.budget[name] = number_or_nan(value);
@@ -171,7 +172,8 @@ Manifest read_manifest(const std::filesystem::path& path) {
 }
 
 std::string disagreement(const StageRecord& record, const Snapshot& file) {
-  if (record.name != file.stage && !(is_island(record) && file.stage == island_name(1))) {
+  const bool is_further = record.own_grid && record.name.starts_with(file.stage + "-");
+  if (record.name != file.stage && !is_further) {
     return fmt::format("stage is {}, manifest says {}", file.stage, record.name);
   }
   for (const FieldRecord& field : record.fields) {
@@ -241,9 +243,9 @@ void Manifest::check_builders(std::string_view asked_by, const std::filesystem::
   if (!was_allowed) allowed.emplace_back(kOtherBuild);
 }
 
-std::string Manifest::free_island_name(int first) const {
+std::string Manifest::free_name(std::string_view stage, int first) const {
   for (int number = first;; ++number) {
-    const std::string name = island_name(number);
+    const std::string name = number <= 1 ? std::string(stage) : fmt::format("{}-{}", stage, number);
     const bool taken = std::any_of(stages.begin(), stages.end(),
                                    [&](const StageRecord& record) { return record.name == name; });
     if (!taken) return name;
@@ -260,14 +262,6 @@ std::string netcdf_of(const StageRecord& record) {
     if (std::filesystem::path(file).extension() == ".nc") return file;
   }
   throw InputError(fmt::format("manifest.json: stage {} lists no NetCDF file", record.name));
-}
-
-bool is_island(const StageRecord& record) {
-  return record.name == "island" || record.name.starts_with("island-");
-}
-
-std::string island_name(int number) {
-  return number <= 1 ? "island" : fmt::format("island-{}", number);
 }
 
 }  // namespace geo::io

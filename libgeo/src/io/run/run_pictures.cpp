@@ -51,7 +51,7 @@ State final_state(const RunFolder& folder, const Manifest& manifest, const Field
     return lists(wanted, spec) && !(state && state->has(spec));
   };
   for (auto record = manifest.stages.rbegin(); record != manifest.stages.rend(); ++record) {
-    if (is_island(*record)) continue;
+    if (record->own_grid) continue;
     const bool has_missing = std::any_of(wanted.begin(), wanted.end(), [&](const FieldSpec* spec) {
       return is_missing(*spec) && holds(*record, spec->name);
     });
@@ -119,8 +119,7 @@ const StageRecord& stage_of(const Manifest& manifest, const FieldOfRun& wanted,
     if (!wanted.stage.empty() && record.name != wanted.stage) continue;
     for (const FieldRecord& field : record.fields) fields.push_back(field.name);
     // Of the planet rather than of an island, the last.
-    if (holds(record, wanted.field) &&
-        (found == nullptr || is_island(*found) || !is_island(record))) {
+    if (holds(record, wanted.field) && (found == nullptr || found->own_grid || !record.own_grid)) {
       found = &record;
     }
   }
@@ -152,7 +151,7 @@ std::vector<const FieldSpec*> companions_of(std::string_view field, bool of_isla
 /// have as the planet has them at the end.
 State state_for(const RunFolder& folder, const Manifest& manifest, const StageRecord& record,
                 std::string_view field) {
-  const bool of_island = is_island(record);
+  const bool of_island = record.own_grid;
   std::vector<const FieldSpec*> wanted = companions_of(field, of_island);
   const Snapshot snapshot = read_recorded(folder.path(), record, [&](const FieldSpec& spec) {
     return spec.name == field || lists(wanted, spec);
@@ -164,7 +163,7 @@ State state_for(const RunFolder& folder, const Manifest& manifest, const StageRe
   std::vector<std::filesystem::path> files;
   for (const StageRecord& each : manifest.stages) {
     const auto has = [&](const FieldSpec* spec) { return holds(each, spec->name); };
-    if (!is_island(each) && std::any_of(wanted.begin(), wanted.end(), has)) {
+    if (!each.own_grid && std::any_of(wanted.begin(), wanted.end(), has)) {
       files.push_back(folder.path() / netcdf_of(each));
     }
   }
@@ -208,7 +207,7 @@ std::optional<PlanetMonths> months_of(const RunFolder& folder, const Manifest& m
                                       const Grid& grid) {
   if (!configured_flag(read_text(folder.config()), "output.monthly")) return {};
   for (const StageRecord& record : manifest.stages) {
-    if (is_island(record) || !holds(record, field::precipitation_seasonality.name)) continue;
+    if (record.own_grid || !holds(record, field::precipitation_seasonality.name)) continue;
     // That the file is the run's own is made sure of first.
     (void)read_recorded(folder.path(), record, [](const FieldSpec&) { return false; });
     return read_planet_months(folder.path() / netcdf_of(record), grid, kMostColumns);
@@ -272,7 +271,7 @@ std::vector<std::filesystem::path> draw_run(const RunFolder& folder, const MapVi
   pieces.emplace_back([&] { report.globe = globe_markup(state, frames_of(folder), months); });
   std::vector<const StageRecord*> islands;
   for (const StageRecord& record : manifest.stages) {
-    if (is_island(record)) islands.push_back(&record);
+    if (record.own_grid) islands.push_back(&record);
   }
   std::vector<std::vector<MapFile>> island_maps(islands.size());
   for (std::size_t k = 0; k < islands.size(); ++k) {
@@ -341,14 +340,14 @@ FieldsOfRun read_fields_of_run(const RunFolder& folder, const FieldOfRun& wanted
     return besides(spec) && std::none_of(fields.begin(), fields.end(),
                                          [&](const auto& held) { return held.first == &spec; });
   };
-  if (is_island(record)) return found;
+  if (record.own_grid) return found;
   for (auto other = manifest.stages.rbegin(); other != manifest.stages.rend(); ++other) {
     const bool has_some =
         std::any_of(other->fields.begin(), other->fields.end(), [&](const FieldRecord& held) {
           const FieldSpec* const spec = field::find(held.name);
           return spec != nullptr && is_lacking(*spec);
         });
-    if (is_island(*other) || &*other == &record || !has_some) continue;
+    if (other->own_grid || &*other == &record || !has_some) continue;
     Snapshot snapshot = read_recorded(folder.path(), *other, is_lacking);
     if (snapshot.grid->size() != found.snapshot.grid->size()) continue;
     for (auto& held : snapshot.fields) fields.push_back(std::move(held));

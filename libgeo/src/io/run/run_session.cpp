@@ -92,7 +92,7 @@ void RunSession::name_islands_anew() {
   const std::string_view own = run_.name_of(plan_.first);
   for (StageRecord& record : manifest_.stages) {
     if (!record.on_command || record.name != own) continue;
-    record.name = manifest_.free_island_name(2);
+    record.name = manifest_.free_name(own, 2);
     const auto digests = std::exchange(record.file_digests, {});
     for (std::string& file : record.files) {
       const std::string before = file;
@@ -184,6 +184,7 @@ void RunSession::write_stage(BackgroundWriter& writer, FrameFiles& frames, int p
   job->steps = context.steps;
   job->tables = context.tables;
   job->record.name = run_.name_of(position);
+  job->record.own_grid = run_.stage(position).info().own_grid;
   job->record.builder = this_builder();
   job->record.seconds = time_is_given() ? 0.0 : seconds;
   job->record.budget = context.budget;
@@ -251,7 +252,7 @@ void RunSession::compute(const RunEvents& events) {
   BackgroundWriter writer;
   int running = plan_.first;
   context.on_frame = [&](Frame frame) {
-    frames.write(writer, std::move(frame), provenance_of(running));
+    frames.write(writer, run_.name_of(running), std::move(frame), provenance_of(running));
   };
   Clock::time_point start;
   Pipeline::Observer observer;

@@ -26,7 +26,7 @@ bool write_globe_files(const RunFolder& folder, Manifest& manifest, double times
   std::vector<std::filesystem::path> files;
   std::shared_ptr<const Values> heights;
   for (StageRecord& record : manifest.stages) {
-    if (is_island(record)) continue;
+    if (record.own_grid) continue;
     const auto netcdf = folder.path() / netcdf_of(record);
     const Snapshot snapshot =
         read_recorded(folder.path(), record, [](const FieldSpec&) { return true; });

@@ -293,11 +293,21 @@ void warn_of_slow_rotation(const Circulation& circulation, Context& context) {
                   circulation.rotation_period_h, kRadiativeTime_h));
 }
 
+/// Time of one thread for the air on its own grid, as in StageCost.
+double air_seconds(const ClimateParameters& p) {
+  constexpr double kAtTwoDegrees_s = 2.0, kGrowth = 2.3;
+  if (p.model == "blueprint") return 0.0;
+  return kAtTwoDegrees_s * std::pow(2.0 / p.resolution_deg, kGrowth);
+}
+
 class ClimateStage final : public Stage {
  public:
   explicit ClimateStage(ClimateParameters parameters) : p_(std::move(parameters)) {}
   [[nodiscard]] const StageInfo& info() const override { return info_; }
   [[nodiscard]] std::vector<Parameter> parameters() override { return p_.declarations(); }
+  [[nodiscard]] StageCost cost(std::span<const Parameter> /*configuration*/) const override {
+    return {.per_cell_ns = 300.0, .fixed_s = air_seconds(p_), .cell_bytes = 110.0};
+  }
 
   void run(StageIo& io, Context& context) const override {
     const auto elevation = io.read(field::elevation);

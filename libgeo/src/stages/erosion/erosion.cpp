@@ -227,6 +227,17 @@ class ErosionStage final : public Stage {
     return kInfo[(parameters_.deposits() ? 1 : 0) + (parameters_.freezes() ? 2 : 0)];
   }
   [[nodiscard]] std::vector<Parameter> parameters() override { return parameters_.declarations(); }
+  [[nodiscard]] StageCost cost(std::span<const Parameter> configuration) const override {
+    constexpr double kStep_ns = 259.0, kIce_ns = 2000.0;  // cold and warm times, and today
+    const auto steps = static_cast<double>(parameters_.steps);
+    const bool follows_rain = parameters_.discharge == "rain" && parameters_.steps > 0;
+    const double climates =
+        follows_rain ? std::min(static_cast<double>(parameters_.climates), steps) : 0.0;
+    const double ice_ns = follows_rain && parameters_.freezes() ? kIce_ns : 0.0;
+    return {.per_cell_ns = kStep_ns * steps + ice_ns,
+            .fixed_s = climates * climate_of_land_seconds(configuration),
+            .cell_bytes = 170.0};
+  }
 
   void run(StageIo& io, Context& context) const override {
     const Grid& grid = io.grid();

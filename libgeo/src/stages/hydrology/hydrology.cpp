@@ -137,6 +137,9 @@ class HydrologyStage final : public Stage {
   explicit HydrologyStage(HydrologyParameters parameters) : p_(std::move(parameters)) {}
   [[nodiscard]] const StageInfo& info() const override { return info_; }
   [[nodiscard]] std::vector<Parameter> parameters() override { return p_.declarations(); }
+  [[nodiscard]] StageCost cost(std::span<const Parameter> /*configuration*/) const override {
+    return {.per_cell_ns = 100.0, .cell_bytes = 150.0};
+  }
 
   void run(StageIo& io, Context& context) const override {
     const Grid& grid = io.grid();

@@ -80,6 +80,9 @@ class IslandStage final : public Stage {
     return follows_exemplars() ? guided_ : info_;
   }
   [[nodiscard]] std::vector<Parameter> parameters() override { return p_.declarations(); }
+  [[nodiscard]] StageCost cost(std::span<const Parameter> /*configuration*/) const override {
+    return {.per_cell_ns = 2500.0, .cell_bytes = 400.0};
+  }
 
   void run(StageIo& io, Context& context) const override {
     if (io.grid().topology() != Topology::sphere) {

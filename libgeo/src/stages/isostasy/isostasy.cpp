@@ -177,6 +177,9 @@ class IsostasyStage final : public Stage {
     return follows_exemplars() ? kGuided : stage_info();
   }
   [[nodiscard]] std::vector<Parameter> parameters() override { return parameters_.declarations(); }
+  [[nodiscard]] StageCost cost(std::span<const Parameter> /*configuration*/) const override {
+    return {.per_cell_ns = 1950.0, .cell_bytes = 115.0};
+  }
 
   void run(StageIo& io, Context& context) const override {
     const bool on_torus = io.grid().topology() == Topology::torus;

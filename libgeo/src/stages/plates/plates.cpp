@@ -305,6 +305,20 @@ class PlatesStage final : public Stage {
     return parameters_.initial_elevation == "hypsography" ? kStarting : kDrifting;
   }
   [[nodiscard]] std::vector<Parameter> parameters() override { return parameters_.declarations(); }
+  [[nodiscard]] StageCost cost(std::span<const Parameter> /*configuration*/) const override {
+    constexpr double kMesh_s = 0.45;     // plates that grow, on a mesh of their own
+    constexpr double kDrift_ns = 190.0;  // per sample and million years
+    constexpr double kRaster_s = 3.0;
+    const std::string& model = parameters_.model;
+    const double drift_s =
+        1e-9 * kDrift_ns * static_cast<double>(parameters_.samples) * parameters_.time_myr;
+    return {.per_cell_ns = 500.0,
+            .fixed_s = model == "sphere"   ? drift_s
+                       : model == "raster" ? kRaster_s
+                       : model == "growth" ? kMesh_s
+                                           : 0.0,
+            .cell_bytes = 60.0};
+  }
 
   void run(StageIo& io, Context& context) const override {
     if (parameters_.model == "sphere") return drift(parameters_, info(), io, context);

@@ -12,6 +12,17 @@ namespace {
 
 constexpr int kMostColumns = 512;
 
+/// The stage `climate` with the settings that it has in a run.
+std::unique_ptr<Stage> climate_stage_of(std::span<const Parameter> configuration) {
+  auto stage = make_climate_stage();
+  for (const Parameter& parameter : stage->parameters()) {
+    if (const Parameter* outside = find_parameter(configuration, parameter.name)) {
+      parameter.set(outside->value());
+    }
+  }
+  return stage;
+}
+
 }  // namespace
 
 bool has_climate(const Grid& grid, const Context& context) {
@@ -28,12 +39,7 @@ LandClimate climate_of_land(const Grid& grid, std::span<const float> elevation_m
   const std::span<float> height_m = scratch.update(field::elevation);
   resample_raster(fine, elevation_m, coarse, height_m, grid.figure());
 
-  const auto stage = make_climate_stage();
-  for (const Parameter& parameter : stage->parameters()) {
-    if (const Parameter* outside = find_parameter(context.configuration, parameter.name)) {
-      parameter.set(outside->value());
-    }
-  }
+  const auto stage = climate_stage_of(context.configuration);
   Context inner;
   inner.planet = context.planet;
   inner.seed = context.seed;
@@ -56,6 +62,10 @@ LandClimate climate_of_land(const Grid& grid, std::span<const float> elevation_m
   }
   lay(at_sea_level, climate.sea_level_temperature_c);
   return climate;
+}
+
+double climate_of_land_seconds(std::span<const Parameter> configuration) {
+  return climate_stage_of(configuration)->cost(configuration).fixed_s;
 }
 
 }  // namespace geo

@@ -19,5 +19,7 @@ inline constexpr float kLapse_K_m = 6.5e-3F;
 /// from there. Events do not act on it: they are sudden, this is the mean of an age.
 [[nodiscard]] LandClimate climate_of_land(const Grid& grid, std::span<const float> elevation_m,
                                           Context& context);
+/// What that takes, as in StageCost, with the climate's settings in `configuration`.
+[[nodiscard]] double climate_of_land_seconds(std::span<const Parameter> configuration);
 
 }  // namespace geo

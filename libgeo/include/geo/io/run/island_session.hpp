@@ -38,6 +38,7 @@ class IslandSession {
   std::string execute(const RunEvents& events);
 
  private:
+  [[nodiscard]] std::string_view stage_name() const;
   [[nodiscard]] State read_planet() const;
 
   const Pipeline& pipeline_;

@@ -35,6 +35,7 @@ struct StageRecord {
   std::map<std::string, std::string> file_digests;  ///< of their bytes
   std::vector<FieldRecord> fields;
   Builder builder;
+  bool own_grid = false;    ///< a part of the planet seen closer, StageInfo::own_grid: an island
   bool on_command = false;  ///< an island that `terrane island` made, not the run's own
 
   /// Adds a file of the run's folder with its digest, once. Throws IoError.
@@ -65,8 +66,9 @@ struct Manifest {
   /// word. Throws ConfigurationError.
   void check_builders(std::string_view asked_by, const std::filesystem::path& folder, bool allow,
                       std::string_view otherwise);
-  /// The first name of an island that no stage has, of this number or a higher one.
-  [[nodiscard]] std::string free_island_name(int first) const;
+  /// The first name of an island that no record has, of this number or a higher one: that of the
+  /// stage, then with "-2" behind it.
+  [[nodiscard]] std::string free_name(std::string_view stage, int first) const;
 };
 
 /// Writes manifest.json whole or not at all. Throws IoError.
@@ -82,11 +84,6 @@ std::string disagreement(const StageRecord& record, const FieldSpec& spec, const
 
 /// Name of the NetCDF file of a stage, relative to the folder. Throws InputError if it has none.
 std::string netcdf_of(const StageRecord& record);
-/// Whether the record is that of an island, "island" or "island-2", whose file lies on a grid of
-/// its own.
-bool is_island(const StageRecord& record);
-/// "island" of the first, "island-2" of the second.
-std::string island_name(int number);
 
 /// Versions of the libraries that this program runs with.
 std::map<std::string, std::string> library_versions();

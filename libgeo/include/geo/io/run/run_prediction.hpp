@@ -12,8 +12,8 @@ struct Prediction {
   double disk_bytes = 0.0;
 };
 
-/// Predicts stages first..last of a pipeline on `cells` cells from costs per cell, one table in the
-/// source, scaled to the speed of this machine. `vtk_share` is 0 where no VTK files are written,
+/// Predicts stages first..last of a pipeline on `cells` cells from what each says that it costs,
+/// scaled to the speed of this machine. `vtk_share` is 0 where no VTK files are written,
 /// else share_of_vtk; `map_width_px` is 0 where no maps are drawn.
 Prediction predict(const Pipeline& pipeline, int first, int last, double cells,
                    const MachineSpeed& speed, double vtk_share, double map_width_px);
