@@ -32,8 +32,11 @@ State plates_of(std::span<const Parameter> configuration, std::uint64_t seed, in
 
 }  // namespace
 
-SeedPlanet::SeedPlanet(std::span<const Parameter> configuration, std::uint64_t seed, int nx, int ny)
-    : seed_(seed), state_(plates_of(configuration, seed, nx, ny)), coarse_(state_.grid()) {}
+SeedPlanet::SeedPlanet(std::span<const Parameter> configuration, std::uint64_t seed, int nx, int ny,
+                       bool sea_in_gap)
+    : seed_(seed), state_(plates_of(configuration, seed, nx, ny)), coarse_(state_.grid()) {
+  held_.sea.at_shore = sea_in_gap;
+}
 
 void SeedPlanet::hold_frame(const IsostasyParameters& p, const CrustInputs& in) {
   if (held_.frame && held_.divergent_length_km == p.divergent_length_km &&

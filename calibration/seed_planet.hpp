@@ -66,8 +66,10 @@ struct FrozenDrainage {
 /// Plates of one seed, and the relief that isostasy and erosion make of them.
 class SeedPlanet {
  public:
-  /// Grows the plates, with the settings of the configuration.
-  SeedPlanet(std::span<const Parameter> configuration, std::uint64_t seed, int nx, int ny);
+  /// Grows the plates, with the settings of the configuration. `sea_in_gap`: the sea stands between
+  /// the heights of cells, where nothing bends, by up to half a gap lower than in a run.
+  SeedPlanet(std::span<const Parameter> configuration, std::uint64_t seed, int nx, int ny,
+             bool sea_in_gap = true);
 
   [[nodiscard]] std::uint64_t seed() const { return seed_; }
   [[nodiscard]] const Grid& grid() const { return state_.grid(); }
