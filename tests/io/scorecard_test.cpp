@@ -42,7 +42,7 @@ State whole_planet(int nx = 480) {
   });
   fill(field::temperature_range, [&](Index c) { return land(c) ? 20.0 : 6.0; });
   fill(field::precipitation, [&](Index c) { return 200.0 + 1500.0 * std::cos(0.1 * column(c)); });
-  fill(field::potential_evaporation, [](Index) { return 1000.0; });
+  fill(field::potential_evapotranspiration, [](Index) { return 1000.0; });
   const auto next_is_sea = [&](Index c) { return !land(grid.neighbour(c, kEast)); };
   fill(field::flow_receiver, [&](Index c) { return land(c) ? grid.neighbour(c, kEast) : c; });
   fill(field::drainage_area,

@@ -308,7 +308,7 @@ class ClimateStage final : public Stage {
                       io.write(field::wind_east),
                       io.write(field::wind_north),
                       io.write(field::distance_to_coast),
-                      io.write(field::potential_evaporation),
+                      io.write(field::potential_evapotranspiration),
                       io.write(field::sea_ice_area_fraction),
                       io.write(field::koppen_class)};
     warn_of_slow_rotation(p_.seasonal.circulation, context);
@@ -475,7 +475,7 @@ class ClimateStage final : public Stage {
                   {},
                   {&field::temperature, &field::temperature_range, &field::precipitation,
                    &field::precipitation_seasonality, &field::wind_east, &field::wind_north,
-                   &field::distance_to_coast, &field::potential_evaporation,
+                   &field::distance_to_coast, &field::potential_evapotranspiration,
                    &field::sea_ice_area_fraction, &field::koppen_class},
                   /*own_grid=*/false,
                   /*feels_events=*/true};

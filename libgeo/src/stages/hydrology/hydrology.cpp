@@ -149,7 +149,7 @@ class HydrologyStage final : public Stage {
     std::vector<double> water(grid.size());
     std::vector<float> loss(grid.size());
     const LandWater land = land_water(grid, sea, io.read(field::precipitation),
-                                      io.read(field::potential_evaporation), water, loss);
+                                      io.read(field::potential_evapotranspiration), water, loss);
     const double inflow = add_inflow(io.read_optional(field::inflow_discharge), water);
     context.advance(0.1);
     const Bytes closed =
@@ -296,7 +296,7 @@ class HydrologyStage final : public Stage {
   StageInfo info_{"hydrology",
                   "runoff, lakes, rivers and basins; valleys carved by rivers",
                   {&field::elevation, &field::temperature, &field::precipitation,
-                   &field::potential_evaporation},
+                   &field::potential_evapotranspiration},
                   {&field::inflow_area, &field::inflow_discharge, &field::ice_thickness,
                    &field::glacial_erosion},
                   {&field::elevation, &field::slope, &field::flow_direction, &field::flow_receiver,

@@ -193,8 +193,8 @@ void interpolate_climate(const PlanetCells& cells, const PlaceLaw& law,
       const double here = evaporating_warmth(to.temperature[c], to.temperature_range[c]);
       constexpr double kMost = 3.0;
       const double ratio = usual > 0.1 ? std::min(here / usual, kMost) : 1.0;
-      to.potential_evaporation[c] =
-          static_cast<float>(std::max(0.0F, take(from.potential_evaporation)) * ratio);
+      to.potential_evapotranspiration[c] =
+          static_cast<float>(std::max(0.0F, take(from.potential_evapotranspiration)) * ratio);
     }
   }
 }
