@@ -189,10 +189,10 @@ TEST(PlanetFile, TakesEachFieldFromTheLastStageThatWroteItAndPassesOverIslands) 
   EXPECT_EQ(state.read(field::elevation)[0], 2.0F);
   EXPECT_FALSE(state.has(field::temperature));
   EXPECT_FALSE(state.has(field::slope));
-  const auto file = read_planet_or_relief(folder / "03-erosion.nc", wanted);
+  const auto file = read_planet_or_dem(folder / "03-erosion.nc", wanted);
   EXPECT_EQ(file.read(field::elevation)[0], 1.0F);
-  EXPECT_THROW(read_planet_or_relief(folder / "07-island.nc", wanted), InputError);
-  EXPECT_THROW(read_planet_or_relief(folder / "08-nothing.nc", wanted), IoError);
+  EXPECT_THROW(read_planet_or_dem(folder / "07-island.nc", wanted), InputError);
+  EXPECT_THROW(read_planet_or_dem(folder / "08-nothing.nc", wanted), IoError);
   const TemporaryFolder empty;
   EXPECT_THROW(read_planet(empty.path(), wanted), InputError);
 }

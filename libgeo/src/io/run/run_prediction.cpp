@@ -18,7 +18,7 @@ struct StageCost {
 };
 
 // Measured on default planets of 128 x 64 to 1024 x 512 cells, processor time of one thread on an
-// Intel Xeon at 2.5 GHz; memory on larger ones and on Earth's relief at 5'.
+// Intel Xeon at 2.5 GHz; memory on larger ones and on Earth's topography at 5'.
 constexpr StageCost kStageCosts[] = {
     {"plates", 500.0, 60.0},   {"isostasy", 1950.0, 115.0}, {"erosion", 0.0, 170.0},  // by the step
     {"climate", 300.0, 110.0}, {"hydrology", 100.0, 150.0}, {"biomes", 70.0, 130.0},
