@@ -105,7 +105,7 @@ enum class BoundaryType : std::int8_t { interior, convergent, divergent, transfo
 /// continent.
 enum class OrogenyType : std::int8_t { none, andean, himalayan };
 
-/// What the ground is made of, as far as rivers feel it.
+/// What the ground is made of, as far as it decides how fast rivers incise.
 enum class RockType : std::int8_t { basalt, schist, granite, quartzite, sandstone, limestone };
 
 /// Biomes 0..11 (Whittaker 1975), colours aside.

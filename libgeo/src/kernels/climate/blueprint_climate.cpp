@@ -55,10 +55,11 @@ double hadley_precipitation_mm_yr(double latitude_deg) {
   return kRain[k] + along * (kRain[k + 1] - kRain[k]);
 }
 
-void blueprint_relief_precipitation(const Grid& grid, const BlueprintClimate& model,
-                                    std::span<const double> latitude_deg,
-                                    std::span<const float> land_fraction,
-                                    std::span<const float> height_m, std::span<float> rain_mm_yr) {
+void blueprint_orographic_precipitation(const Grid& grid, const BlueprintClimate& model,
+                                        std::span<const double> latitude_deg,
+                                        std::span<const float> land_fraction,
+                                        std::span<const float> height_m,
+                                        std::span<float> rain_mm_yr) {
   constexpr double kLandStep_km = 40.0, kShadowStep_km = 20.0;
   const DisplacedSampler land(grid, land_fraction), height(grid, height_m);
 #pragma omp parallel for schedule(static)

@@ -57,7 +57,7 @@ class SeasonalYear {
   void exchange();
   void rain(bool last);
   void evaporate();
-  void lift(const ReliefAscent& ascent);
+  void lift(const TerrainAscent& ascent);
   [[nodiscard]] SeasonalFields fields() const;
 
  private:
@@ -324,7 +324,7 @@ void SeasonalYear::evaporate_cell(std::size_t cell) {
   }
 }
 
-void SeasonalYear::lift(const ReliefAscent& ascent) {
+void SeasonalYear::lift(const TerrainAscent& ascent) {
   std::vector<float> east(size_), north(size_);
   for (std::size_t cell = 0; cell < size_; ++cell) {
     double sum_east = 0.0, sum_north = 0.0;
@@ -406,7 +406,8 @@ SeasonalFields SeasonalYear::fields() const {
 SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& model,
                                       std::span<const double> latitude_deg,
                                       std::span<const float> land_fraction,
-                                      std::span<const float> height_m, const ReliefAscent& ascent) {
+                                      std::span<const float> height_m,
+                                      const TerrainAscent& ascent) {
   SeasonalYear year(grid, model, latitude_deg, land_fraction, height_m);
   year.warm();
   constexpr int kRounds = 7, kLevelRounds = 3;

@@ -323,10 +323,10 @@ class ClimateStage final : public Stage {
     const auto model = on_planet(p_.seasonal, context.planet, p_.blueprint.greenhouse_k);
     const auto relief_size = static_cast<std::size_t>(frame.relief().size());
     std::vector<float> relief_land(relief_size), relief_height(relief_size), coverage(relief_size);
-    frame.on_relief().average_relief(elevation, relief_land, relief_height, coverage);
+    frame.on_relief().average_elevation(elevation, relief_land, relief_height, coverage);
     const bool closed_formulas = p_.model == "blueprint";
     std::vector<float> ascent, planet_ascent;
-    ReliefAscent ascent_of;  // the blueprint has its own
+    TerrainAscent ascent_of;  // the blueprint has its own
     if (!closed_formulas) {
       ascent_of = [&](std::span<const float> wind_east, std::span<const float> wind_north) {
         ascent = relief_ascent(frame, wind_east, wind_north, relief_height, p_);
@@ -341,8 +341,8 @@ class ClimateStage final : public Stage {
         dim_the_sun(model.energy, closed_formulas ? &p_.blueprint : nullptr, context);
     if (closed_formulas) {
       ascent.resize(relief_size);
-      blueprint_relief_precipitation(frame.relief(), p_.blueprint, frame.relief_latitudes_deg(),
-                                     relief_land, relief_height, ascent);
+      blueprint_orographic_precipitation(frame.relief(), p_.blueprint, frame.relief_latitudes_deg(),
+                                         relief_land, relief_height, ascent);
       planet_ascent.assign(size, 1.0F);
     }
     finish(shared_frame, model, fields, planet_ascent, ascent, elevation, dimmed, context, out);
@@ -470,7 +470,7 @@ class ClimateStage final : public Stage {
 
   ClimateParameters p_;
   StageInfo info_{"climate",
-                  "temperature, winds and rain from insolation, relief and the sea",
+                  "temperature, winds and rain from insolation, topography and the sea",
                   {&field::elevation},
                   {},
                   {&field::temperature, &field::temperature_range, &field::precipitation,

@@ -9,7 +9,7 @@
 
 namespace geo {
 
-/// Roughness of a planet's relief at the scale of its own cells, m: the root mean square, over the
+/// Roughness of a planet's surface at the scale of its own cells, m: the root mean square, over the
 /// four directions through a cell, of its height above the mean of the two neighbours, and over the
 /// cell and its eight neighbours. Slopes do not count, and heights beyond a shore count as the sea
 /// level. `covered` holds one value per covered cell of the planet.

@@ -63,7 +63,7 @@ void incise_and_deposit(const Grid& grid, const FlowGraph& graph, std::span<cons
                         const Arithmetic<Z>& deposition, std::span<const std::uint8_t> flooded,
                         std::span<Z> elevation_m);
 
-/// Rock and sediment that leave each cell along its receiver while a relief changes from
+/// Rock and sediment that leave each cell along its receiver while elevation changes from
 /// `before_m` to `after_m`, m3: its own loss and that of all cells upstream. At a root: what
 /// arrives there, its own change aside.
 template <class Z>

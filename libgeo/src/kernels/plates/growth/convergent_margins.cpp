@@ -193,18 +193,18 @@ ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int1
     const auto decides = [&](double left, double right) {
       return left < right || (left == right && side[0].plate < side[1].plate);
     };
-    bool first_goes_down;
+    bool first_subducts;
     if (a != b) {
-      first_goes_down = b;
+      first_subducts = b;
       kind.push_back(Convergence::ocean_continent);
     } else if (a) {
-      first_goes_down = decides(side[1].speed, side[0].speed);
+      first_subducts = decides(side[1].speed, side[0].speed);
       kind.push_back(Convergence::continents);
     } else {
-      first_goes_down = decides(side[1].floor_myr, side[0].floor_myr);
+      first_subducts = decides(side[1].floor_myr, side[0].floor_myr);
       kind.push_back(Convergence::oceans);
     }
-    down.push_back(side[first_goes_down ? 0 : 1].plate);
+    down.push_back(side[first_subducts ? 0 : 1].plate);
     closing.push_back(
         static_cast<float>(closing_speed(grid, side[0], side[1], east_mm_yr, north_mm_yr)));
     sources.add(grid, cell, kHandicap_m * (1.0 - boundary_strength[cell]));
