@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "geo/core/array_sizes.hpp"
 #include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/climate/evaporation.hpp"
 #include "geo/kernels/climate/insolation.hpp"
@@ -408,6 +409,9 @@ SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& m
                                       std::span<const float> land_fraction,
                                       std::span<const float> height_m,
                                       const TerrainAscent& ascent) {
+  check_sizes("solve_seasonal_climate", grid.ny(), {{"latitude_deg", latitude_deg.size()}});
+  check_sizes("solve_seasonal_climate", grid.size(),
+              {{"land_fraction", land_fraction.size()}, {"height_m", height_m.size()}});
   SeasonalYear year(grid, model, latitude_deg, land_fraction, height_m);
   year.warm();
   constexpr int kRounds = 7, kLevelRounds = 3;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "geo/core/array_sizes.hpp"
 #include "geo/core/error.hpp"
 #include "geo/core/parallel_errors.hpp"
 
@@ -105,6 +106,8 @@ void ConservativeRemapping::for_overlaps(int coarse_row, Visit&& visit) const {
 }
 
 void ConservativeRemapping::average(std::span<const float> values, std::span<float> mean) const {
+  check_sizes("ConservativeRemapping", fine_.size(), {{"values", values.size()}});
+  check_sizes("ConservativeRemapping", coarse_.size(), {{"mean", mean.size()}});
   ParallelErrors errors;
 #pragma omp parallel
   {
@@ -133,6 +136,11 @@ void ConservativeRemapping::average_elevation(std::span<const float> elevation,
                                               std::span<float> land_fraction,
                                               std::span<float> height_m,
                                               std::span<float> coverage) const {
+  check_sizes("ConservativeRemapping", fine_.size(), {{"elevation", elevation.size()}});
+  check_sizes("ConservativeRemapping", coarse_.size(),
+              {{"land_fraction", land_fraction.size()},
+               {"height_m", height_m.size()},
+               {"coverage", coverage.size()}});
   ParallelErrors errors;
 #pragma omp parallel
   {
@@ -181,6 +189,7 @@ Interpolator::Taps Interpolator::taps(double position, int count, bool wraps) {
 
 Interpolator::Interpolator(const ConservativeRemapping& remapping,
                            std::span<const float> coarse_values, Kind kind) {
+  check_sizes("Interpolator", remapping.coarse_.size(), {{"coarse_values", coarse_values.size()}});
   const Grid& coarse = remapping.coarse_;
   const int nx = coarse.nx(), ny = coarse.ny();
   const Topology topology = coarse.topology();

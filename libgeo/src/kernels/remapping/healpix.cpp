@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "geo/core/array_sizes.hpp"
 #include "geo/core/error.hpp"
 #include "geo/core/parallel_errors.hpp"
 
@@ -201,6 +202,8 @@ void HealpixRemapping::for_overlaps(std::int32_t pixel, const Visit& visit) cons
 }
 
 void HealpixRemapping::mean(std::span<const float> values, std::span<float> mean) const {
+  check_sizes("HealpixRemapping", static_cast<std::size_t>(nx_) * ny_, {{"values", values.size()}});
+  check_sizes("HealpixRemapping", pixels_.size(), {{"mean", mean.size()}});
 #pragma omp parallel for schedule(dynamic, 4096)
   for (std::int32_t pixel = 0; pixel < pixels_.size(); ++pixel) {
     double sum = 0.0, weight = 0.0;
@@ -216,6 +219,8 @@ void HealpixRemapping::mean(std::span<const float> values, std::span<float> mean
 
 void HealpixRemapping::dominant(std::span<const std::int32_t> values,
                                 std::span<std::int32_t> result) const {
+  check_sizes("HealpixRemapping", static_cast<std::size_t>(nx_) * ny_, {{"values", values.size()}});
+  check_sizes("HealpixRemapping", pixels_.size(), {{"result", result.size()}});
   ParallelErrors errors;
 #pragma omp parallel for schedule(dynamic, 4096)
   for (std::int32_t pixel = 0; pixel < pixels_.size(); ++pixel) {

@@ -50,6 +50,7 @@ struct BlueprintClimate {
 /// coastal exposure (5.6), orographic lift (5.7), rain shadow (5.8, subtracted), traced against the
 /// three-cell wind in kilometres over wrapping edges and poles.
 /// @param latitude_deg  per row
+/// `latitude_deg`: one value per row, from south to north; the others one per cell; Bug otherwise.
 void blueprint_orographic_precipitation(const Grid& grid, const BlueprintClimate& model,
                                         std::span<const double> latitude_deg,
                                         std::span<const float> land_fraction,

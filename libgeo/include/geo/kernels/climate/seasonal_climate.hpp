@@ -71,6 +71,7 @@ using TerrainAscent = std::function<std::vector<float>(std::span<const float> wi
 /// rain back. Waves and rain are iterated together. What `ascent` (empty: level ground) lets rain
 /// in one cell the air lacks in the next; rain and evaporation of the whole surface agree every
 /// month. Months run in parallel; the same bits for any number of threads.
+/// `latitude_deg`: one value per row, from south to north; the others one per cell; Bug otherwise.
 SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& model,
                                       std::span<const double> latitude_deg,
                                       std::span<const float> land_fraction,

@@ -12,11 +12,13 @@ namespace geo {
 /// here it is 0.2. The change, not the elevation, is smoothed over `smoothing_m`, within the land;
 /// alpha is then set again until the median is met within 1 %. Land is where `elevation_m` > 0; it
 /// stays above 0, and the sea is left alone. Returns the last alpha; 1 leaves all as it is.
+/// `elevation_m`: one value per cell, in and out; Bug otherwise.
 double bend_hypsometry(const Grid& grid, std::span<float> elevation_m, double median_m,
                        double smoothing_m);
 
 /// The same as the blueprint has it: alpha within 1 and 5, set once, so that the smoothing may
 /// leave the median beside its aim.
+/// `elevation_m`: one value per cell, in and out; Bug otherwise.
 double bend_hypsometry_once(const Grid& grid, std::span<float> elevation_m, double median_m,
                             double smoothing_m);
 

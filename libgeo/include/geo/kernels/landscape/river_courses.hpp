@@ -34,6 +34,7 @@ inline constexpr std::int32_t kCourseEnds = -1;
 /// and does not sink; elsewhere it may sink to a quarter of the planet's, and by 30 m anywhere:
 /// plains near the level of the sea have no other way out. `elevation_m`: one value per fine cell.
 /// Cost: n log n in the fine cells that each step passes. The same bits for any number of threads.
+/// `water`: as for find_inflow. `elevation_m`: one value per fine cell; Bug otherwise.
 RiverCourses trace_river_courses(const PlanetCells& cells, const PlanetWater& water,
                                  const Crossings& crossings, std::uint64_t seed,
                                  std::span<const float> elevation_m);
@@ -51,6 +52,7 @@ RiverCourses trace_river_courses(const PlanetCells& cells, const PlanetWater& wa
 /// nothing is cut below the level of the sea, and of the edge only cells on a course sink.
 /// `level_m` of the courses becomes the level found. Cost: n log n in the cells of courses and
 /// pools. Runs on one thread.
+/// Arrays have one value per cell (`check_sizes`); Bug otherwise.
 void open_river_courses(const Grid& fine, std::span<const std::uint8_t> outlets,
                         RiverCourses& courses, std::span<float> elevation_m);
 

@@ -33,9 +33,11 @@ class ConservativeRemapping {
 
   /// Area-weighted mean of the fine values that each coarse cell holds; 0 where the fine grid
   /// covers nothing.
+  /// `values`: one per fine cell, `mean`: one per coarse cell; Bug otherwise.
   void average(std::span<const float> values, std::span<float> mean) const;
   /// Area-weighted means of the land fraction (elevation >= 0) and of the elevation above sea
   /// level, and the share of each coarse cell that the fine grid covers (0..1).
+  /// `elevation`: one per fine cell, the others one per coarse cell; Bug otherwise.
   void average_elevation(std::span<const float> elevation, std::span<float> land_fraction,
                          std::span<float> height_m, std::span<float> coverage) const;
 
@@ -64,6 +66,7 @@ class ConservativeRemapping {
 class Interpolator {
  public:
   enum class Kind { scalar, vector_component };
+  /// `coarse_values`: one per coarse cell; Bug otherwise.
   Interpolator(const ConservativeRemapping& remapping, std::span<const float> coarse_values,
                Kind kind = Kind::scalar);
 

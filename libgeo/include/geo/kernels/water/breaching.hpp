@@ -21,6 +21,7 @@ struct BreachLimits {
 /// below sea level. No pit appears that was not there. Returns the number of cuts.
 /// Method: least-cost breaching (Lindsay & Dhun 2015; Lindsay 2016), with limits on both depth and
 /// length. Cost: linear in cells, plus a search of some dozen cells for each pit.
+/// Arrays have one value per cell (`check_sizes`); Bug otherwise.
 int breach_dams(const Grid& grid, std::span<const std::uint8_t> outlets, const BreachLimits& limits,
                 std::span<float> elevation_m);
 
@@ -39,6 +40,7 @@ struct GorgeLimits {
 /// cannot be cut stays whole, a lake or an endorheic basin. No pit appears that was not there.
 /// Returns the number of cuts. Method: breaching along flow paths (Martz & Garbrecht 1999), the
 /// limit of depth from hydraulic geometry. Cost: linear, plus the length of the cuts.
+/// Arrays have one value per cell (`check_sizes`); Bug otherwise.
 int grade_rivers(const Grid& grid, const FlowGraph& graph, std::span<const std::uint8_t> outlets,
                  std::span<const double> discharge_m3_s, const GorgeLimits& limits,
                  std::span<float> elevation_m);

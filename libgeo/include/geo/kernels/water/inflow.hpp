@@ -46,6 +46,7 @@ struct Crossings {
 /// in over is to be an outlet; where water leaves, none enters. On a lake, whose cells all carry
 /// the discharge of the whole, discharge goes by the share of the drainage area. Outputs: one value
 /// per fine cell, 0 elsewhere; `elevation_m` of the fine cells: in and out.
+/// Throws Bug where `water` does not have a value for each cell of the planet.
 Crossings find_inflow(const PlanetCells& cells, const PlanetWater& water,
                       std::span<float> elevation_m, std::span<double> inflow_area_m2,
                       std::span<float> inflow_m3_s);

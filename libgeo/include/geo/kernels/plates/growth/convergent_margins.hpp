@@ -49,6 +49,7 @@ struct ConvergentMargins {
 /// continental plate subducts; of two oceans the older; of two continents the faster.
 /// @param plate, boundary_type, boundary_strength, continental_fraction, age_myr, velocities of
 ///        plates, mm yr-1  per cell of a sphere grid
+/// Throws Bug where sizes differ.
 ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int16_t> plate,
                                      std::span<const std::int8_t> boundary_type,
                                      std::span<const float> boundary_strength,
@@ -63,6 +64,7 @@ struct DeformationSources {
   std::vector<float> strength;  ///< 0 where there is none at all
   std::vector<double> distance_km;
 };
+/// Arrays have one value per cell (`check_sizes`); Bug otherwise.
 DeformationSources deformation_sources(const Grid& grid, std::span<const std::int8_t> boundary_type,
                                        std::span<const float> boundary_strength, std::int8_t type,
                                        double length_km);
@@ -75,6 +77,7 @@ std::vector<float> propagated_deformation(const Grid& grid,
                                           std::int8_t type, double length_km);
 
 /// Distance of each cell to the nearest cell whose byte is not zero, km; 1e9 without any.
+/// Arrays have one value per cell (`check_sizes`); Bug otherwise.
 std::vector<float> distance_to_marked_km(const Grid& grid, std::span<const std::uint8_t> marked);
 
 }  // namespace geo
