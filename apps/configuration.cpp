@@ -35,7 +35,7 @@ void check_topology(const Configuration& configuration) {
   }
 }
 
-/// The preset that a run starts from. A real relief is taken as it is, not worn down as a new one,
+/// The preset that a run starts from. A DEM is taken as it is, not worn down as a new one,
 /// unless a preset or a kept file says so; a torus has one model of plates.
 std::string preset_of(const ConfigurationSources& sources) {
   if (!sources.preset.empty() || sources.is_kept) return sources.preset;

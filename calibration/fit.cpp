@@ -74,7 +74,7 @@ void fit(Objective& objective, Problem& problem, const FitOptions& options, FitS
     objective.evaluate(state.probed);
   }
   if (!std::isfinite(state.cost)) {
-    throw InputError("calibration: the start gives a relief that is not finite");
+    throw InputError("calibration: the start gives elevations that are not finite");
   }
   while (!state.ended) {
     const auto begin = Clock::now();

@@ -33,7 +33,7 @@ struct FitOptions {
 /// freeze, solve, reroute. A step counts only if the cost with everything rerouted falls, else
 /// half of it is tried. Where no part of it is better, routing may have jumped: the fit goes on
 /// from the step's end up to twice, then back to the best place within a smaller trust region.
-/// Derivatives with rivers held fast know nothing of rivers that move, so such a fit may settle
+/// Derivatives with frozen drainage know nothing of rivers that move, so such a fit may settle
 /// beside the minimum: in the end steps are taken along differences of planets rerouted, as long
 /// as they gain. `after` is called after each iteration with the state and a record of it.
 void fit(Objective& objective, Problem& problem, const FitOptions& options, FitState& state,

@@ -7,7 +7,7 @@
 namespace geo::calibration {
 namespace {
 
-/// The objective with all held fast as Ceres sees it.
+/// The objective with drainage frozen, as Ceres sees it.
 class FrozenCost final : public ceres::CostFunction {
  public:
   explicit FrozenCost(Objective& objective, Eigen::Index parameters) : objective_(objective) {

@@ -64,7 +64,7 @@ void Objective::for_seeds(Work&& work) {
   for (const ParallelErrors& of_seed : errors) of_seed.rethrow();
 }
 
-void Objective::hold(std::size_t s, const Relief<double>& relief) {
+void Objective::hold(std::size_t s, const PlanetSurface<double>& relief) {
   const Grid& grid = planets_[s]->grid();
   const Target& target = problem_.target;
   Held& held = held_[s];
@@ -136,7 +136,7 @@ V Objective::concavity(std::size_t s, const std::vector<V>& elevation_m) const {
 }
 
 template <class V>
-std::vector<V> Objective::statistics_of(std::size_t s, const Relief<V>& relief) const {
+std::vector<V> Objective::statistics_of(std::size_t s, const PlanetSurface<V>& relief) const {
   const Held& held = held_[s];
   const std::span<const V> elevation_m(relief.elevation_m), thickness_m(relief.thickness_m);
   std::vector<V> all;
@@ -235,7 +235,7 @@ Eigen::VectorXd Objective::evaluate(const Eigen::VectorXd& x) {
   statistics_.assign(planets_.size(), {});
   fine_bins_.assign(planets_.size(), {});
   for_seeds([&](std::size_t s) {
-    const Relief<double> relief = planets_[s]->reroute(problem_.model);
+    const PlanetSurface<double> relief = planets_[s]->reroute(problem_.model);
     hold(s, relief);
     statistics_[s] = statistics_of(s, relief);
     fine_bins_[s] = held_[s].elevation->bin_means(kFineBins);

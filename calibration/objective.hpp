@@ -80,7 +80,7 @@ class Objective {
   [[nodiscard]] double misfit_m(const Eigen::VectorXd& residual) const;
   /// Residuals with everything rerouted, which is then frozen.
   Eigen::VectorXd evaluate(const Eigen::VectorXd& x);
-  /// Residuals with all held fast as the last `evaluate` left it, and their derivatives if asked
+  /// Residuals with drainage frozen as the last `evaluate` left it, and their derivatives if asked
   /// for.
   Eigen::VectorXd linearise(const Eigen::VectorXd& x, Eigen::MatrixXd* jacobian = nullptr);
 
@@ -113,9 +113,10 @@ class Objective {
   };
   template <class Work>
   void for_seeds(Work&& work);
-  void hold(std::size_t seed, const Relief<double>& relief);
+  void hold(std::size_t seed, const PlanetSurface<double>& relief);
   template <class V>
-  [[nodiscard]] std::vector<V> statistics_of(std::size_t seed, const Relief<V>& relief) const;
+  [[nodiscard]] std::vector<V> statistics_of(std::size_t seed,
+                                             const PlanetSurface<V>& relief) const;
   template <class V>
   [[nodiscard]] V concavity(std::size_t seed, const std::vector<V>& elevation_m) const;
   [[nodiscard]] Eigen::VectorXd residuals_of(const std::vector<std::vector<double>>& statistics,

@@ -26,14 +26,14 @@ namespace geo::calibration {
 
 /// What the forward model gives for one planet.
 template <class V>
-struct Relief {
+struct PlanetSurface {
   std::vector<V> elevation_m, thickness_m;
   V erosion_rate_m_yr{0.0};  ///< mean over the land
   /// Sum of -elevation over the sea times the area, m3.
   V water_m3{0.0};
 };
 
-/// What is held fast between two routings: where sections, rocks, sea and rivers lie.
+/// What is frozen between two routings: where sections, rocks, sea and rivers lie.
 struct FrozenDrainage {
   std::optional<TectonicFrame> frame;
   double divergent_length_km = 0.0, transform_length_km = 0.0;  ///< that the frame was made with
@@ -79,20 +79,20 @@ class SeedPlanet {
   [[nodiscard]] const FrozenDrainage& held() const { return held_; }
 
   /// The relief with everything rerouted, which is then frozen.
-  [[nodiscard]] Relief<double> reroute(const Model& model) {
+  [[nodiscard]] PlanetSurface<double> reroute(const Model& model) {
     return evaluate<double>(model, {}, /*routes=*/true);
   }
   /// The relief with all frozen as `reroute` left it: a smooth function of the parameters. V is
   /// double, a dual number, or std::complex<double>.
   template <class V>
-  [[nodiscard]] Relief<V> with_frozen_drainage(const Model& model,
-                                               const ActiveVariables<V>& active) {
+  [[nodiscard]] PlanetSurface<V> with_frozen_drainage(const Model& model,
+                                                      const ActiveVariables<V>& active) {
     return evaluate<V>(model, active, /*routes=*/false);
   }
 
  private:
   template <class V>
-  Relief<V> evaluate(const Model& model, const ActiveVariables<V>& active, bool routes);
+  PlanetSurface<V> evaluate(const Model& model, const ActiveVariables<V>& active, bool routes);
   template <class V>
   V sea_level(const Model& model, const ActiveVariables<V>& active, std::span<const V> elevation_m,
               FrozenDrainage::Sea& sea, bool finds);
@@ -132,11 +132,12 @@ V SeedPlanet::sea_level(const Model& model, const ActiveVariables<V>& active,
 }
 
 template <class V>
-Relief<V> SeedPlanet::evaluate(const Model& model, const ActiveVariables<V>& active, bool routes) {
+PlanetSurface<V> SeedPlanet::evaluate(const Model& model, const ActiveVariables<V>& active,
+                                      bool routes) {
   const Grid& grid = this->grid();
   const auto cells = static_cast<std::size_t>(grid.size());
   const ErosionParameters& p = model.erosion;
-  Relief<V> relief;
+  PlanetSurface<V> relief;
   relief.elevation_m.resize(cells);
   relief.thickness_m.resize(cells);
   std::vector<V> convergent(cells), divergent(cells), transform(cells), weakness(cells),

@@ -174,14 +174,14 @@ Target from_table(const std::string& path, const Accuracy& accuracy) {
   return target;
 }
 
-Target from_relief(const std::string& file, const Planet& planet, const Grid& grid,
-                   const Accuracy& accuracy) {
-  io::Relief relief = io::read_relief(file, planet);
-  const bool is_global = relief.grid.topology() == Topology::sphere;
-  const bool is_finer = relief.grid.nx() > grid.nx() && relief.grid.ny() > grid.ny();
-  const Grid& cells = is_global && is_finer ? grid : relief.grid;
+Target from_dem(const std::string& file, const Planet& planet, const Grid& grid,
+                const Accuracy& accuracy) {
+  io::Dem dem = io::read_dem(file, planet);
+  const bool is_global = dem.grid.topology() == Topology::sphere;
+  const bool is_finer = dem.grid.nx() > grid.nx() && dem.grid.ny() > grid.ny();
+  const Grid& cells = is_global && is_finer ? grid : dem.grid;
   const std::vector<float> elevation_m =
-      is_global && is_finer ? io::resample(relief, grid) : relief.elevation_m;
+      is_global && is_finer ? io::resample(dem, grid) : dem.elevation_m;
   const std::vector<double> values(elevation_m.begin(), elevation_m.end());
   const Ranking ranking(cells, values);
   return sampled(file, accuracy, ranking.bin_means(kFineBins),
@@ -201,10 +201,10 @@ Target read_target(const std::string& name, const Planet& planet, const Grid& gr
   if (name.find('.') == std::string::npos && !std::filesystem::exists(name)) {
     throw InputError(
         fmt::format("--target {}: no such file; must be earth, earth-statistical, a CSV file or a "
-                    "NetCDF relief",
+                    "NetCDF DEM",
                     name));
   }
-  return from_relief(name, planet, grid, accuracy);
+  return from_dem(name, planet, grid, accuracy);
 }
 
 int Target::first_bin() const {

@@ -125,8 +125,8 @@ void assess(const Objective& objective, const Problem& problem, const Eigen::Vec
 
 namespace {
 
-/// The place from `guess` on where all but parameter `i` are at their optimum, with all held fast:
-/// steps with the derivatives of one place each, from anew until the cost no longer falls.
+/// The place from `guess` on where all but parameter `i` are at their optimum, with drainage
+/// frozen: steps with the derivatives of one place each, from anew until the cost no longer falls.
 Eigen::VectorXd refit_others(Objective& objective, const Problem& problem, Eigen::Index i,
                              Eigen::VectorXd guess, double& cost) {
   constexpr int kRounds = 4, kSteps = 3;

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Compares the largest drainage basins of a run on Earth's relief with Earth's.
+"""Compares the largest drainage basins of a run on Earth's topography with Earth's.
 
     scripts/validate_basins.py RUN/05-hydrology.nc
 

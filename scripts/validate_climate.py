@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Compares the climate of a run on Earth's relief with observations.
+"""Compares the climate of a run on Earth's topography with observations.
 
     scripts/validate_climate.py RUN/04-climate.nc NCEP_TEMPERATURE.nc CMAP_PRECIPITATION.nc
 

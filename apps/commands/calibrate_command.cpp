@@ -91,7 +91,7 @@ void run(const CalibrateOptions& options) {
   set_log_style({.json = options.log_json, .quiet = options.quiet});
   if (options.target.empty()) {
     throw geo::ConfigurationError(
-        "--target is missing: must be earth, earth-statistical, a CSV file or a NetCDF relief");
+        "--target is missing: must be earth, earth-statistical, a CSV file or a NetCDF DEM");
   }
   use_threads(options.threads);
   Configuration configuration;
@@ -141,7 +141,7 @@ void add_calibrate_command(CLI::App& program, Action& action) {
                       "Configuration file (TOML); [calibration] says what is fitted and how");
   command
       ->add_option("--target", o.target,
-                   "earth, earth-statistical, a CSV file of quantiles or bins, or a relief in "
+                   "earth, earth-statistical, a CSV file of quantiles or bins, or a DEM in "
                    "NetCDF")
       ->type_name("FILE[:VARIABLE]");
   command->add_option("-o", o.folder, "Folder for the results (default: calibration)")

@@ -104,7 +104,7 @@ void add_island_command(CLI::App& program, Action& action) {
       ->type_name("WORD");
   command
       ->add_option("--exemplars", options->exemplars,
-                   "Folder of real reliefs (NetCDF, GeoTIFF, m) that its terrain is made like")
+                   "Folder of DEMs (NetCDF, GeoTIFF, m) that its terrain is made like")
       ->type_name("DIR");
   command->add_flag("--allow-other-build", options->allow_other_build,
                     "Cut it from a planet that another build of terrane made; the manifest keeps "

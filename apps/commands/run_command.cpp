@@ -168,7 +168,7 @@ void add_run_command(CLI::App& program, Action& action) {
       ->type_name("LAT,LON,ANGLE");
   command
       ->add_option("--dem", o.sources.dem,
-                   "A real relief takes the place of plates and isostasy; without --preset, preset "
+                   "A DEM takes the place of plates and isostasy; without --preset, preset "
                    "earth-dem")
       ->type_name("FILE[:VARIABLE]");
   command
@@ -182,12 +182,12 @@ void add_run_command(CLI::App& program, Action& action) {
       ->type_name("W,S,E,N");
   command
       ->add_option("--exemplars", o.sources.exemplars,
-                   "Folder of real reliefs (NetCDF, GeoTIFF, m) that the island's terrain is made "
+                   "Folder of DEMs (NetCDF, GeoTIFF, m) that the island's terrain is made "
                    "like")
       ->type_name("DIR");
   command
       ->add_option("--from", o.from,
-                   "First stage. In a new folder it starts from the relief itself; with "
+                   "First stage. In a new folder it starts from the DEM itself; with "
                    "--overwrite the folder's earlier stages stay")
       ->type_name("STAGE");
   command->add_option("--to", o.to, "Last stage")->type_name("STAGE");

@@ -77,8 +77,7 @@ void add_score_command(CLI::App& program, Action& action) {
             "score: which planet? Give the folder of a run or an elevation file");
       }
       use_threads();
-      const auto state =
-          geo::io::read_planet_or_relief(options->place, geo::io::scorecard_fields());
+      const auto state = geo::io::read_planet_or_dem(options->place, geo::io::scorecard_fields());
       const auto card = geo::io::score_planet(state);
       options->json ? print_json(options->place, state, card) : print_table(card);
     };

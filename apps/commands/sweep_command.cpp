@@ -84,8 +84,7 @@ void add_sweep_command(CLI::App& program, Action& action) {
       ->take_all()
       ->allow_extra_args(false);
   command->add_option("--grid", r.sources.grid, "Cells of the grid")->type_name("WIDTHxHEIGHT");
-  command
-      ->add_option("--dem", r.sources.dem, "A real relief takes the place of plates and isostasy")
+  command->add_option("--dem", r.sources.dem, "A DEM takes the place of plates and isostasy")
       ->type_name("FILE[:VARIABLE]");
   command->add_option("--to", r.to, "Last stage")->type_name("STAGE");
   command->add_flag("--all-files", r.all_files, "Write files for ParaView, maps and reports too");

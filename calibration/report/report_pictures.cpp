@@ -132,7 +132,7 @@ void add_convergence_picture(pugi::xml_node section, const Result& result) {
   panel.x = io::axis_over("step", steps);
   panel.y = io::axis_over("cost", costs, true);
   auto figure = add_figure(section, "Convergence.",
-                           "Half the sum of squares after each step, with drainage routed anew.");
+                           "Half the sum of squares after each step, with drainage rerouted.");
   draw_chart(figure, {"Convergence", {}, {panel}}, kWideChart);
 }
 

@@ -39,7 +39,7 @@ LOOKS = {
     "temperature_range": Look("Warmest minus coldest month, K", sea=PAINTED),
     "precipitation": Look("Precipitation, mm/yr", "precipitation", PAINTED),
     "precipitation_seasonality": Look("Seasonality of precipitation", sea=PAINTED, signed=True),
-    "potential_evaporation": Look("Potential evapotranspiration, mm/yr", sea=PAINTED),
+    "potential_evapotranspiration": Look("Potential evapotranspiration, mm/yr", sea=PAINTED),
     "wind_east": Look("Eastward wind, m/s", sea=PAINTED, signed=True),
     "wind_north": Look("Northward wind, m/s", sea=PAINTED, signed=True),
     "distance_to_coast": Look("Distance to the coast, m", sea=PAINTED),

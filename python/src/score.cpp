@@ -67,8 +67,7 @@ void add_score(py::module_& module) {
       });
   module.def("score_file", [](const std::string& place) {
     const py::gil_scoped_release unlocked;
-    return geo::io::score_planet(
-        geo::io::read_planet_or_relief(place, geo::io::scorecard_fields()));
+    return geo::io::score_planet(geo::io::read_planet_or_dem(place, geo::io::scorecard_fields()));
   });
   module.def("score_stages", [](const std::vector<const StageInMemory*>& stages) {
     const auto planet = planet_of(stages);

@@ -70,10 +70,10 @@ std::vector<double> rain_by_its_equation(double pressure_bar, double aerosol) {
     land[c] = climate.z[c] >= 0.0F ? 1.0F : 0.0F;
     height[c] = std::max(0.0F, climate.z[c]);
   }
-  blueprint_relief_precipitation(grid, {}, latitude, land, height, relief);
+  blueprint_orographic_precipitation(grid, {}, latitude, land, height, relief);
   // It comes to the grid by splines, whatever the grid of the trace.
-  const ConservativeRemapping overlay(grid, grid);
-  const Interpolator smooth(overlay, std::vector<float>(relief));
+  const ConservativeRemapping remapping(grid, grid);
+  const Interpolator smooth(remapping, std::vector<float>(relief));
   std::vector<float> scratch(smooth.scratch_size());
   for (int j = 0; j < grid.ny(); ++j) {
     smooth.row(j, std::span(relief).subspan(grid.cell(0, j), grid.nx()), scratch);
@@ -160,7 +160,7 @@ TEST(BlueprintClimate, ReliefMakesRainByTheDistancesOfTheDocument) {
     }
     if (i >= kWall && i < kWall + 4) height[c] = kWall_m;
   }
-  blueprint_relief_precipitation(grid, {}, latitude, land, height, rain);
+  blueprint_orographic_precipitation(grid, {}, latitude, land, height, rain);
   const double along = 1.0 / std::hypot(1.0, 0.35 * std::sin(45.0 * kRadians));  // east per km
   const auto at = [&](int column) { return rain[grid.cell(column, 80)]; };
   const auto inland_km = [&](int column) { return (column - kShore + 0.5) * kCell_km / along; };

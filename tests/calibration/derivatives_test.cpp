@@ -1,4 +1,4 @@
-// Derivatives of the forward model with everything that jumps held fast.
+// Derivatives of the forward model with everything that jumps frozen.
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
 
@@ -67,7 +67,7 @@ struct Planet1 {
     return std::get<double*>(model.find(name).storage);
   }
   template <class V>
-  Relief<V> follow(const std::string& name, const V& unit) {
+  PlanetSurface<V> follow(const std::string& name, const V& unit) {
     double* const at = member(name);
     return planet.with_frozen_drainage<V>(model, ActiveVariables<V>({{at, V(*at) + unit}}));
   }
@@ -169,11 +169,11 @@ const std::map<std::string, std::string> kSilent{
     {"planet.perihelion_deg", "climate alone"},
     {"erosion.reference_runoff_mm_yr", "rain alone"},
     {"erosion.least_runoff_mm_yr", "rain alone"},
-    {"erosion.strait_sill_m", "straits are held fast"},
-    {"erosion.strait_land_km", "straits are held fast"},
-    {"erosion.strait_depth_m", "straits are held fast"},
-    {"erosion.strait_width_km", "straits are held fast"},
-    {"erosion.strait_sea_km2", "straits are held fast"},
+    {"erosion.strait_sill_m", "straits are frozen"},
+    {"erosion.strait_land_km", "straits are frozen"},
+    {"erosion.strait_depth_m", "straits are frozen"},
+    {"erosion.strait_width_km", "straits are frozen"},
+    {"erosion.strait_sea_km2", "straits are frozen"},
     {"erosion.sediment.highstand_yr", "deltas are left out"},
     {"erosion.ice.stress_kpa", "climate alone"},
     {"erosion.ice.ice_melt_mm_k_d", "climate alone"},
@@ -191,7 +191,7 @@ const std::map<std::string, std::string> kSilent{
     {"isostasy.coast_smoothing_km", "blueprint crust alone"},
     {"isostasy.thermal_coefficient", "blueprint crust alone"},
     {"isostasy.noise_factor", "blueprint crust alone"},
-    {"isostasy.weakness_length_km", "weakness moves no relief"},
+    {"isostasy.weakness_length_km", "weakness moves no elevation"},
     {"isostasy.fracture_m", "simulated crust alone"},
     {"isostasy.fracture_spacing_km", "simulated crust alone"},
     {"isostasy.abyssal_hills_m", "simulated crust alone"},
@@ -202,7 +202,7 @@ const std::map<std::string, std::string> kSilent{
     {"isostasy.plain_slope", "exemplars alone"},
     {"erosion.erodibility_yr", "the rocks' own takes its place"},
     {"erosion.uplift_speed_cm_yr", "0: rates hold for any speed of plates"},
-    {"erosion.flow_exponent", "the ways of the water are held fast"},
+    {"erosion.flow_exponent", "drainage is frozen"},
     {"erosion.land_smoothing_km", "must be 0 in a calibration"},
     {"erosion.hypsometry_median_m", "remaps of heights are refused"},
     {"erosion.hypsometry_smoothing_km", "remaps of heights are refused"},
@@ -211,7 +211,7 @@ const std::map<std::string, std::string> kSilent{
 /// All that the forward model gives, in one scale each: elevations, thicknesses, the rate of
 /// erosion and the water.
 template <class V, class Part>
-std::vector<std::vector<double>> figures_of(const Relief<V>& relief, Part&& part) {
+std::vector<std::vector<double>> figures_of(const PlanetSurface<V>& relief, Part&& part) {
   std::vector<std::vector<double>> all(4);
   for (const V& z : relief.elevation_m) all[0].push_back(part(z));
   for (const V& h : relief.thickness_m) all[1].push_back(part(h));
@@ -383,7 +383,7 @@ TEST(Derivatives, ValuesAreThoseOfARun) {
 }
 
 /// dq / dtheta by the mean over the cells about a quantile, against what really becomes of the
-/// curve of the held-fast relief when a parameter moves: over fiftieths of the area, 0.1 to 0.9.
+/// curve of the frozen elevation when a parameter moves: over fiftieths of the area, 0.1 to 0.9.
 TEST(Derivatives, QuantilesFollowTheMeanOfTheCellsThere) {
   constexpr int kParts = 50;
   // Where rivers lay down, many cells stand at one height, that of wave base: a step then changes

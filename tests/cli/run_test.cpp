@@ -220,7 +220,7 @@ TEST_F(Run, EventsStrikeAreToldAndBindTheirFolder) {
   EXPECT_THAT(kept.err, HasSubstr("the stages before it would not be the same: event 1"));
   const Outcome unfelt = run("unfelt", {file.string(), "--from", "climate", "--to", "climate"});
   EXPECT_EQ(unfelt.code, 0);
-  EXPECT_THAT(unfelt.err, HasSubstr("events change the relief in stage erosion"));
+  EXPECT_THAT(unfelt.err, HasSubstr("events change elevation in stage erosion"));
 }
 
 TEST_F(Run, ClosedStreamsGoIntoNoFile) {

@@ -186,6 +186,18 @@ TEST(Layers, PublicHeadersNameNoForeignLibrary) {
   }
 }
 
+TEST(Layers, HeadersThatTheSiteNamesExist) {
+  const fs::path page = test::repository() / "docs/site/api.md";
+  const std::string text = test::read_text(page);
+  static const std::regex kHeader("`([a-z_/0-9]+\\.hpp)`");
+  int count = 0;
+  for (std::sregex_iterator at(text.begin(), text.end(), kHeader), end; at != end; ++at, ++count) {
+    EXPECT_TRUE(fs::exists(test::repository() / "libgeo/include/geo" / (*at)[1].str()))
+        << page << " names " << (*at)[1];
+  }
+  EXPECT_GT(count, 20);
+}
+
 TEST(Repository, NamesNoPlaceOnSomebodysMachine) {
   // In two pieces, so that this file does not name them.
   const std::vector<std::string> places{std::string("/ho") + "me/", std::string("/ro") + "ot/",

@@ -1,4 +1,4 @@
-// Earth's own relief (ETOPO5 as 20' means, Debian package ferret-datasets) from relief to rivers.
+// Earth's own DEM (ETOPO5 as 20' means, Debian package ferret-datasets) from DEM to rivers.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -23,15 +23,15 @@ class Earth : public testing::Test {
   static void SetUpTestSuite() {
     if (!std::filesystem::exists(kRelief)) return;
     const Planet planet;
-    const io::Relief relief = io::read_relief(kRelief, planet);
+    const io::Dem dem = io::read_dem(kRelief, planet);
     auto grid = std::make_shared<const Grid>(Grid::sphere(1080, 540, planet.figure()));
     state_.emplace(grid);
-    state_->set(field::elevation, io::resample(relief, *grid));
+    state_->set(field::elevation, io::resample(dem, *grid));
     Pipeline pipeline = make_pipeline();
     const auto parameters = pipeline.parameters();
     find_parameter(parameters, "erosion.steps")->set_text("0");
     find_parameter(parameters, "hydrology.carving")->set_text("0");
-    // The relief takes the place of the stages before erosion; the island is another matter.
+    // The DEM takes the place of the stages before erosion; the island is another matter.
     for (int at = pipeline.find("erosion"); at <= pipeline.find("biomes"); ++at) {
       const auto& stage = pipeline.stages()[at];
       Context context;
@@ -118,7 +118,7 @@ TEST_F(Earth, LargestBasinsAreThoseOfTheAtlas) {
     const char* river;
     double latitude, longitude, area_m2;
   };
-  // The Mississippi is left out: at 20' the relief has the Missouri fall into the Red River.
+  // The Mississippi is left out: at 20' the DEM has the Missouri fall into the Red River.
   const Basin atlas[] = {{"Amazon", -3.1, -60.0, 6.1e12},
                          {"Congo", 0.0, 18.3, 3.7e12},
                          {"Nile", 15.6, 32.5, 3.3e12},

@@ -7,9 +7,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const geo::fuzz::InputFile file("input.tif");
   file.write({reinterpret_cast<const char*>(data), size});
   geo::fuzz::expect_value_or_refusal([&] {
-    const geo::io::Relief relief = geo::io::read_geotiff(file.path(), {});
-    geo::fuzz::claim(relief.elevation_m.size() == static_cast<std::size_t>(relief.grid.size()),
-                     "a relief has a value for each cell");
+    const geo::io::Dem dem = geo::io::read_geotiff(file.path(), {});
+    geo::fuzz::claim(dem.elevation_m.size() == static_cast<std::size_t>(dem.grid.size()),
+                     "a DEM has a value for each cell");
   });
   return 0;
 }

@@ -90,16 +90,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   Bytes bytes(data, size);
   make(file.path(), bytes);
   geo::fuzz::expect_value_or_refusal([&] {
-    const geo::io::Relief relief = geo::io::read_relief(file.path(), {});
-    geo::fuzz::claim(relief.elevation_m.size() == static_cast<std::size_t>(relief.grid.size()),
-                     "a relief has a value for each cell");
-    for (const float elevation_m : relief.elevation_m) {
-      geo::fuzz::claim(!std::isnan(elevation_m), "a relief has no gaps unless they are allowed");
+    const geo::io::Dem dem = geo::io::read_dem(file.path(), {});
+    geo::fuzz::claim(dem.elevation_m.size() == static_cast<std::size_t>(dem.grid.size()),
+                     "a DEM has a value for each cell");
+    for (const float elevation_m : dem.elevation_m) {
+      geo::fuzz::claim(!std::isnan(elevation_m), "a DEM has no gaps unless they are allowed");
     }
-    if (relief.grid.is_latitude_longitude()) static_cast<void>(geo::io::resample(relief, grid));
+    if (dem.grid.is_latitude_longitude()) static_cast<void>(geo::io::resample(dem, grid));
   });
   geo::fuzz::expect_value_or_refusal([&] {
-    static_cast<void>(geo::io::read_relief_with_gaps(file.path() + ":" + bytes.word(kNames), {}));
+    static_cast<void>(geo::io::read_dem_with_gaps(file.path() + ":" + bytes.word(kNames), {}));
   });
   geo::fuzz::expect_value_or_refusal(
       [&] { static_cast<void>(geo::io::read_field(file.path(), geo::field::erodibility, {})); });

@@ -240,7 +240,7 @@ TEST_F(ExemplarFiles, UnusableOnesAreRefusedInOneLine) {
   std::ofstream(folder_ / "no netcdf/a.nc") << "hello";
   TiffFile{.placed = false}.write(folder_ / "nowhere/a.tif");
   expect_refusal(ErrorKind::io, "No such file", "absent");
-  expect_refusal(ErrorKind::input, "holds no relief", "empty");
+  expect_refusal(ErrorKind::input, "holds no elevation model", "empty");
   expect_refusal(ErrorKind::input, "a.tif", "torn");
   expect_refusal(ErrorKind::input, "no sound TIFF", "no tiff");
   expect_refusal(ErrorKind::input, "a.nc", "no netcdf");

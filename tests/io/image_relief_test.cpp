@@ -61,14 +61,14 @@ TEST(ImageRelief, ExportedAndReadAgainIsWithinHalfAQuantum) {
     request.place = source.string();
     request.output = folder / "height.png";
     export_field(request);
-    const Relief relief = read_relief(request.output.string(), {});
-    ASSERT_EQ(relief.grid.nx(), grid.nx());
-    ASSERT_EQ(relief.grid.ny(), grid.ny());
-    EXPECT_EQ(relief.grid.topology(), grid.topology());
+    const Dem dem = read_dem(request.output.string(), {});
+    ASSERT_EQ(dem.grid.nx(), grid.nx());
+    ASSERT_EQ(dem.grid.ny(), grid.ny());
+    EXPECT_EQ(dem.grid.topology(), grid.topology());
     const double quantum = (*most - *least) / 65535.0;
     for (std::size_t i = 0; i < truth.size(); ++i) {
       // And the rounding of a float of some thousands.
-      ASSERT_NEAR(relief.elevation_m[i], truth[i], 0.5 * quantum + 2.5e-4) << i;
+      ASSERT_NEAR(dem.elevation_m[i], truth[i], 0.5 * quantum + 2.5e-4) << i;
     }
   }
 }
@@ -82,10 +82,10 @@ TEST(ImageRelief, GeotiffExportedAndReadAgainIsTheSame) {
     request.format = ExportFormat::geotiff;
     request.output = folder / "height.tif";
     export_field(request);
-    const Relief relief = read_relief(request.output.string(), {});
-    EXPECT_EQ(relief.grid.topology(), grid.topology());
-    EXPECT_EQ(relief.elevation_m, heights(grid));
-    EXPECT_NEAR(relief.grid.total_area_m2(), grid.total_area_m2(), 1e-6 * grid.total_area_m2());
+    const Dem dem = read_dem(request.output.string(), {});
+    EXPECT_EQ(dem.grid.topology(), grid.topology());
+    EXPECT_EQ(dem.elevation_m, heights(grid));
+    EXPECT_NEAR(dem.grid.total_area_m2(), grid.total_area_m2(), 1e-6 * grid.total_area_m2());
   }
 }
 
@@ -95,23 +95,23 @@ TEST(ImageRelief, RangeAndWindowGiveSamplesTheirMeaning) {
   for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>(2 * i);
   bytes.back() = 255;
   write_grey_png(folder / "a.png", bytes, 16, 8);
-  const Relief planet = read_relief((folder / "a.png").string(), {}, {"-1000,4100", ""});
+  const Dem planet = read_dem((folder / "a.png").string(), {}, {"-1000,4100", ""});
   EXPECT_EQ(planet.grid.topology(), Topology::sphere);
   // Row 0 of the picture is the northernmost.
   EXPECT_FLOAT_EQ(planet.elevation_m[7 * 16], -1000.0F);
   EXPECT_FLOAT_EQ(planet.elevation_m[7 * 16 + 3], -1000.0F + 20.0F * 6.0F);
   EXPECT_FLOAT_EQ(planet.elevation_m[15], 4100.0F);
-  const Relief part = read_relief((folder / "a.png").string(), {}, {"0,1", "170,-20,-150,0"});
+  const Dem part = read_dem((folder / "a.png").string(), {}, {"0,1", "170,-20,-150,0"});
   EXPECT_NEAR(part.grid.window().east_deg - part.grid.window().west_deg, 40.0, 1e-9);
   EXPECT_NEAR(part.grid.window().south_deg, -20.0, 1e-9);
   // A quantity with bounds has them.
-  const Relief share = read_field((folder / "a.png").string(), field::river_intensity, {});
+  const Dem share = read_field((folder / "a.png").string(), field::river_intensity, {});
   EXPECT_FLOAT_EQ(share.elevation_m[15], 1.0F);
   // An order without a unit runs from 0 to 1; others have the range that is given.
   FieldSpec order = field::ranking;
   order.units = "";
   EXPECT_FLOAT_EQ(read_field((folder / "a.png").string(), order, {}).elevation_m[15], 1.0F);
-  const Relief uplift =
+  const Dem uplift =
       read_field((folder / "a.png").string(), field::uplift_rate, {}, {"0,0.01", "0,0,40,20"});
   EXPECT_FLOAT_EQ(uplift.elevation_m[15], 0.01F);
   EXPECT_NEAR(uplift.grid.window().east_deg, 40.0, 1e-9);
@@ -123,14 +123,14 @@ TEST(ImageRelief, AsciiGridsAreReadByTheirHeads) {
   write_text(path,
              "NCOLS 4\r\nNROWS 3\nXLLCENTER 10.5\nYLLCENTER 20.5\nCELLSIZE 1\nNODATA_value -9999\n"
              "1 2 3 4\n5 6 7 8\n9 10 -1.5e1 12\n");
-  const Relief window = read_relief(path, {});
+  const Dem window = read_dem(path, {});
   EXPECT_NEAR(window.grid.window().west_deg, 10.0, 1e-9);
   EXPECT_NEAR(window.grid.window().north_deg, 23.0, 1e-9);
   EXPECT_EQ(window.elevation_m, (std::vector<float>{9, 10, -15, 12, 5, 6, 7, 8, 1, 2, 3, 4}));
   write_text(path,
              "ncols 4\nnrows 3\nxllcorner 500000\nyllcorner 4000000\ncellsize 90\n"
              "1 2 3 4 5 6 7 8 9 10 11 12");
-  const Relief plane = read_relief(path, {});
+  const Dem plane = read_dem(path, {});
   EXPECT_FALSE(plane.grid.is_latitude_longitude());
   EXPECT_DOUBLE_EQ(plane.grid.spacing_east_m(0), 90.0);
 }
@@ -140,7 +140,7 @@ TEST(ImageRelief, RefusesInOneLineWhatIsDamagedOrSaysTooLittle) {
   const auto path = (folder / "a").string();
   const auto refusal = [&](const std::string& bytes, ImageWords words = {}) {
     write_text(path, bytes);
-    return message_of(ErrorKind::input, [&] { read_relief(path, {}, words); });
+    return message_of(ErrorKind::input, [&] { read_dem(path, {}, words); });
   };
   const std::string head = "ncols 4\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 1\n";
   EXPECT_THAT(refusal(head + "1 2 3 4 5 6 7 8 9 10 11"), HasSubstr("missing"));
@@ -158,7 +158,7 @@ TEST(ImageRelief, RefusesInOneLineWhatIsDamagedOrSaysTooLittle) {
   EXPECT_THAT(refusal("\x89PNG\r\n\x1a\n and no more", {"0,1", ""}), HasSubstr("PNG"));
   const std::vector<std::uint8_t> grey(16 * 8);
   write_grey_png(folder / "b.png", grey, 16, 8);
-  EXPECT_THAT(message_of(ErrorKind::input, [&] { read_relief((folder / "b.png").string(), {}); }),
+  EXPECT_THAT(message_of(ErrorKind::input, [&] { read_dem((folder / "b.png").string(), {}); }),
               HasSubstr("--dem-range"));
   std::ifstream stream(folder / "b.png", std::ios::binary);
   const std::string whole{std::istreambuf_iterator<char>(stream), {}};
@@ -166,19 +166,19 @@ TEST(ImageRelief, RefusesInOneLineWhatIsDamagedOrSaysTooLittle) {
     EXPECT_THAT(refusal(whole.substr(0, length), {"0,1", ""}), HasSubstr("PNG"));
   }
   write_text(folder / "b.json", "{\"offset\": 0, \"scale\": \"wide\"}");
-  EXPECT_THAT(message_of(ErrorKind::input, [&] { read_relief((folder / "b.png").string(), {}); }),
+  EXPECT_THAT(message_of(ErrorKind::input, [&] { read_dem((folder / "b.png").string(), {}); }),
               HasSubstr("b.json"));
   const std::array<std::uint32_t, 4> colours{};
   write_png(folder / "c.png", {reinterpret_cast<const std::uint8_t*>(colours.data()), 2, 2, 8});
   EXPECT_THAT(message_of(ErrorKind::input,
                          [&] {
-                           read_relief((folder / "c.png").string(), {}, {"0,1", ""});
+                           read_dem((folder / "c.png").string(), {}, {"0,1", ""});
                          }),
               HasSubstr("grey"));
   for (const char* range : {"1", "1,1", "a,b", "0,inf", "nan,1"}) {
     EXPECT_THAT(message_of(ErrorKind::configuration,
                            [&] {
-                             read_relief((folder / "b.png").string(), {}, {range, ""});
+                             read_dem((folder / "b.png").string(), {}, {range, ""});
                            }),
                 HasSubstr("--dem-range"));
   }

@@ -104,11 +104,11 @@ ReliefFile planet_file() {
   return file;
 }
 
-Relief read(const ReliefFile& file, const std::string& variable = "") {
+Dem read(const ReliefFile& file, const std::string& variable = "") {
   const TemporaryFolder folder;
   file.write(folder / "relief.nc");
-  return read_relief((folder / "relief.nc").string() + (variable.empty() ? "" : ":") + variable,
-                     Planet{});
+  return read_dem((folder / "relief.nc").string() + (variable.empty() ? "" : ":") + variable,
+                  Planet{});
 }
 
 std::string complaint(const ReliefFile& file, const std::string& variable = "") {
@@ -122,7 +122,7 @@ std::string complaint(const ReliefFile& file, const std::string& variable = "") 
   return {};
 }
 
-void expect_planet(const Relief& relief, double tolerance_m = 1e-3) {
+void expect_planet(const Dem& relief, double tolerance_m = 1e-3) {
   const ReliefFile plain = planet_file();
   const Grid& grid = relief.grid;
   ASSERT_EQ(grid.topology(), Topology::sphere);
@@ -135,15 +135,15 @@ void expect_planet(const Relief& relief, double tolerance_m = 1e-3) {
   }
 }
 
-TEST(Relief, PlainPlanetIsReadAsItIs) { expect_planet(read(planet_file())); }
+TEST(Dem, PlainPlanetIsReadAsItIs) { expect_planet(read(planet_file())); }
 
-TEST(Relief, NorthernRowsMayComeFirst) {
+TEST(Dem, NorthernRowsMayComeFirst) {
   ReliefFile file = planet_file();
   file.rows = reversed(file.rows);
   expect_planet(read(file));
 }
 
-TEST(Relief, LongitudesMayRunFromAnyMeridian) {
+TEST(Dem, LongitudesMayRunFromAnyMeridian) {
   for (const double west : {7.5, 22.5, -352.5, 187.5, -7.5}) {
     ReliefFile file = planet_file();
     file.columns = steps(west, 15.0, 24);
@@ -151,13 +151,13 @@ TEST(Relief, LongitudesMayRunFromAnyMeridian) {
   }
 }
 
-TEST(Relief, LongitudesMayRunWestwards) {
+TEST(Dem, LongitudesMayRunWestwards) {
   ReliefFile file = planet_file();
   file.columns = reversed(steps(7.5, 15.0, 24));
   expect_planet(read(file));
 }
 
-TEST(Relief, RepeatedEndColumnIsDropped) {
+TEST(Dem, RepeatedEndColumnIsDropped) {
   ReliefFile file = planet_file();
   file.columns = steps(7.5, 15.0, 25);
   expect_planet(read(file));
@@ -165,7 +165,7 @@ TEST(Relief, RepeatedEndColumnIsDropped) {
   expect_planet(read(file));
 }
 
-TEST(Relief, EveryFormatOfNetcdfIsRead) {
+TEST(Dem, EveryFormatOfNetcdfIsRead) {
   for (const int format :
        {0, NC_64BIT_OFFSET, NC_64BIT_DATA, NC_NETCDF4, NC_NETCDF4 | NC_CLASSIC_MODEL}) {
     ReliefFile file = planet_file();
@@ -176,7 +176,7 @@ TEST(Relief, EveryFormatOfNetcdfIsRead) {
   }
 }
 
-TEST(Relief, PackedIntegersAreUnpacked) {
+TEST(Dem, PackedIntegersAreUnpacked) {
   ReliefFile file = planet_file();
   file.type = NC_SHORT;
   file.scale = 0.5;
@@ -185,7 +185,7 @@ TEST(Relief, PackedIntegersAreUnpacked) {
   expect_planet(read(file), 0.2501);
 }
 
-TEST(Relief, UnitsOfLengthAreConverted) {
+TEST(Dem, UnitsOfLengthAreConverted) {
   ReliefFile file = planet_file();
   const auto metres = file.elevation;
   for (const auto& [units, per_metre] :
@@ -202,7 +202,7 @@ TEST(Relief, UnitsOfLengthAreConverted) {
   }
 }
 
-TEST(Relief, WrongUnitsAreRefused) {
+TEST(Dem, WrongUnitsAreRefused) {
   for (const char* units : {"K", "Pa", "m2", "m-1", "s", "degrees", "nonsense", "1"}) {
     ReliefFile file = planet_file();
     file.units = units;
@@ -213,7 +213,7 @@ TEST(Relief, WrongUnitsAreRefused) {
   }
 }
 
-TEST(Relief, MissingCellsAreCountedAndTheFirstIsNamed) {
+TEST(Dem, MissingCellsAreCountedAndTheFirstIsNamed) {
   ReliefFile file = planet_file();
   const auto whole = file.elevation;
   for (const double hole : {std::numeric_limits<double>::quiet_NaN(), -9999.0}) {
@@ -229,12 +229,12 @@ TEST(Relief, MissingCellsAreCountedAndTheFirstIsNamed) {
   }
 }
 
-TEST(Relief, NodesAtThePolesAreHalfCells) {
+TEST(Dem, NodesAtThePolesAreHalfCells) {
   ReliefFile file = planet_file();
   file.rows = steps(-90.0, 15.0, 13);
   file.columns = steps(0.0, 15.0, 24);
   file.elevation = [](double row, double) { return row == 90.0 ? 1300.0 : 0.0; };
-  const Relief relief = read(file);
+  const Dem relief = read(file);
   ASSERT_EQ(relief.grid.ny(), 12);
   double volume = 0.0;
   for (Index cell = 0; cell < relief.grid.size(); ++cell) {
@@ -245,19 +245,19 @@ TEST(Relief, NodesAtThePolesAreHalfCells) {
   EXPECT_NEAR(volume / relief.grid.total_area_m2() / (1300.0 * share), 1.0, 1e-6);
 }
 
-TEST(Relief, OddNumberOfColumnsGetsAGridThatCanCrossThePole) {
+TEST(Dem, OddNumberOfColumnsGetsAGridThatCanCrossThePole) {
   ReliefFile file = planet_file();
   file.columns = steps(0.0, 360.0 / 23, 23);
-  const Relief relief = read(file);
+  const Dem relief = read(file);
   EXPECT_EQ(relief.grid.nx(), 24);
   EXPECT_EQ(relief.elevation_m.size(), 24U * 12U);
 }
 
-TEST(Relief, RegionBecomesAWindow) {
+TEST(Dem, RegionBecomesAWindow) {
   ReliefFile file;
   file.rows = steps(40.25, 0.5, 20);
   file.columns = steps(355.25, 0.5, 30);
-  const Relief relief = read(file);
+  const Dem relief = read(file);
   EXPECT_EQ(relief.grid.topology(), Topology::plane);
   EXPECT_TRUE(relief.grid.is_latitude_longitude());
   EXPECT_NEAR(relief.grid.window().south_deg, 40.0, 1e-12);
@@ -266,7 +266,7 @@ TEST(Relief, RegionBecomesAWindow) {
   EXPECT_EQ(relief.elevation_m[0], 100.0F * 40.25F + 355.25F);
 }
 
-TEST(Relief, ProjectedMetresBecomeAPlaneWithItsCentre) {
+TEST(Dem, ProjectedMetresBecomeAPlaneWithItsCentre) {
   ReliefFile file;
   file.row_name = "y";
   file.column_name = "x";
@@ -276,7 +276,7 @@ TEST(Relief, ProjectedMetresBecomeAPlaneWithItsCentre) {
   file.elevation = [](double row, double column) {
     return (row - 3788000.0) * 100 + (column - 376000.0);
   };
-  const Relief bare = read(file);
+  const Dem bare = read(file);
   EXPECT_EQ(bare.grid.topology(), Topology::plane);
   EXPECT_FALSE(bare.grid.centre().has_value());
   EXPECT_DOUBLE_EQ(bare.grid.spacing_east_m(0), 30.0);
@@ -284,7 +284,7 @@ TEST(Relief, ProjectedMetresBecomeAPlaneWithItsCentre) {
   EXPECT_EQ(bare.elevation_m[51], 3030.0F);
 
   file.global_crs = "EPSG:32611";
-  const Relief placed = read(file);
+  const Dem placed = read(file);
   ASSERT_TRUE(placed.grid.centre().has_value());
   // By hand with `cs2cs EPSG:32611 EPSG:4326`.
   EXPECT_NEAR(placed.grid.centre()->latitude_deg, 34.2314, 0.01);
@@ -296,7 +296,7 @@ TEST(Relief, ProjectedMetresBecomeAPlaneWithItsCentre) {
   EXPECT_NEAR(read(file).grid.spacing_east_m(0), 30.0, 1e-6);
 }
 
-TEST(Relief, VariableIsFoundByStandardNameThenNameThenLoneliness) {
+TEST(Dem, VariableIsFoundByStandardNameThenNameThenLoneliness) {
   ReliefFile file = planet_file();
   file.variable = "something";
   EXPECT_EQ(read(file).variable, "something");
@@ -311,26 +311,26 @@ TEST(Relief, VariableIsFoundByStandardNameThenNameThenLoneliness) {
   EXPECT_EQ(read(file).variable, "something");
 }
 
-TEST(Relief, AbsentVariableIsNamedWithThoseThatAreThere) {
+TEST(Dem, AbsentVariableIsNamedWithThoseThatAreThere) {
   const std::string message = complaint(planet_file(), "height");
   EXPECT_THAT(message, HasSubstr("variable height is missing"));
   EXPECT_THAT(message, HasSubstr("holds z"));
 }
 
-TEST(Relief, UnevenAxisIsRefused) {
+TEST(Dem, UnevenAxisIsRefused) {
   ReliefFile file = planet_file();
   file.rows[5] += 1.0;
   EXPECT_THAT(complaint(file), HasSubstr("axis lat: steps are uneven at index 5"));
 }
 
-TEST(Relief, AxesWithoutMeaningAreRefused) {
+TEST(Dem, AxesWithoutMeaningAreRefused) {
   ReliefFile file = planet_file();
   file.row_name = "j";
   file.row_units = "";
   EXPECT_THAT(complaint(file), HasSubstr("dimension j has no coordinates"));
 }
 
-TEST(Relief, TransposedRasterIsRefused) {
+TEST(Dem, TransposedRasterIsRefused) {
   ReliefFile file = planet_file();
   std::swap(file.rows, file.columns);
   std::swap(file.row_name, file.column_name);
@@ -338,13 +338,13 @@ TEST(Relief, TransposedRasterIsRefused) {
   EXPECT_THAT(complaint(file), HasSubstr("in this order"));
 }
 
-TEST(Relief, LatitudesBeyondThePolesAreRefused) {
+TEST(Dem, LatitudesBeyondThePolesAreRefused) {
   ReliefFile file = planet_file();
   file.rows = steps(-120.0, 15.0, 17);
   EXPECT_THAT(complaint(file), HasSubstr("beyond the poles"));
 }
 
-TEST(Relief, TruncatedFilesAreRefusedWhateverTheirFormat) {
+TEST(Dem, TruncatedFilesAreRefusedWhateverTheirFormat) {
   const TemporaryFolder folder;
   for (const int format : {0, NC_64BIT_OFFSET, NC_64BIT_DATA, NC_NETCDF4}) {
     for (const bool time : {false, true}) {
@@ -359,27 +359,27 @@ TEST(Relief, TruncatedFilesAreRefusedWhateverTheirFormat) {
         SCOPED_TRACE(std::to_string(format) + " cut by " + std::to_string(cut));
         std::ofstream(folder / "cut.nc", std::ios::binary)
             << bytes.str().substr(0, bytes.str().size() - cut);
-        EXPECT_THROW(read_relief((folder / "cut.nc").string(), Planet{}), InputError);
+        EXPECT_THROW(read_dem((folder / "cut.nc").string(), Planet{}), InputError);
       }
-      EXPECT_NO_THROW(read_relief((folder / "whole.nc").string(), Planet{}));
+      EXPECT_NO_THROW(read_dem((folder / "whole.nc").string(), Planet{}));
     }
   }
 }
 
-TEST(Relief, AbsentFileIsAnIoError) {
-  EXPECT_THROW(read_relief("/nowhere/relief.nc", Planet{}), IoError);
+TEST(Dem, AbsentFileIsAnIoError) {
+  EXPECT_THROW(read_dem("/nowhere/relief.nc", Planet{}), IoError);
 }
 
-TEST(Relief, ResamplesToItsOwnGridWithoutChange) {
-  const Relief relief = read(planet_file());
+TEST(Dem, ResamplesToItsOwnGridWithoutChange) {
+  const Dem relief = read(planet_file());
   EXPECT_EQ(resample(relief, relief.grid), relief.elevation_m);
 }
 
-TEST(Relief, TargetBeyondTheReliefIsRefused) {
+TEST(Dem, TargetBeyondTheReliefIsRefused) {
   ReliefFile file;
   file.rows = steps(40.25, 0.5, 20);
   file.columns = steps(-4.75, 0.5, 30);
-  const Relief relief = read(file);
+  const Dem relief = read(file);
   EXPECT_THROW(resample(relief, Grid::window(10, 10, {39.0, 45.0, 0.0, 5.0})), InputError);
   EXPECT_NO_THROW(resample(relief, Grid::window(10, 10, {41.0, 45.0, 0.0, 5.0})));
   EXPECT_THROW(resample(relief, Grid::plane(10, 10, 100.0, 100.0)), InputError);

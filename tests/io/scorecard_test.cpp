@@ -42,7 +42,7 @@ State whole_planet(int nx = 480) {
   });
   fill(field::temperature_range, [&](Index c) { return land(c) ? 20.0 : 6.0; });
   fill(field::precipitation, [&](Index c) { return 200.0 + 1500.0 * std::cos(0.1 * column(c)); });
-  fill(field::potential_evaporation, [](Index) { return 1000.0; });
+  fill(field::potential_evapotranspiration, [](Index) { return 1000.0; });
   const auto next_is_sea = [&](Index c) { return !land(grid.neighbour(c, kEast)); };
   fill(field::flow_receiver, [&](Index c) { return land(c) ? grid.neighbour(c, kEast) : c; });
   fill(field::drainage_area,
@@ -189,10 +189,10 @@ TEST(PlanetFile, TakesEachFieldFromTheLastStageThatWroteItAndPassesOverIslands) 
   EXPECT_EQ(state.read(field::elevation)[0], 2.0F);
   EXPECT_FALSE(state.has(field::temperature));
   EXPECT_FALSE(state.has(field::slope));
-  const auto file = read_planet_or_relief(folder / "03-erosion.nc", wanted);
+  const auto file = read_planet_or_dem(folder / "03-erosion.nc", wanted);
   EXPECT_EQ(file.read(field::elevation)[0], 1.0F);
-  EXPECT_THROW(read_planet_or_relief(folder / "07-island.nc", wanted), InputError);
-  EXPECT_THROW(read_planet_or_relief(folder / "08-nothing.nc", wanted), IoError);
+  EXPECT_THROW(read_planet_or_dem(folder / "07-island.nc", wanted), InputError);
+  EXPECT_THROW(read_planet_or_dem(folder / "08-nothing.nc", wanted), IoError);
   const TemporaryFolder empty;
   EXPECT_THROW(read_planet(empty.path(), wanted), InputError);
 }

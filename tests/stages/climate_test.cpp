@@ -56,7 +56,7 @@ const Field<float>* const kOutputs[] = {
     &field::temperature,       &field::temperature_range,
     &field::precipitation,     &field::precipitation_seasonality,
     &field::wind_east,         &field::wind_north,
-    &field::distance_to_coast, &field::potential_evaporation};
+    &field::distance_to_coast, &field::potential_evapotranspiration};
 
 void expect_sound(const State& state, const std::string& which) {
   for (const auto* spec : kOutputs) {
@@ -71,7 +71,7 @@ void expect_sound(const State& state, const std::string& which) {
     ASSERT_GE(rain[c], 0.0F) << which;
     ASSERT_GE(temperature[c], -270.0F) << which;
     ASSERT_LE(std::abs(season[c]), 1.0F) << which;
-    ASSERT_GE(state.read(field::potential_evaporation)[c], 0.0F) << which;
+    ASSERT_GE(state.read(field::potential_evapotranspiration)[c], 0.0F) << which;
   }
 }
 
@@ -313,7 +313,7 @@ TEST(Climate, SymmetricPlanetHasASymmetricClimate) {
   context.planet.eccentricity = 0.0;  // both hemispheres have the same summers
   const State state = run(grid, h, quick(), context);
   for (const auto* spec : {&field::temperature, &field::precipitation, &field::temperature_range,
-                           &field::wind_east, &field::potential_evaporation}) {
+                           &field::wind_east, &field::potential_evapotranspiration}) {
     const auto values = state.read(*spec);
     double worst = 0.0, largest = 0.0;
     for (int j = 0; j < 18; ++j) {

@@ -245,8 +245,8 @@ TEST(Events, DustCoolsAndDriesEverywhereAlikeAndNoOldImpactDoes) {
       const bool dries = !closed || z[cell] >= 0.0F;
       ASSERT_NEAR(winter.read(field::precipitation)[cell],
                   dries ? std::max(closed ? 20.0 : 0.0, left * usual - lost) : usual, 0.1);
-      ASSERT_LE(winter.read(field::potential_evaporation)[cell],
-                before.read(field::potential_evaporation)[cell]);
+      ASSERT_LE(winter.read(field::potential_evapotranspiration)[cell],
+                before.read(field::potential_evapotranspiration)[cell]);
     }
     auto old = impact_at(0.0, 0.0, 1.0);
     std::get<Impact>(old.what).age_yr = 1e4;

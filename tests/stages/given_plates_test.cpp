@@ -250,8 +250,8 @@ TEST(GivenPlates, TakeAMotionOfTheTimelineAsItIs) {
 
 /// A continent of 800 m round 0 N 0 E with a shelf, a slope, an apron that fills its foot, and
 /// floor that deepens with age to the west.
-GivenRelief made_relief() {
-  GivenRelief given{Grid::sphere(720, 360), {}, {}};
+GivenElevation made_relief() {
+  GivenElevation given{Grid::sphere(720, 360), {}, {}};
   for (int j = 0; j < 360; ++j) {
     for (int i = 0; i < 720; ++i) {
       const double longitude = given.grid.longitude_deg(i), latitude = given.grid.latitude_deg(j);
@@ -275,7 +275,7 @@ TEST(GivenPlates, BeginWithARealReliefAsItIs) {
   p.oldest_floor_myr = 180.0;
   p.cratons.share = 0.0655;  // within 30 degrees of the middle, less the rim
   Context context;
-  context.initial_elevation = std::make_shared<const GivenRelief>(made_relief());
+  context.initial_elevation = std::make_shared<const GivenElevation>(made_relief());
   const State& state = begun(p, context).state;
   const Grid& grid = state.grid();
   const auto z = state.read(field::crust_elevation);
@@ -312,12 +312,12 @@ TEST(GivenPlates, BelieveAnAgeGridWhereItHasOne) {
   p.initial_elevation = "given";
   p.cratons.share = 0.0655;
   Context context;
-  GivenRelief given = made_relief();
+  GivenElevation given = made_relief();
   given.age_myr.assign(given.elevation_m.size(), std::numeric_limits<float>::quiet_NaN());
   for (Index c = 0; c < given.grid.size(); ++c) {
     if (given.grid.longitude_deg(given.grid.column(c)) > 60.0) given.age_myr[c] = 33.0F;
   }
-  context.initial_elevation = std::make_shared<const GivenRelief>(std::move(given));
+  context.initial_elevation = std::make_shared<const GivenElevation>(std::move(given));
   const State& state = begun(p, context).state;
   const auto age = state.read(field::crust_age);
   const Grid& grid = state.grid();

@@ -26,7 +26,7 @@ State random_planet(const Grid& grid, std::uint64_t seed) {
   state.set(field::elevation, test::random_terrain(grid, seed));
   const RandomStream random(seed, "climate");
   const auto t = state.update(field::temperature), p = state.update(field::precipitation);
-  const auto e = state.update(field::potential_evaporation);
+  const auto e = state.update(field::potential_evapotranspiration);
   for (Index c = 0; c < grid.size(); ++c) {
     t[c] = 10;
     p[c] = static_cast<float>(random.uniform(c, 0, 0, 1500));
@@ -89,7 +89,7 @@ TEST(Hydrology, DamsAreCutUnlessTheBasinBehindKeepsItsWater) {
     }
     for (float& t : state.update(field::temperature)) t = 15.0F;
     for (float& p : state.update(field::precipitation)) p = static_cast<float>(rain_mm_yr);
-    for (float& e : state.update(field::potential_evaporation)) {
+    for (float& e : state.update(field::potential_evapotranspiration)) {
       e = static_cast<float>(potential_mm_yr);
     }
     Context context;
@@ -133,7 +133,7 @@ TEST(Hydrology, RiversOverThePoleCutNoSlots) {
   const Noise noise(11, "relief");
   const auto z = state.update(field::elevation);
   const auto t = state.update(field::temperature), p = state.update(field::precipitation);
-  const auto e = state.update(field::potential_evaporation);
+  const auto e = state.update(field::potential_evapotranspiration);
   for (Index c = 0; c < grid.size(); ++c) {
     const auto at = grid.unit_vector(grid.column(c), grid.row(c));
     z[c] = static_cast<float>(2500 * noise.fbm(at, 6.0, 3, 0.4) + 1500 * at[0] +
@@ -167,7 +167,7 @@ std::vector<double> largest_basins(bool turned) {
   const Noise noise(7, "relief");
   const auto z = state.update(field::elevation);
   const auto t = state.update(field::temperature), p = state.update(field::precipitation);
-  const auto e = state.update(field::potential_evaporation);
+  const auto e = state.update(field::potential_evapotranspiration);
   for (int j = 0; j < grid.ny(); ++j) {
     for (int i = 0; i < grid.nx(); ++i) {
       auto [x, y, up] = grid.unit_vector(i, j);

@@ -511,7 +511,7 @@ TEST(Island, RunoffIsThatOfThePlanetOverTheSameGround) {
   std::vector<double> runoff(coarse.size());
   std::vector<float> loss(coarse.size());
   land_water(coarse, sea, planet().read(field::precipitation),
-             planet().read(field::potential_evaporation), runoff, loss);
+             planet().read(field::potential_evapotranspiration), runoff, loss);
   const auto& [island, budget] = example();
   const PlanetCells cells(coarse, island.grid());
   double planets_m3_s = 0.0;

@@ -63,7 +63,7 @@ TEST(PlateLives, NumbersInFramesTableAndEndAreThoseOfTheSamePlates) {
     for (const auto& [id, share] : seen) {
       ASSERT_LT(area_column + id, steps.rows[row].size());
       const double listed = steps.rows[row][area_column + id] / sphere_km2;
-      // The table counts what has gone below others, the map what is seen.
+      // The table counts what has subducted, the map what is seen.
       EXPECT_NEAR(share, listed, 0.35 * listed + 0.01) << id << " after step " << row + 1;
     }
     for (std::size_t k = area_column; k < steps.rows[row].size(); ++k) {
@@ -202,7 +202,7 @@ TEST(PlateRotations, EndWithThePlateAndAreThereInEachStepOfItsLife) {
   }
 }
 
-/// Of two sides of a convergent boundary one goes below the other: continents stay above floor.
+/// Of two sides of a convergent boundary one subducts below the other: continents stay above floor.
 TEST(SubductionPolarity, ContinentsStayAboveFloor) {
   const History run = history(restless());
   int pairs = 0, agree = 0, land = 0, above = 0;

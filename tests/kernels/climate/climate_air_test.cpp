@@ -215,12 +215,12 @@ TEST(UpwindLift, WindwardRisesLeeSinks) {
 
 TEST(ConservativeRemapping, AveragesKeepTheLand) {
   const Grid fine = Grid::sphere(100, 50), coarse = Grid::sphere(36, 18);
-  const ConservativeRemapping overlay(fine, coarse);
+  const ConservativeRemapping remapping(fine, coarse);
   std::vector<float> h(static_cast<std::size_t>(fine.size()));
   for (Index c = 0; c < fine.size(); ++c) h[c] = (c * 7919) % 13 < 5 ? 100.0F : -100.0F;
   const auto size = static_cast<std::size_t>(coarse.size());
   std::vector<float> land(size), height(size), coverage(size);
-  overlay.average_relief(h, land, height, coverage);
+  remapping.average_elevation(h, land, height, coverage);
   for (std::size_t c = 0; c < size; ++c) {
     ASSERT_NEAR(coverage[c], 1.0F, 1e-5F);
     ASSERT_NEAR(height[c], 100.0F * land[c], 1e-3F);
@@ -229,16 +229,16 @@ TEST(ConservativeRemapping, AveragesKeepTheLand) {
 
 TEST(ConservativeRemapping, SplineKeepsConstantsAndRangesAndCrossesPoles) {
   const Grid fine = Grid::sphere(200, 100), coarse = Grid::sphere(36, 18);
-  const ConservativeRemapping overlay(fine, coarse);
+  const ConservativeRemapping remapping(fine, coarse);
   std::vector<float> values(static_cast<std::size_t>(coarse.size()), 3.0F);
   std::vector<float> row(200), scratch(200);
-  Interpolator(overlay, values).row(99, row, scratch);
+  Interpolator(remapping, values).row(99, row, scratch);
   for (const float v : row) ASSERT_NEAR(v, 3.0F, 1e-5F);
   // x of the unit vector is smooth over the pole; a linear function comes back almost unchanged.
   for (Index c = 0; c < coarse.size(); ++c) {
     values[c] = static_cast<float>(coarse.unit_vector(coarse.column(c), coarse.row(c))[0]);
   }
-  const Interpolator smooth(overlay, values);
+  const Interpolator smooth(remapping, values);
   for (const int j : {0, 1, 50, 98, 99}) {
     smooth.row(j, row, scratch);
     for (int i = 0; i < 200; ++i) ASSERT_NEAR(row[i], fine.unit_vector(i, j)[0], 0.02);
@@ -290,7 +290,7 @@ TEST(Blueprint, LeeOfARangeIsDry) {
     land[c] = grid.column(c) < 20 ? 0.0F : 1.0F;
     h[c] = grid.column(c) == 50 ? 2000.0F : 0.0F;
   }
-  blueprint_relief_precipitation(grid, {}, latitude, land, h, rain);
+  blueprint_orographic_precipitation(grid, {}, latitude, land, h, rain);
   const auto at = [&](int column) { return rain[grid.cell(column, 10)]; };
   EXPECT_NEAR(at(50) - at(48), 0.8 * 2000, 80.0)
       << "0.8 mm per metre of lift, less two cells of decay from the sea";

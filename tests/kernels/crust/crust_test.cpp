@@ -165,7 +165,7 @@ TEST(Deformation, IsTheLargestOfDecayingStrengths) {
 }
 
 TEST(ConvergentMargins, SmallPlatesAndPolesKeepTheirSides) {
-  // A cap of ocean about an axis goes down under a continent all round it.
+  // A cap of ocean about an axis subducts under a continent all round it.
   const Grid grid = Grid::sphere(256, 128);
   constexpr auto kConvergent = static_cast<std::int8_t>(BoundaryType::convergent);
   for (const auto& axis :

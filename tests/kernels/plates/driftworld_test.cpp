@@ -66,7 +66,7 @@ SphereSettings quiet() {
   return settings;
 }
 
-/// Samples of a plate that have gone below another one.
+/// Samples of a plate that lie below another one.
 int hidden_of(const SphereTectonics& model, int plate, bool land) {
   int count = 0;
   for (std::int32_t i = 0; i < model.mesh().size(); ++i) {
@@ -167,9 +167,9 @@ TEST(Driftworld, PlatesBecomeOneAsSoonAsTheirContinentsTouch) {
   }
 }
 
-TEST(Driftworld, UpliftsOfAllPlatesThatGoBelowAddUp) {
+TEST(Driftworld, UpliftsOfAllSubductingPlatesAddUp) {
   const SampledSphere world(40000);
-  // The middle plate, 1800 km wide, is the youngest; both neighbours go below it.
+  // The middle plate, 1800 km wide, is the youngest; both neighbours subduct below it.
   SphereState state =
       slices(world, {{-180.0, 90.0, 90.0F}, {-8.0, 0.0, 10.0F}, {8.0, -70.0, 80.0F}});
   SphereSettings settings = quiet();
@@ -186,10 +186,10 @@ TEST(Driftworld, UpliftsOfAllPlatesThatGoBelowAddUp) {
     int sources = 0;
     for (const int lower : {0, 2}) {
       double nearest_km = 1e9;
-      for (const auto& front : model.fronts()) {
-        if (front.lower != lower) continue;
-        nearest_km = std::min(nearest_km,
-                              kRadius_km * angle_between(at, world.samples.position(front.sample)));
+      for (const auto& trench : model.trenches()) {
+        if (trench.lower != lower) continue;
+        nearest_km = std::min(
+            nearest_km, kRadius_km * angle_between(at, world.samples.position(trench.sample)));
       }
       // 0.6 mm/yr f g h with g = v / 100 and h = (5 / 20)^2, for 2 Myr.
       const double speed = (lower == 0 ? 90.0 : 70.0) * std::hypot(at[0], at[1]);
@@ -198,7 +198,7 @@ TEST(Driftworld, UpliftsOfAllPlatesThatGoBelowAddUp) {
       rise_m += part_m;
       sources += part_m > 0.1;
     }
-    // Fronts are handed from sample to sample, so that now and then a neighbour's is taken.
+    // Trenches are handed from sample to sample, so that now and then a neighbour's is taken.
     ASSERT_NEAR(model.state().crust.elevation_m[i], -5000.0 + rise_m, 0.1 + 0.03 * rise_m);
     both += sources == 2;
   }

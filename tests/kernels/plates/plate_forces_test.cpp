@@ -40,7 +40,7 @@ TEST(PlateForces, AreThoseWorkedOutByHand) {
 double longitude(const Vector3& at) { return std::atan2(at[1], at[0]); }
 
 /// Two hemispheres of ocean that part at longitude 0 and meet at 180, where the older one, plate 1
-/// in the east, goes down.
+/// in the east, subducts.
 SphereState hemispheres(const SampledSphere& world, double relative_mm_yr) {
   SphereState state;
   state.crust.resize(world.mesh.size());
@@ -246,7 +246,7 @@ TEST(SphereForces, MovePlatesWithSlabsFasterThanContinentsAtTheSpeedsOfTheEarth)
         size[root] += 1.0;
         land[root] += model.state().crust.continental[i];
       }
-      for (const auto& front : model.fronts()) slab[model.state().root(front.lower)] += 1.0;
+      for (const auto& trench : model.trenches()) slab[model.state().root(trench.lower)] += 1.0;
       for (std::size_t p = 0; p < plates; ++p) {
         if (size[p] == 0.0) continue;
         all += speed[p];

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "geo/core/error.hpp"
-#include "geo/kernels/plates/raster/raster_relief.hpp"
+#include "geo/kernels/plates/raster/raster_elevation.hpp"
 #include "geo/kernels/plates/raster/raster_start.hpp"
 #include "geo/kernels/plates/raster/raster_tectonics.hpp"
 

@@ -71,7 +71,7 @@ TEST(RasterSphere, HasCellsAsLargeAsATilesOfThatWidth) {
   EXPECT_NEAR(4.0 * 3.141592653589793 / raster_samples(512), cell * cell, 1e-5 * cell * cell);
 }
 
-TEST(RasterSphere, CrustIsConservedButForWhatTheBooksSay) {
+TEST(RasterSphere, CrustIsConservedButForWhatTheBudgetSays) {
   for (const double spin : {0.0, 0.01}) {
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
       RasterSettings settings = small();

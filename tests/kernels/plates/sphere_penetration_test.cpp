@@ -1,4 +1,4 @@
-// How far continents have gone below each other before they collide.
+// How far continents are thrust below each other before they collide.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -119,7 +119,7 @@ TEST(SpherePenetration, ObliqueContinentsCollideWhenTheirClosingHasBroughtThemTh
 TEST(SpherePenetration, ContinentsThatGoOnMeetingCollideThoughAllIsReadAnewBetween) {
   const SampledSphere world(40000);
   constexpr double kSpeed_mm_yr = 20.0;
-  // Read anew every 10 Myr, in which they come 200 km; 300 km are due after 15.
+  // Resampled every 10 Myr, in which they come 200 km; 300 km are due after 15.
   SphereTectonics model = oblique(world, 0.0, kSpeed_mm_yr, 5);
   while (model.events().empty() && model.state().time_myr < 60.0) model.advance();
   ASSERT_EQ(model.events().size(), 1U);

@@ -47,7 +47,7 @@ SphereState beginning(const SampledSphere& world, float old_myr) {
   return state;
 }
 
-TEST(Foundering, OldFloorBreaksOffAlongItsMarginAndGoesBelowTheContinent) {
+TEST(SubductionInitiation, OldFloorBreaksOffAlongItsMarginAndSubductsBelowTheContinent) {
   const SampledSphere world(20000);
   SphereTectonics model(world.mesh, settings(), beginning(world, 130.0F), 1);
   model.advance();
@@ -76,14 +76,14 @@ TEST(Foundering, OldFloorBreaksOffAlongItsMarginAndGoesBelowTheContinent) {
       west{std::sin(2.0), -std::cos(2.0), 0.0};
   EXPECT_NEAR(6370.0 * dot(cross(model.rotations()[2], at_margin), west), 50.0, 5.0);
   for (int k = 0; k < 10; ++k) model.advance();
-  const auto goes_down = [&](const SphereTectonics::Front& front) {
-    return front.lower == 2 && crust.plate[front.sample] == 1 &&
-           crust.continental[front.sample] != 0;
+  const auto subducts = [&](const SphereTectonics::TrenchSample& trench) {
+    return trench.lower == 2 && crust.plate[trench.sample] == 1 &&
+           crust.continental[trench.sample] != 0;
   };
-  EXPECT_GT(std::count_if(model.fronts().begin(), model.fronts().end(), goes_down), 10);
+  EXPECT_GT(std::count_if(model.trenches().begin(), model.trenches().end(), subducts), 10);
 }
 
-TEST(Foundering, NeedsOldFloorARateAndAPlateThatIsFree) {
+TEST(SubductionInitiation, NeedsOldFloorARateAndAPlateThatIsFree) {
   const SampledSphere world(20000);
   const auto subduction_initiations = [&](const SphereSettings& s, float old_myr, bool is_held) {
     SphereState state = beginning(world, old_myr);
@@ -98,13 +98,13 @@ TEST(Foundering, NeedsOldFloorARateAndAPlateThatIsFree) {
   never.initiation_per_myr = 0.0;
   EXPECT_EQ(subduction_initiations(never, 130.0F, false), 0);
   EXPECT_EQ(subduction_initiations(settings(), 130.0F, false), 1);
-  // Floor of a sea goes down also where plates of its size would not stay.
+  // Floor of a sea subducts also where plates of its size would not stay.
   SphereSettings large_plates = settings();
   large_plates.smallest_piece_km2 = 1e8;
   EXPECT_EQ(subduction_initiations(large_plates, 130.0F, false), 1);
 }
 
-TEST(Foundering, LeavesASeaOfLessThanAMillionSquareKilometres) {
+TEST(SubductionInitiation, LeavesASeaOfLessThanAMillionSquareKilometres) {
   const SampledSphere world(20000);
   SphereSettings s = settings();
   s.smallest_piece_km2 = 1e8;
@@ -127,7 +127,7 @@ TEST(Foundering, LeavesASeaOfLessThanAMillionSquareKilometres) {
   }
 }
 
-TEST(Foundering, IsAsLikelyAsItsMarginIsLong) {
+TEST(SubductionInitiation, IsAsLikelyAsItsMarginIsLong) {
   const SampledSphere world(20000);
   SphereSettings s = settings();
   // 40 degrees of margin are 4400 km: 0.44 per step of 2 Myr.

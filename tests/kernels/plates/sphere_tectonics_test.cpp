@@ -106,11 +106,11 @@ TEST(SphereTectonics, OlderFloorGoesDown) {
   }
   EXPECT_GT(below, 100);
   EXPECT_EQ(above, 0);
-  for (const auto& front : model.fronts()) {
-    EXPECT_EQ(model.state().crust.plate[front.sample], 0);
-    EXPECT_EQ(front.lower, 1);
+  for (const auto& trench : model.trenches()) {
+    EXPECT_EQ(model.state().crust.plate[trench.sample], 0);
+    EXPECT_EQ(trench.lower, 1);
   }
-  EXPECT_GT(model.fronts().size(), 40U);
+  EXPECT_GT(model.trenches().size(), 40U);
 }
 
 TEST(SphereTectonics, RaisesTheOverridingPlateByItsLaw) {
@@ -122,11 +122,11 @@ TEST(SphereTectonics, RaisesTheOverridingPlateByItsLaw) {
   model.advance();
   int raised = 0;
   for (std::int32_t i = 0; i < world.mesh.size(); ++i) {
-    const std::int32_t k = model.nearest_front()[i];
+    const std::int32_t k = model.nearest_trench()[i];
     if (k < 0) continue;
     const Vector3& at = world.samples.position(i);
     const double d_km =
-        6370.0 * angle_between(at, world.samples.position(model.fronts()[k].sample));
+        6370.0 * angle_between(at, world.samples.position(model.trenches()[k].sample));
     const double v = 100.0 * std::hypot(at[0], at[1]);
     // 0.6 mm/yr f g h with h = (5 / 20)^2, for 2 Myr.
     const double rise_m = 1200.0 * uplift_by_distance(d_km, 200.0, 1800.0) * v / 100.0 / 16.0;
@@ -168,7 +168,7 @@ TEST(SphereTectonics, ContinentsCollideWhenThreeHundredKilometresHaveGoneUnder) 
   EXPECT_EQ(event.first, 1);  // the smaller one
   EXPECT_EQ(event.second, 0);
   EXPECT_NEAR(event.area_km2, 1500.0 * 30.0 * kKmPerDegree, 0.06 * event.area_km2);
-  // The mountains hold what went below.
+  // The mountains hold what was swallowed.
   const SphereBudget& budget = model.budget();
   EXPECT_GT(budget.swallowed_km3, 300.0 * 2000.0 * 30.0);
   double high = 0.0;
@@ -257,8 +257,8 @@ TEST(SphereTectonics, SlabPullBringsAPlateToItsFront) {
   const SampledSphere world(20000);
   SphereSettings settings = quiet();
   settings.slab_pull = 0.02;
-  // Both plates turn about the axis; plate 1 goes down at longitude 180, north and south alike, so
-  // its axis keeps; one front alone, north of the equator, would tilt it.
+  // Both plates turn about the axis; plate 1 subducts at longitude 180, north and south alike, so
+  // its axis keeps; one trench alone, north of the equator, would tilt it.
   SphereTectonics model(world.mesh, settings, hemispheres(world, 100.0), 1);
   for (int k = 0; k < 5; ++k) model.advance();
   EXPECT_LT(length(add(model.state().plates[1].axis, {0.0, 0.0, 1.0}, -1.0)), 0.01);
@@ -533,7 +533,7 @@ TEST(SphereTectonics, BothHalvesOfAPlateThatIsHeldAreHeld) {
   EXPECT_EQ(model.rotations(), rotations);
 }
 
-TEST(SphereTectonics, WhatIsDoneBetweenStepsIsInTheBooksOfTheNext) {
+TEST(SphereTectonics, WhatIsDoneBetweenStepsIsInTheBudgetOfTheNext) {
   const SampledSphere world(5000);
   SphereTectonics model(world.mesh, quiet(), hemispheres(world, 0.0), 1);
   model.advance();
@@ -602,11 +602,11 @@ TEST(SphereTectonics, IslandArcsStandOneToFourHundredKilometresBehindTheirTrench
       ++arcs;
       // On the plate that stays up, the younger one.
       ASSERT_EQ(crust.plate[i], 0);
-      const std::int32_t front = model.nearest_front()[i];
-      ASSERT_GE(front, 0);
+      const std::int32_t trench = model.nearest_trench()[i];
+      ASSERT_GE(trench, 0);
       const double far_km =
           6370.0 * angle_between(world.samples.position(i),
-                                 world.samples.position(model.fronts()[front].sample));
+                                 world.samples.position(model.trenches()[trench].sample));
       EXPECT_GE(far_km, 100.0);
       EXPECT_LE(far_km, 400.0);
     }
@@ -633,13 +633,13 @@ TEST(SphereTectonics, CordillerasRiseBehindTheTrenchesOfAWholePlanet) {
     if (k < 20) continue;
     const SphereCrust& crust = model.state().crust;
     for (std::int32_t i = 0; i < world.mesh.size(); ++i) {
-      const std::int32_t front = model.nearest_front()[i];
-      if (front < 0 || crust.continental[i] == 0 || crust.plate[i] < 0) continue;
+      const std::int32_t trench = model.nearest_trench()[i];
+      if (trench < 0 || crust.continental[i] == 0 || crust.plate[i] < 0) continue;
       EXPECT_EQ(model.hidden()[i], 0);  // the side that stays up
       if (crust.orogeny[i] == static_cast<std::int8_t>(OrogenyType::himalayan)) continue;
       const double far_km =
           6370.0 * angle_between(world.samples.position(i),
-                                 world.samples.position(model.fronts()[front].sample));
+                                 world.samples.position(model.trenches()[trench].sample));
       const int bin = static_cast<int>(far_km / kBin_km);
       if (bin >= kBins) continue;
       sum[bin] += crust.elevation_m[i];
@@ -691,7 +691,7 @@ TEST(SphereTectonics, PlanetsOfAnySizeStayWhole) {
   }
 }
 
-TEST(SphereTectonics, TheBooksOfContinentsCloseToRoundingHoweverLong) {
+TEST(SphereTectonics, TheMassBalanceOfContinentsClosesToRoundingHoweverLong) {
   const SampledSphere world(1000);
   SphereSettings settings;
   settings.floor_by_age = true;

@@ -49,7 +49,7 @@ TEST(TectonicLaws, DriftworldsUpliftPeaksAtItsControlDistance) {
   EXPECT_NEAR(uplift_by_distance_driftworld(1.0, 1.0, 2.0), 1.0, 1e-12);
   EXPECT_NEAR(uplift_by_distance_driftworld(1.5, 1.0, 2.0), 0.5, 1e-12);
   EXPECT_EQ(uplift_by_distance_driftworld(2.0, 1.0, 2.0), 0.0);
-  // As in its table, 0.1 and 0.283 of the radius: rising from the front.
+  // As in its table, 0.1 and 0.283 of the radius: rising from the trench.
   EXPECT_NEAR(uplift_by_distance_driftworld(0.0, 0.1, 0.283), -0.22216, 1e-5);
   EXPECT_NEAR(uplift_by_distance_driftworld(0.1, 0.1, 0.283), 1.0, 1e-12);
 }
@@ -68,7 +68,7 @@ TEST(TectonicLaws, FoldsTurnTowardsTheRelativeMotion) {
 }
 
 TEST(TectonicLaws, SlabPullTurnsThePlateTowardsItsFront) {
-  // Centre on x, front 30 degrees north: the axis that carries x to the north is -y.
+  // Centre on x, trench 30 degrees north: the axis that carries x to the north is -y.
   const double s = std::sin(std::numbers::pi / 6), c = std::cos(std::numbers::pi / 6);
   expect_near(slab_pull({1, 0, 0}, {c, 0, s}), {0, -1, 0});
   const Vector3 motion = cross(slab_pull({1, 0, 0}, {c, 0, s}), Vector3{1, 0, 0});

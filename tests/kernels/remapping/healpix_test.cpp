@@ -39,7 +39,7 @@ TEST(Healpix, KeepsSumsOverThePlanetWhateverTheGrids) {
     for (const int nside : {1, 2, 8, 64}) {
       const Healpix pixels(nside);
       std::vector<float> mean(pixels.size());
-      HealpixOverlay(grid, pixels).mean(values, mean);
+      HealpixRemapping(grid, pixels).mean(values, mean);
       double sum = 0.0;
       for (const float value : mean) sum += value;
       sum *= grid.total_area_m2() / pixels.size();
@@ -54,13 +54,13 @@ TEST(Healpix, KeepsAConstantExactlyAndLeavesOutGaps) {
   std::vector<float> values(grid.size(), 273.15F);
   const Healpix pixels(16);
   std::vector<float> mean(pixels.size());
-  const HealpixOverlay overlay(grid, pixels);
-  overlay.mean(values, mean);
+  const HealpixRemapping remapping(grid, pixels);
+  remapping.mean(values, mean);
   for (const float value : mean) ASSERT_FLOAT_EQ(value, 273.15F);
   for (Index cell = 0; cell < grid.size() / 2; ++cell) {
     values[cell] = std::numeric_limits<float>::quiet_NaN();
   }
-  overlay.mean(values, mean);
+  remapping.mean(values, mean);
   for (std::int32_t pixel = 0; pixel < pixels.size(); ++pixel) {
     const double sine = pixels.centre(pixel).sine;
     if (sine > 0.0) ASSERT_FLOAT_EQ(mean[pixel], 273.15F) << pixel;
@@ -81,7 +81,7 @@ TEST(Healpix, MeansOfSineAreThoseOfPixels) {
   }
   const Healpix pixels(8);
   std::vector<float> mean(pixels.size());
-  HealpixOverlay(grid, pixels).mean(values, mean);
+  HealpixRemapping(grid, pixels).mean(values, mean);
   for (std::int32_t pixel = 0; pixel < pixels.size(); ++pixel) {
     const double sine = pixels.centre(pixel).sine;
     // Within a cell of 1/2 degree the sine is taken for its mean: second order in its height.
@@ -89,7 +89,7 @@ TEST(Healpix, MeansOfSineAreThoseOfPixels) {
   }
 }
 
-TEST(Healpix, CommonestIsWhatCoversMost) {
+TEST(Healpix, DominantIsWhatCoversMost) {
   const Grid grid = Grid::sphere(36, 18);
   std::vector<std::int32_t> values(grid.size(), 3);
   for (Index cell = 0; cell < grid.size(); ++cell) {
@@ -97,7 +97,7 @@ TEST(Healpix, CommonestIsWhatCoversMost) {
   }
   const Healpix pixels(4);
   std::vector<std::int32_t> result(pixels.size());
-  HealpixOverlay(grid, pixels).commonest(values, result);
+  HealpixRemapping(grid, pixels).dominant(values, result);
   for (std::int32_t pixel = 0; pixel < pixels.size(); ++pixel) {
     const double sine = pixels.centre(pixel).sine;
     if (std::abs(sine) < 1e-9) continue;  // half and half
@@ -108,7 +108,7 @@ TEST(Healpix, CommonestIsWhatCoversMost) {
 TEST(Healpix, RefusesSidesThatAreNoPowersOfTwoAndPartsOfPlanets) {
   for (const int nside : {-1, 0, 3, 16384})
     EXPECT_THROW(Healpix{nside}, ConfigurationError) << nside;
-  EXPECT_THROW(HealpixOverlay(Grid::torus(16, 8, 1e3, 1e3), Healpix(1)), InputError);
+  EXPECT_THROW(HealpixRemapping(Grid::torus(16, 8, 1e3, 1e3), Healpix(1)), InputError);
 }
 
 }  // namespace

@@ -282,7 +282,7 @@ SphereSettings with_rivers() {
   return settings;
 }
 
-TEST(SphereRivers, KeepTheBooksOfContinents) {
+TEST(SphereRivers, KeepTheMassBalanceOfContinents) {
   const SampledSphere world(12000);
   SphereTectonics model(world.mesh, with_rivers(), start_sphere(world.mesh, {}, with_rivers(), 4),
                         4);

@@ -109,7 +109,7 @@ struct PlumeChange {
   [[nodiscard]] std::vector<Parameter> declarations();
 };
 
-/// Whether an event happens to drifting plates, not the relief.
+/// Whether an event happens to drifting plates, not to elevation.
 template <class What>
 inline constexpr bool kIsOfPlates =
     std::is_same_v<What, PlateMotion> || std::is_same_v<What, PlateRift> ||

@@ -79,7 +79,7 @@ extern const Field<float> inflow_discharge;
 extern const Field<std::int32_t> flow_receiver;
 extern const Field<std::int8_t> flow_direction;
 extern const Field<float> temperature, temperature_range, precipitation, precipitation_seasonality;
-extern const Field<float> wind_east, wind_north, distance_to_coast, potential_evaporation;
+extern const Field<float> wind_east, wind_north, distance_to_coast, potential_evapotranspiration;
 extern const Field<float> sea_ice_area_fraction;
 extern const Field<float> slope, discharge, river_intensity, lake_depth;
 extern const Field<std::int32_t> lake_id, basin_id;
@@ -105,7 +105,7 @@ enum class BoundaryType : std::int8_t { interior, convergent, divergent, transfo
 /// continent.
 enum class OrogenyType : std::int8_t { none, andean, himalayan };
 
-/// What the ground is made of, as far as rivers feel it.
+/// What the ground is made of, as far as it decides how fast rivers incise.
 enum class RockType : std::int8_t { basalt, schist, granite, quartzite, sandstone, limestone };
 
 /// Biomes 0..11 (Whittaker 1975), colours aside.

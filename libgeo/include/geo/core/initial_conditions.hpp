@@ -19,8 +19,8 @@ struct PlateOutline {
   double rate_deg_myr = 0.0;  ///< how fast
 };
 
-/// A relief of a whole planet.
-struct GivenRelief {
+/// The elevation of a whole planet.
+struct GivenElevation {
   Grid grid;
   std::vector<float> elevation_m;  ///< of its cells, sea level at 0
   std::vector<float> age_myr;  ///< of the sea floor, NaN where unknown; empty: told by its depth

@@ -74,9 +74,9 @@ struct Context {
   std::uint64_t seed = 1;
   /// What hypsometry by rank aims at; empty unless asked for.
   Hypsography hypsography;
-  /// The first plates and the first relief of a history; empty unless given.
+  /// Initial conditions of a history, plates and elevation; empty unless given.
   std::vector<PlateOutline> plates;
-  std::shared_ptr<const GivenRelief> initial_elevation;
+  std::shared_ptr<const GivenElevation> initial_elevation;
   /// What an island's terrain is made like, and a planet's, where exemplars are asked for; empty:
   /// stages grow their own.
   std::shared_ptr<const ExemplarLibrary> exemplars, planet_exemplars;

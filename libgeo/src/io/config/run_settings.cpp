@@ -24,7 +24,7 @@ std::vector<Parameter> RunSettings::parameters() {
       integer("run.seed", seed, "1", 0, std::numeric_limits<std::int64_t>::max(),
               "seed of every random number", "design"),
       text("run.grid", grid,
-           "cells as WIDTHxHEIGHT; auto takes the relief's own size, without one 4096x2048, of a "
+           "cells as WIDTHxHEIGHT; auto takes the size of dem.file, without one 4096x2048, of a "
            "torus "
            "1024x1024",
            "design"),
@@ -40,15 +40,14 @@ std::vector<Parameter> RunSettings::parameters() {
           "design"),
       text("run.from", from, "first stage to run; empty is the first there is", "design"),
       text("run.to", to, "last stage to run; empty is the last there is", "design"),
-      text(
-          "dem.file", dem_file,
-          "file of a real relief (NetCDF, GeoTIFF, grey PNG, ESRI ASCII), which takes the place of "
-          "plates and isostasy",
-          "design"),
+      text("dem.file", dem_file,
+           "file of a digital elevation model (NetCDF, GeoTIFF, grey PNG, ESRI ASCII), which takes "
+           "the place of plates and isostasy",
+           "design"),
       text("dem.variable", dem_variable,
-           "variable of that file; empty is the one that looks like relief", "design"),
+           "variable of that file; empty is the one that looks like an elevation", "design"),
       text("dem.range", dem_range,
-           "MIN,MAX, values of black and white in an image, of a relief in m; empty is what the "
+           "MIN,MAX, values of black and white in an image, of elevations in m; empty is what the "
            "JSON beside it says; without dem.file it is that of images in fields.* that have none",
            "design"),
       text("dem.window", dem_window,
@@ -56,7 +55,7 @@ std::vector<Parameter> RunSettings::parameters() {
            "the JSON beside them says",
            "design"),
       choice("dem.sea_level", dem_sea_level, {"datum", "fraction"},
-             "where the sea stands: at the relief's own zero, or where planet.ocean_fraction of "
+             "where the sea stands: at the DEM's own datum, or where planet.ocean_fraction of "
              "the area lies below it",
              "design"),
       text("fields.erodibility", erodibility,
@@ -76,7 +75,7 @@ std::vector<Parameter> RunSettings::parameters() {
           "stages",
           "davidson2013"),
       text("fields.ranking", ranking,
-           "FILE[:VARIABLE] of any unit, a mask or a relief, that orders places by height where "
+           "FILE[:VARIABLE] of any unit, a mask or a DEM, that orders places by height where "
            "plates follow a hypsography",
            "davidson2013"),
       text("fields.plates", plates,
@@ -89,7 +88,7 @@ std::vector<Parameter> RunSettings::parameters() {
            "pole_latitude_deg, pole_longitude_deg, rate_deg_myr; the last row of a plate counts",
            "design"),
       text("fields.initial_elevation", initial_elevation,
-           "FILE[:VARIABLE] of a planet's relief from which drift begins where "
+           "FILE[:VARIABLE] of a planet's elevation from which drift begins where "
            "plates.sphere.initial_elevation "
            "is given",
            "cortial2019"),

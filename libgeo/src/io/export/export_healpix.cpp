@@ -55,7 +55,7 @@ class GeographicLatitude {
 
 constexpr const char* kCell = "cell";
 
-/// A field whose numbers are only names is as its commonest cell has it; others are means.
+/// A field whose numbers are only names takes the class of the largest area; others are means.
 bool is_name(const FieldSpec& spec) {
   return spec.type != Type::float32 && spec.type != Type::float64;
 }
@@ -136,7 +136,7 @@ void write_positions(const nc::File& file, const Healpix& pixels, const Ellipsoi
 }
 
 void write_field(const nc::File& file, const ExportSource& source, const FieldSpec& spec,
-                 const HealpixOverlay& overlay, const Healpix& pixels) {
+                 const HealpixRemapping& remapping, const Healpix& pixels) {
   const auto values = shared_values(source, spec);
   const int variable = *file.find_variable(spec.name);
   if (is_name(spec)) {
@@ -146,19 +146,19 @@ void write_field(const nc::File& file, const ExportSource& source, const FieldSp
           for (const auto value : array) names.push_back(static_cast<std::int32_t>(value));
         },
         *values);
-    overlay.commonest(names, result);
+    remapping.dominant(names, result);
     nc::check(nc_put_var_int(file.id(), variable, result.data()));
     return;
   }
   std::vector<float> mean(pixels.size());
-  overlay.mean(*as_floats(spec, values), mean);
+  remapping.mean(*as_floats(spec, values), mean);
   nc::check(nc_put_var_float(file.id(), variable, mean.data()));
 }
 
 void write_file(const fs::path& path, const ExportSource& source, bool all_fields, int nside) {
   const Grid& grid = source.grid();
   const Healpix pixels(nside != 0 ? nside : Healpix::side_like(grid));
-  const HealpixOverlay overlay(grid, pixels);
+  const HealpixRemapping remapping(grid, pixels);
   std::vector<const FieldSpec*> specs;
   for (const auto& [spec, values] : source.snapshot.fields) {
     // Numbers of cells mean nothing on other cells.
@@ -189,7 +189,7 @@ void write_file(const fs::path& path, const ExportSource& source, bool all_field
   for (const FieldSpec* spec : specs) define_field(file, columns, *spec);
   nc::check(nc_enddef(file.id()));
   write_positions(file, pixels, grid.figure());
-  for (const FieldSpec* spec : specs) write_field(file, source, *spec, overlay, pixels);
+  for (const FieldSpec* spec : specs) write_field(file, source, *spec, remapping, pixels);
   file.close();
 }
 

@@ -145,27 +145,27 @@ Grid take_grid(Parcel& parcel) {
   throw Parcel::Incomplete();
 }
 
-void put(Parcel& parcel, const Relief& relief) {
-  put(parcel, relief.grid);
-  put(parcel, relief.elevation_m);
-  put(parcel, relief.source);
-  put(parcel, relief.variable);
-  put(parcel, relief.raster.rows);
-  put(parcel, relief.raster.columns);
-  put(parcel, relief.raster.geographic);
-  put(parcel, relief.raster_m);
+void put(Parcel& parcel, const Dem& dem) {
+  put(parcel, dem.grid);
+  put(parcel, dem.elevation_m);
+  put(parcel, dem.source);
+  put(parcel, dem.variable);
+  put(parcel, dem.raster.rows);
+  put(parcel, dem.raster.columns);
+  put(parcel, dem.raster.geographic);
+  put(parcel, dem.raster_m);
 }
 
-Relief take_answer(Parcel& parcel, std::type_identity<Relief>) {
-  Relief relief{{}, take_grid(parcel), {}, {}, {}, {}};
-  take(parcel, relief.elevation_m);
-  take(parcel, relief.source);
-  take(parcel, relief.variable);
-  relief.raster.rows = take_axis(parcel);
-  relief.raster.columns = take_axis(parcel);
-  take(parcel, relief.raster.geographic);
-  take(parcel, relief.raster_m);
-  return relief;
+Dem take_answer(Parcel& parcel, std::type_identity<Dem>) {
+  Dem dem{{}, take_grid(parcel), {}, {}, {}, {}};
+  take(parcel, dem.elevation_m);
+  take(parcel, dem.source);
+  take(parcel, dem.variable);
+  dem.raster.rows = take_axis(parcel);
+  dem.raster.columns = take_axis(parcel);
+  take(parcel, dem.raster.geographic);
+  take(parcel, dem.raster_m);
+  return dem;
 }
 
 void put(Parcel& parcel, const Snapshot& snapshot) {

@@ -86,13 +86,13 @@ void put(Parcel& parcel, const Grid& grid);
 Grid take_grid(Parcel& parcel);
 
 // What readers give.
-void put(Parcel& parcel, const Relief& relief);
+void put(Parcel& parcel, const Dem& relief);
 void put(Parcel& parcel, const Snapshot& snapshot);  // without a checkpoint
 void put(Parcel& parcel, const Provenance& provenance);
 void put(Parcel& parcel, const Checkpoint& checkpoint);
 void put(Parcel& parcel, const std::optional<std::string>& text);
 void put(Parcel& parcel, const std::vector<Exemplar>& exemplars);  // without what is measured
-Relief take_answer(Parcel& parcel, std::type_identity<Relief>);
+Dem take_answer(Parcel& parcel, std::type_identity<Dem>);
 Snapshot take_answer(Parcel& parcel, std::type_identity<Snapshot>);
 Provenance take_answer(Parcel& parcel, std::type_identity<Provenance>);
 Checkpoint take_answer(Parcel& parcel, std::type_identity<Checkpoint>);

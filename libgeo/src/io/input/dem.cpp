@@ -118,46 +118,45 @@ Rows registration(const DemAxis& rows) {
   return Rows::regional;
 }
 
-Relief global_relief(DemAxis rows, const Longitudes& longitudes, Rows registered,
-                     std::vector<float> values, const Planet& planet) {
+Dem global_dem(DemAxis rows, const Longitudes& longitudes, Rows registered,
+               std::vector<float> values, const Planet& planet) {
   const DemAxis& columns = longitudes.axis;
   const bool cells = registered == Rows::cells;
   const int ny = cells ? rows.size : rows.size - 1;
   const int nx = columns.size + columns.size % 2;
   rows.step = 180.0 / ny;
   rows.first = cells ? -90.0 + 0.5 * rows.step : -90.0;
-  Relief relief{{}, Grid::sphere(nx, ny, planet.figure()), {}, {}, {}, {}};
+  Dem dem{{}, Grid::sphere(nx, ny, planet.figure()), {}, {}, {}, {}};
   if (cells && longitudes.aligned) {
-    relief.elevation_m = std::move(values);
-    return relief;
+    dem.elevation_m = std::move(values);
+    return dem;
   }
-  relief.raster = {latitude_axis(rows), even_axis(columns.first, columns.step, columns.size), true};
-  relief.raster.columns.period = 360.0;
-  relief.raster_m = std::move(values);
-  relief.elevation_m = resample(relief, relief.grid);
-  return relief;
+  dem.raster = {latitude_axis(rows), even_axis(columns.first, columns.step, columns.size), true};
+  dem.raster.columns.period = 360.0;
+  dem.raster_m = std::move(values);
+  dem.elevation_m = resample(dem, dem.grid);
+  return dem;
 }
 
-Relief window_relief(const DemAxis& rows, const DemAxis& columns, std::vector<float> values,
-                     const Planet& planet) {
+Dem window_dem(const DemAxis& rows, const DemAxis& columns, std::vector<float> values,
+               const Planet& planet) {
   const double south = std::max(rows.low(), -90.0), north = std::min(rows.high(), 90.0);
   const int ny = std::max(3, static_cast<int>(std::lround((north - south) / rows.step)));
   // A full circle may exceed itself by rounding.
   const double east = std::min(columns.high(), columns.low() + 360.0);
-  Relief relief{
-      {}, Grid::window(columns.size, ny, {south, north, columns.low(), east}, planet.figure()),
-      {}, {},
-      {}, {}};
+  Dem dem{{}, Grid::window(columns.size, ny, {south, north, columns.low(), east}, planet.figure()),
+          {}, {},
+          {}, {}};
   // A row of nodes at the pole is half as tall as the others.
   const double slack = kSlack * rows.step;
   if (rows.low() >= -90.0 - slack && rows.high() <= 90.0 + slack) {
-    relief.elevation_m = std::move(values);
-    return relief;
+    dem.elevation_m = std::move(values);
+    return dem;
   }
-  relief.raster = {latitude_axis(rows), even_axis(columns.first, columns.step, columns.size), true};
-  relief.raster_m = std::move(values);
-  relief.elevation_m = resample(relief, relief.grid);
-  return relief;
+  dem.raster = {latitude_axis(rows), even_axis(columns.first, columns.step, columns.size), true};
+  dem.raster_m = std::move(values);
+  dem.elevation_m = resample(dem, dem.grid);
+  return dem;
 }
 
 /// The CRS that a file names for a variable: CF, GDAL and a few old habits.
@@ -215,27 +214,27 @@ std::optional<Centre> find_centre(const nc::File& file, int variable, const DemA
   return unproject(*crs, 0.5 * (columns.low() + columns.high()), 0.5 * (rows.low() + rows.high()));
 }
 
-Relief geographic_relief(const std::vector<float>& values, const DemAxis& rows,
-                         const DemAxis& columns, const Planet& planet) {
+Dem geographic_dem(const std::vector<float>& values, const DemAxis& rows, const DemAxis& columns,
+                   const Planet& planet) {
   const Longitudes longitudes = arrange_longitudes(columns);
   const Rows registered = registration(rows);
   auto ordered = in_order(values, rows, longitudes.axis, columns.size, longitudes.start);
   if (longitudes.round && registered != Rows::regional) {
-    return global_relief(rows, longitudes, registered, std::move(ordered), planet);
+    return global_dem(rows, longitudes, registered, std::move(ordered), planet);
   }
-  return window_relief(rows, longitudes.axis, std::move(ordered), planet);
+  return window_dem(rows, longitudes.axis, std::move(ordered), planet);
 }
 
-Relief read_from(const nc::File& file, const std::string& wanted, const std::string& units,
-                 Gaps gaps, const Planet& planet) {
+Dem read_from(const nc::File& file, const std::string& wanted, const std::string& units, Gaps gaps,
+              const Planet& planet) {
   const int variable = choose_variable(file, wanted);
   const auto dimensions = file.dimensions_of(variable);
   const DemAxis rows = read_axis(file, dimensions[dimensions.size() - 2]);
   const DemAxis columns = read_axis(file, dimensions.back());
   const auto values = read_values(file, variable, rows, columns, units, gaps);
-  const auto finish = [&](Relief relief) {
-    relief.variable = file.variable_name(variable);
-    return relief;
+  const auto finish = [&](Dem dem) {
+    dem.variable = file.variable_name(variable);
+    return dem;
   };
   if (rows.kind == AxisKind::y) {
     return finish({in_order(values, rows, columns, columns.size, 0),
@@ -246,7 +245,7 @@ Relief read_from(const nc::File& file, const std::string& wanted, const std::str
                    {},
                    {}});
   }
-  return finish(geographic_relief(values, rows, columns, planet));
+  return finish(geographic_dem(values, rows, columns, planet));
 }
 
 /// The first cell without a value, counted as the files count rows, from the top.
@@ -263,7 +262,7 @@ void check_values(const PlainRaster& raster, Gaps gaps) {
                                raster.ny - cell / raster.nx, cell % raster.nx + 1));
 }
 
-Relief relief_of(const PlainRaster& raster, Gaps gaps, const Planet& planet) {
+Dem dem_of(const PlainRaster& raster, Gaps gaps, const Planet& planet) {
   check_values(raster, gaps);
   if (!raster.geographic) {
     return {raster.values,
@@ -277,15 +276,15 @@ Relief relief_of(const PlainRaster& raster, Gaps gaps, const Planet& planet) {
   const auto axis = [](const char* name, AxisKind kind, double edge, double step, int size) {
     return DemAxis{name, kind, edge + 0.5 * step, step, size};
   };
-  return geographic_relief(
+  return geographic_dem(
       raster.values, axis("rows", AxisKind::latitude, raster.south, raster.step_y, raster.ny),
       axis("columns", AxisKind::longitude, raster.west, raster.step_x, raster.nx), planet);
 }
 
-Relief read_raster(const std::string& file_and_variable, const std::string& otherwise,
-                   const std::string& units, Gaps gaps, const Planet& planet,
-                   const ImageWords& image = {},
-                   std::pair<double, double> bounds = {-INFINITY, INFINITY}) {
+Dem read_raster(const std::string& file_and_variable, const std::string& otherwise,
+                const std::string& units, Gaps gaps, const Planet& planet,
+                const ImageWords& image = {},
+                std::pair<double, double> bounds = {-INFINITY, INFINITY}) {
   if (!image.range.empty()) static_cast<void>(parse_range("--dem-range", image.range));
   if (!image.window.empty()) static_cast<void>(parse_box("--dem-window", image.window));
   return answer_to(RasterQuestion{file_and_variable, otherwise, units, gaps, planet.radius_km,
@@ -300,7 +299,7 @@ std::pair<double, double> bounds_of(const FieldSpec& spec) {
 }
 
 /// The same values, none of which may be what the quantity cannot be.
-Relief within_bounds(Relief given, const FieldSpec& spec) {
+Dem within_bounds(Dem given, const FieldSpec& spec) {
   for (const float value : given.elevation_m) {
     if (!(value < spec.least) && !(value > spec.most)) continue;
     const bool low = value < spec.least;
@@ -312,8 +311,8 @@ Relief within_bounds(Relief given, const FieldSpec& spec) {
 }
 
 /// A file that is no NetCDF.
-Relief read_plain(const RasterQuestion& question, const std::filesystem::path& path,
-                  RasterFormat format) {
+Dem read_plain(const RasterQuestion& question, const std::filesystem::path& path,
+               RasterFormat format) {
   const std::string shown = path.string();
   try {
     ImageMeaning meaning{.range = {}, .window = {}, .least = question.least, .most = question.most};
@@ -322,10 +321,10 @@ Relief read_plain(const RasterQuestion& question, const std::filesystem::path& p
     const PlainRaster raster = format == RasterFormat::png       ? read_png_raster(path, meaning)
                                : format == RasterFormat::geotiff ? read_geotiff_raster(path)
                                                                  : read_ascii_raster(path);
-    Relief relief = relief_of(raster, question.gaps,
-                              {.radius_km = question.radius_km, .flattening = question.flattening});
-    relief.source = shown;
-    return relief;
+    Dem dem = dem_of(raster, question.gaps,
+                     {.radius_km = question.radius_km, .flattening = question.flattening});
+    dem.source = shown;
+    return dem;
   } catch (const ConfigurationError& error) {
     throw InputError(fmt::format("{}: {}", shown, error.what()));
   } catch (const InputError& error) {
@@ -335,7 +334,7 @@ Relief read_plain(const RasterQuestion& question, const std::filesystem::path& p
 
 }  // namespace
 
-Relief RasterQuestion::here() const {
+Dem RasterQuestion::here() const {
   const auto [file_name, variable] = split_dem(file_and_variable);
   const std::string shown = file_name.string();
   const RasterFormat format = format_of(file_name);
@@ -350,10 +349,10 @@ Relief RasterQuestion::here() const {
   check_classic_size(file_name);
   try {
     const bool named = !variable.empty() || !file.find_variable(otherwise);
-    Relief relief = read_from(file, named ? variable : otherwise, units, gaps,
-                              {.radius_km = radius_km, .flattening = flattening});
-    relief.source = shown + ":" + relief.variable;
-    return relief;
+    Dem dem = read_from(file, named ? variable : otherwise, units, gaps,
+                        {.radius_km = radius_km, .flattening = flattening});
+    dem.source = shown + ":" + dem.variable;
+    return dem;
   } catch (const nc::Failure& failure) {
     throw InputError(fmt::format("{}: truncated or damaged ({})", shown, failure.what()));
   } catch (const ConfigurationError& error) {
@@ -363,45 +362,44 @@ Relief RasterQuestion::here() const {
   }
 }
 
-Relief read_relief(const std::string& file_and_variable, const Planet& planet,
-                   const ImageWords& image) {
+Dem read_dem(const std::string& file_and_variable, const Planet& planet, const ImageWords& image) {
   return read_raster(file_and_variable, "", "m", Gaps::refused, planet, image);
 }
 
-Relief read_relief_with_gaps(const std::string& file_and_variable, const Planet& planet) {
+Dem read_dem_with_gaps(const std::string& file_and_variable, const Planet& planet) {
   return read_raster(file_and_variable, "", "m", Gaps::nan, planet);
 }
 
-Relief read_field(const std::string& file_and_variable, const FieldSpec& spec, const Planet& planet,
-                  const ImageWords& image) {
+Dem read_field(const std::string& file_and_variable, const FieldSpec& spec, const Planet& planet,
+               const ImageWords& image) {
   return within_bounds(
       read_raster(file_and_variable, std::string(spec.name), std::string(spec.units), Gaps::refused,
                   planet, image, bounds_of(spec)),
       spec);
 }
 
-Relief read_field_with_gaps(const std::string& file_and_variable, const FieldSpec& spec,
-                            const Planet& planet, const ImageWords& image) {
+Dem read_field_with_gaps(const std::string& file_and_variable, const FieldSpec& spec,
+                         const Planet& planet, const ImageWords& image) {
   return within_bounds(
       read_raster(file_and_variable, std::string(spec.name), std::string(spec.units), Gaps::nan,
                   planet, image, bounds_of(spec)),
       spec);
 }
 
-std::vector<float> resample(const Relief& relief, const Grid& target) {
+std::vector<float> resample(const Dem& dem, const Grid& target) {
   if (target.turn() != std::array<double, 3>{}) {
     const Grid finer = Grid::sphere(2 * target.nx(), 2 * target.ny(), target.figure());
-    return laid_out_turned(finer, resample(relief, finer), target);
+    return laid_out_turned(finer, resample(dem, finer), target);
   }
-  const bool own_raster = !relief.raster_m.empty();
+  const bool own_raster = !dem.raster_m.empty();
   const bool metric =
-      !relief.grid.is_latitude_longitude() && !target.is_latitude_longitude() && !own_raster;
+      !dem.grid.is_latitude_longitude() && !target.is_latitude_longitude() && !own_raster;
   const auto raster = [&](const Grid& grid) {
     return metric ? metric_raster_of(grid) : raster_of(grid);
   };
-  const Raster from = own_raster ? relief.raster : raster(relief.grid);
+  const Raster from = own_raster ? dem.raster : raster(dem.grid);
   const Raster to = raster(target);
-  const std::vector<float>& values = own_raster ? relief.raster_m : relief.elevation_m;
+  const std::vector<float>& values = own_raster ? dem.raster_m : dem.elevation_m;
   if (from == to) return values;
   std::vector<float> elevation_m(target.size());
   resample_raster(from, values, to, elevation_m, target.figure());

@@ -121,7 +121,7 @@ int choose_variable(const nc::File& file, const std::string& name) {
     throw InputError(first_complaint.empty() ? "holds no raster over latitude and longitude"
                                              : first_complaint);
   }
-  throw InputError(fmt::format("several variables may be the relief: {}; say FILE:VARIABLE",
+  throw InputError(fmt::format("several variables may be the elevation: {}; say FILE:VARIABLE",
                                fmt::join(names_of(file, rasters), ", ")));
 }
 

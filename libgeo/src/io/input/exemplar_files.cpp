@@ -34,7 +34,7 @@ bool is_tiff(const fs::path& path) {
   return end == ".tif" || end == ".tiff";
 }
 
-std::vector<fs::path> reliefs_in(const fs::path& folder) {
+std::vector<fs::path> dems_in(const fs::path& folder) {
   std::vector<fs::path> paths;
   try {
     for (const auto& entry : fs::directory_iterator(folder)) {
@@ -66,9 +66,9 @@ std::optional<Terrain> named_terrain(const fs::path& path) {
   return {};
 }
 
-/// Square cells as small as the smaller side of those of a relief.
-Exemplar squared(const Relief& relief) {
-  const Grid& from = relief.grid;
+/// Square cells as small as the smaller side of those of a DEM.
+Exemplar squared(const Dem& dem) {
+  const Grid& from = dem.grid;
   const int middle = from.ny() / 2;
   const double dx = from.spacing_east_m(middle), dy = from.spacing_north_m(middle - 1);
   Exemplar e;
@@ -77,7 +77,7 @@ Exemplar squared(const Relief& relief) {
   if (std::abs(dx - dy) <= kSame * e.cell_m) {
     e.nx = from.nx();
     e.ny = from.ny();
-    e.elevation_m = relief.elevation_m;
+    e.elevation_m = dem.elevation_m;
     return e;
   }
   e.nx = static_cast<int>(from.nx() * dx / e.cell_m);
@@ -90,7 +90,7 @@ Exemplar squared(const Relief& relief) {
       const double x = std::clamp((i + 0.5) * e.cell_m / dx - 0.5, 0.0, from.nx() - 1.0);
       const int column = std::min(static_cast<int>(x), from.nx() - 2);
       const auto at = [&](int a, int b) {
-        return static_cast<double>(relief.elevation_m[from.cell(column + a, row + b)]);
+        return static_cast<double>(dem.elevation_m[from.cell(column + a, row + b)]);
       };
       const double south = std::lerp(at(0, 0), at(1, 0), x - column);
       const double north = std::lerp(at(0, 1), at(1, 1), x - column);
@@ -166,12 +166,12 @@ std::shared_ptr<const ExemplarLibrary> completed(ExemplarLibrary library, const 
 
 ExemplarLibrary read_exemplars(const fs::path& folder, const Planet& planet) {
   ExemplarLibrary library;
-  for (const fs::path& path : reliefs_in(folder)) {
+  for (const fs::path& path : dems_in(folder)) {
     try {
-      const Relief relief =
-          is_tiff(path) ? read_geotiff(path, planet) : read_relief_with_gaps(path.string(), planet);
+      const Dem dem =
+          is_tiff(path) ? read_geotiff(path, planet) : read_dem_with_gaps(path.string(), planet);
       try {
-        Exemplar exemplar = squared(relief);
+        Exemplar exemplar = squared(dem);
         cut_to_whole(exemplar);
         exemplar.name = path.stem().string();
         measure_exemplar(exemplar, named_terrain(path));
@@ -185,7 +185,7 @@ ExemplarLibrary read_exemplars(const fs::path& folder, const Planet& planet) {
   }
   if (library.exemplars.empty()) {
     throw InputError(fmt::format(
-        "exemplars: {} holds no relief: must hold NetCDF (.nc) or GeoTIFF (.tif) files of "
+        "exemplars: {} holds no elevation model: must hold NetCDF (.nc) or GeoTIFF (.tif) files of "
         "elevations in metres",
         folder.string()));
   }

@@ -222,7 +222,7 @@ Placement placement_of(const Image& image) {
 
 }  // namespace
 
-Relief read_geotiff(const std::filesystem::path& path, const Planet& planet) {
+Dem read_geotiff(const std::filesystem::path& path, const Planet& planet) {
   return answer_to(GeotiffQuestion{path.string(), planet.radius_km, planet.flattening});
 }
 
@@ -241,7 +241,7 @@ PlainRaster read_geotiff_raster(const std::filesystem::path& path) {
           at.step_y};
 }
 
-Relief GeotiffQuestion::here() const {
+Dem GeotiffQuestion::here() const {
   const Planet planet{.radius_km = radius_km, .flattening = flattening};
   if (!std::ifstream(file)) {
     throw IoError(fmt::format("{}: cannot be read: {}", file, std::strerror(errno)));

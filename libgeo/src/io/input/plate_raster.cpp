@@ -81,7 +81,7 @@ void for_each_stretch(const Axis& columns, const float* values, F f) {
 
 }  // namespace
 
-std::vector<PlateOutline> plates_of_raster(const Relief& numbers, const Table& rotations) {
+std::vector<PlateOutline> plates_of_raster(const Dem& numbers, const Table& rotations) {
   const bool is_grid = numbers.raster_m.empty();
   const Raster raster = is_grid ? raster_of(numbers.grid) : numbers.raster;
   const std::vector<float>& values = is_grid ? numbers.elevation_m : numbers.raster_m;

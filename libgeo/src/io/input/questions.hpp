@@ -18,7 +18,7 @@ namespace geo::io {
 
 /// A raster of somebody else's.
 struct RasterQuestion {
-  using Answer = Relief;
+  using Answer = Dem;
   static constexpr const char* kName = "raster";
   std::string file_and_variable, otherwise, units;
   Gaps gaps = Gaps::refused;
@@ -35,7 +35,7 @@ struct RasterQuestion {
 };
 
 struct GeotiffQuestion {
-  using Answer = Relief;
+  using Answer = Dem;
   static constexpr const char* kName = "geotiff";
   std::string file;
   double radius_km = 0.0, flattening = 0.0;

@@ -185,8 +185,8 @@ typename Question::Answer answer_to(const Question& question) {
   refuse(path, "reading it ended before its end");
 }
 
-template Relief answer_to(const RasterQuestion&);
-template Relief answer_to(const GeotiffQuestion&);
+template Dem answer_to(const RasterQuestion&);
+template Dem answer_to(const GeotiffQuestion&);
 template Snapshot answer_to(const StageQuestion&);
 template Provenance answer_to(const ProvenanceQuestion&);
 template std::optional<std::string> answer_to(const StageNameQuestion&);

@@ -226,7 +226,7 @@ void words(Canvas& canvas, const Hypsometry& planet, const Hypsometry& earth, do
     canvas.colour(kInk);
     canvas.text(174, y, text);
   };
-  line(94, kInk, false, "This relief: " + planet.in_words());
+  line(94, kInk, false, "This planet: " + planet.in_words());
   line(124, kEarthInk, true, "Earth (ETOPO5): " + earth.in_words());
 }
 

@@ -76,7 +76,7 @@ std::map<int, int> colour_numbers(const Raster& plates, int colours) {
   return chosen;
 }
 
-/// Which boundary lies at a point of the map: the commonest type of the cells around it.
+/// Which boundary lies at a point of the map: the most frequent type of the cells around it.
 class BoundaryTypes {
  public:
   BoundaryTypes(const MapFrame& frame, std::span<const std::int8_t> types)

@@ -40,7 +40,7 @@ constexpr std::array<CategoryMap, 3> kCategoryMaps{{
     {&field::koppen_class, "koppen", "Climate classes", "after Köppen and Geiger",
      "Climate classes after Köppen and Geiger.", 0.0F},
     {&field::rock_type, "rock_type", "Rocks", "at the surface, paler under the sea",
-     "Rock at the surface, as rivers feel it.", 0.6F},
+     "Lithology at the surface, by which erodibility differs.", 0.6F},
 }};
 
 }  // namespace

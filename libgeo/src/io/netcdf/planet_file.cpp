@@ -130,7 +130,7 @@ State read_planet(const fs::path& folder, std::span<const FieldSpec* const> want
   return read_planet(files, wanted);
 }
 
-State read_planet_or_relief(const std::string& place, std::span<const FieldSpec* const> wanted) {
+State read_planet_or_dem(const std::string& place, std::span<const FieldSpec* const> wanted) {
   std::error_code ignored;
   if (fs::is_directory(place, ignored)) {
     State state = read_planet(place, wanted);
@@ -142,10 +142,10 @@ State read_planet_or_relief(const std::string& place, std::span<const FieldSpec*
     require_whole_planet(state.grid(), place);
     return state;
   }
-  Relief relief = read_relief(place, Planet{});
-  require_whole_planet(relief.grid, relief.source);
-  State state(std::make_shared<const Grid>(std::move(relief.grid)));
-  state.set(field::elevation, std::move(relief.elevation_m));
+  Dem dem = read_dem(place, Planet{});
+  require_whole_planet(dem.grid, dem.source);
+  State state(std::make_shared<const Grid>(std::move(dem.grid)));
+  state.set(field::elevation, std::move(dem.elevation_m));
   return state;
 }
 

@@ -99,12 +99,12 @@ State laid_out(const State& given, const RunConfiguration& run) {
       throw ConfigurationError(
           fmt::format("run.turn = {}: {} has no means: must be empty", turn, spec->name));
     }
-    const Relief as_given{.elevation_m = *values,
-                          .grid = grid,
-                          .source = std::string(spec->name),
-                          .variable = {},
-                          .raster = {},
-                          .raster_m = {}};
+    const Dem as_given{.elevation_m = *values,
+                       .grid = grid,
+                       .source = std::string(spec->name),
+                       .variable = {},
+                       .raster = {},
+                       .raster_m = {}};
     out.share(*spec, std::make_shared<const Values>(resample(as_given, out.grid())));
   }
   return out;

@@ -29,9 +29,9 @@ void refuse_turn(const RunSettings& settings, std::string_view what) {
       fmt::format("run.turn = {}: {} cannot be turned: must be empty", settings.turn, what));
 }
 
-/// The grid that a relief is put on.
-Grid grid_for(const Relief& relief, const RunSettings& settings, const Planet& planet) {
-  const Grid& source = relief.grid;
+/// The grid that a DEM is put on.
+Grid grid_for(const Dem& dem, const RunSettings& settings, const Planet& planet) {
+  const Grid& source = dem.grid;
   const auto turn = parse_turn("run.turn", settings.turn);
   if (source.topology() != Topology::sphere) refuse_turn(settings, "a part of a planet");
   const auto [nx, ny] = settings.grid_is_automatic() ? GridSize{source.nx(), source.ny()}
@@ -47,10 +47,10 @@ Grid grid_for(const Relief& relief, const RunSettings& settings, const Planet& p
                      planet.figure());
 }
 
-/// Refuses a relief of a part of a planet where a whole one is needed.
-void check_whole_planet(const Relief& relief, std::string_view key) {
-  if (relief.grid.topology() == Topology::sphere) return;
-  throw InputError(fmt::format("{}: {}: must cover the whole planet", key, relief.source));
+/// Refuses a DEM of a part of a planet where a whole one is needed.
+void check_whole_planet(const Dem& dem, std::string_view key) {
+  if (dem.grid.topology() == Topology::sphere) return;
+  throw InputError(fmt::format("{}: {}: must cover the whole planet", key, dem.source));
 }
 
 /// Refuses events that this planet has no place for.
@@ -58,7 +58,7 @@ void check_events(const std::vector<Event>& events, const Grid& grid, const Plan
   for (std::size_t i = 0; i < events.size(); ++i) {
     if (!std::holds_alternative<OceanShift>(events[i].what) && !grid.is_geographic()) {
       throw ConfigurationError(fmt::format(
-          "event {} ({}) needs a relief with latitudes and longitudes", i + 1, events[i].kind()));
+          "event {} ({}) needs a DEM with latitudes and longitudes", i + 1, events[i].kind()));
     }
     if (const auto* shift = std::get_if<OceanShift>(&events[i].what)) {
       constexpr double kDeepest_km = 20.0;
@@ -89,12 +89,12 @@ void check_events(const std::vector<Event>& events, const Grid& grid, const Plan
 }
 
 /// Heights that no solid planet holds up are a wrong unit or a damaged file.
-void check_heights(const Relief& relief) {
+void check_heights(const Dem& dem) {
   constexpr float kMost_m = 100e3F;
-  for (const float height_m : relief.elevation_m) {
+  for (const float height_m : dem.elevation_m) {
     if (std::abs(height_m) <= kMost_m) continue;
     throw InputError(fmt::format("{}: holds an elevation of {:g} m: must lie within {:g} m",
-                                 relief.source, height_m, kMost_m));
+                                 dem.source, height_m, kMost_m));
   }
 }
 
@@ -129,7 +129,7 @@ class Reader {
   RunInputs read() {
     const bool has_elevation = inputs_.state && inputs_.state->has(field::elevation);
     if (!has_elevation && needs_elevation(run_.pipeline, plan_)) {
-      read_initial_relief();
+      read_initial_elevation();
     } else if (!inputs_.state) {
       begin_with_bare_planet();
     }
@@ -166,30 +166,30 @@ class Reader {
                  : Grid::sphere(nx, ny, figure, parse_turn("run.turn", settings_.turn))));
   }
 
-  void read_initial_relief() {
+  void read_initial_elevation() {
     const std::string_view first = run_.name_of(plan_.first);
     if (settings_.topology != "sphere") {
       throw ConfigurationError(
-          fmt::format("run.topology = {}: {} starts from a relief here, which brings its own grid: "
+          fmt::format("run.topology = {}: {} starts from a DEM here, which brings its own grid: "
                       "must be sphere, or the run must start with {}",
                       settings_.topology, first, run_.name_of(0)));
     }
     if (settings_.dem_file.empty()) {
-      throw ConfigurationError(fmt::format(
-          "{} needs a relief to start from: give one with --dem FILE[:VARIABLE], a file "
-          "of elevations, or start with {}",
-          first, run_.name_of(0)));
+      throw ConfigurationError(
+          fmt::format("{} needs a DEM to start from: give one with --dem FILE[:VARIABLE], a file "
+                      "of elevations, or start with {}",
+                      first, run_.name_of(0)));
     }
-    Relief relief = read_relief(settings_.dem_variable.empty()
-                                    ? settings_.dem_file
-                                    : settings_.dem_file + ":" + settings_.dem_variable,
-                                run_.planet, {settings_.dem_range, settings_.dem_window});
-    check_heights(relief);
-    settings_.dem_variable = relief.variable;
+    Dem dem =
+        read_dem(settings_.dem_variable.empty() ? settings_.dem_file
+                                                : settings_.dem_file + ":" + settings_.dem_variable,
+                 run_.planet, {settings_.dem_range, settings_.dem_window});
+    check_heights(dem);
+    settings_.dem_variable = dem.variable;
     if (!inputs_.state) {
-      begin_on(std::make_shared<const Grid>(grid_for(relief, settings_, run_.planet)));
+      begin_on(std::make_shared<const Grid>(grid_for(dem, settings_, run_.planet)));
     }
-    std::vector<float> elevation_m = resample(relief, grid());
+    std::vector<float> elevation_m = resample(dem, grid());
     if (settings_.dem_sea_level == "fraction") {
       const float sea_level_m =
           level_for_fraction(grid(), elevation_m, planet_with_sea(run_, plan_).ocean_fraction);
@@ -199,7 +199,7 @@ class Reader {
   }
 
   /// What images of fields mean: where they lie is told of all, their range of those that have no
-  /// JSON beside them, unless it is that of a relief.
+  /// JSON beside them, unless it is that of a DEM.
   [[nodiscard]] ImageWords image_words(const std::string& given) const {
     auto described = split_dem(given).first;
     described.replace_extension(".json");
@@ -234,17 +234,17 @@ class Reader {
       throw ConfigurationError(
           fmt::format("{} = {}: is for stage {}, and this run begins with {}{}: must be empty", key,
                       *value, run_.name_of(0), run_.name_of(plan_.begin),
-                      settings_.dem_file.empty() ? "" : ", with the relief of --dem"));
+                      settings_.dem_file.empty() ? "" : ", with the elevation of --dem"));
     }
   }
 
-  /// A first relief that was announced and not given.
+  /// An initial elevation that was announced and not given.
   void refuse_missing_elevation() const {
     for (const Parameter& row : run_.stage(0).parameters()) {
       if (row.key() != "initial_elevation") continue;
       if (row.value() != ParameterValue(std::string("given"))) continue;
       throw ConfigurationError(fmt::format(
-          "{} = given needs fields.initial_elevation, a NetCDF file of a planet's relief",
+          "{} = given needs fields.initial_elevation, a NetCDF file of a planet's elevation",
           row.name));
     }
   }
@@ -274,33 +274,33 @@ class Reader {
       inputs_.plates = read_plate_outlines(given);
       return;
     }
-    const Relief numbers =
+    const Dem numbers =
         read_field_with_gaps(given, field::plate_id, run_.planet, image_words(given));
     check_whole_planet(numbers, "fields.plates");
     inputs_.plates = plates_of_raster(numbers, Table::of_file(rotations));
   }
 
-  /// The first plates and the first relief, as far as the first stage is still to come. Cells of
-  /// the relief are of one size whatever the grid of the run, so that the same planet comes of it.
+  /// The first plates and the initial elevation, as far as the first stage is still to come. Cells
+  /// of the DEM are of one size whatever the grid of the run, so that the same planet comes of it.
   void read_initial_conditions() {
     if (plan_.begin != 0) refuse_initial_conditions();
     if (plan_.first != 0) return;
     read_plates();
     if (settings_.initial_elevation.empty()) return refuse_missing_elevation();
     constexpr GridSize kCells{2160, 1080};
-    GivenRelief given{Grid::sphere(kCells.nx, kCells.ny, run_.planet.figure()), {}, {}};
-    const Relief relief = read_relief(settings_.initial_elevation, run_.planet,
-                                      image_words(settings_.initial_elevation));
-    check_whole_planet(relief, "fields.initial_elevation");
-    check_heights(relief);
-    given.elevation_m = resample(relief, given.grid);
+    GivenElevation given{Grid::sphere(kCells.nx, kCells.ny, run_.planet.figure()), {}, {}};
+    const Dem dem = read_dem(settings_.initial_elevation, run_.planet,
+                             image_words(settings_.initial_elevation));
+    check_whole_planet(dem, "fields.initial_elevation");
+    check_heights(dem);
+    given.elevation_m = resample(dem, given.grid);
     if (!settings_.initial_age.empty()) {
-      const Relief age = read_field_with_gaps(settings_.initial_age, field::crust_age, run_.planet,
-                                              image_words(settings_.initial_age));
+      const Dem age = read_field_with_gaps(settings_.initial_age, field::crust_age, run_.planet,
+                                           image_words(settings_.initial_age));
       check_whole_planet(age, "fields.initial_age");
       given.age_myr = resample(age, given.grid);
     }
-    inputs_.initial_elevation = std::make_shared<const GivenRelief>(std::move(given));
+    inputs_.initial_elevation = std::make_shared<const GivenElevation>(std::move(given));
   }
 
   const RunConfiguration& run_;

@@ -71,7 +71,7 @@ void leave_out_island(RunPlan& plan, const RunConfiguration& run, const Grid& gr
   if (grid.topology() == Topology::sphere) return;
   const std::string name(run.name_of(plan.last));
   const std::string_view what =
-      grid.topology() == Topology::torus ? "a torus is none" : "the relief covers a part of one";
+      grid.topology() == Topology::torus ? "a torus is none" : "the DEM covers a part of one";
   if (run.settings.to == name || plan.last == plan.begin) {
     throw ConfigurationError(fmt::format("stage {} needs a whole planet: {}", name, what));
   }

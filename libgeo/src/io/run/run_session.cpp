@@ -236,7 +236,7 @@ void RunSession::execute(const RunEvents& events) {
   inputs_.state.reset();
   if (!plan_.note.empty()) tell(events.info, plan_.note);
   if (!events_are_felt(run_, plan_)) {
-    tell(events.warning, "events change the relief in stage erosion, which this run leaves out");
+    tell(events.warning, "events change elevation in stage erosion, which this run leaves out");
   }
   write_summaries(events);
 }

@@ -54,7 +54,7 @@ void measure_seasons(const State& state, const Mask& mask, const char* where, Fi
 
 void measure_dryness(const State& state, const Mask& land, Figures& figures) {
   const auto rain = state.read(field::precipitation);
-  const auto thirst = state.read(field::potential_evaporation);
+  const auto thirst = state.read(field::potential_evapotranspiration);
   constexpr std::array kLevels{0.05, 0.2, 0.5, 0.65};
   constexpr std::array kNames{"hyperarid", "arid", "semiarid", "dry_subhumid"};
   std::vector<float> index(rain.size(), std::numeric_limits<float>::quiet_NaN());
@@ -88,7 +88,8 @@ void measure_climate(const State& state, Figures& figures) {
           area_mean(grid, state.read(field::precipitation), mask);
     }
     if (state.has(field::temperature_range)) measure_seasons(state, mask, where, figures);
-    if (on_land && state.has(field::precipitation) && state.has(field::potential_evaporation)) {
+    if (on_land && state.has(field::precipitation) &&
+        state.has(field::potential_evapotranspiration)) {
       measure_dryness(state, mask, figures);
     }
   }

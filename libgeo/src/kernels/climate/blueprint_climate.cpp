@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "geo/core/array_sizes.hpp"
 #include "geo/kernels/climate/circulation.hpp"
 
 namespace geo {
@@ -55,10 +56,17 @@ double hadley_precipitation_mm_yr(double latitude_deg) {
   return kRain[k] + along * (kRain[k + 1] - kRain[k]);
 }
 
-void blueprint_relief_precipitation(const Grid& grid, const BlueprintClimate& model,
-                                    std::span<const double> latitude_deg,
-                                    std::span<const float> land_fraction,
-                                    std::span<const float> height_m, std::span<float> rain_mm_yr) {
+void blueprint_orographic_precipitation(const Grid& grid, const BlueprintClimate& model,
+                                        std::span<const double> latitude_deg,
+                                        std::span<const float> land_fraction,
+                                        std::span<const float> height_m,
+                                        std::span<float> rain_mm_yr) {
+  check_sizes("blueprint_orographic_precipitation", grid.ny(),
+              {{"latitude_deg", latitude_deg.size()}});
+  check_sizes("blueprint_orographic_precipitation", grid.size(),
+              {{"land_fraction", land_fraction.size()},
+               {"height_m", height_m.size()},
+               {"rain_mm_yr", rain_mm_yr.size()}});
   constexpr double kLandStep_km = 40.0, kShadowStep_km = 20.0;
   const DisplacedSampler land(grid, land_fraction), height(grid, height_m);
 #pragma omp parallel for schedule(static)

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "geo/core/array_sizes.hpp"
+
 namespace geo {
 namespace {
 
@@ -59,6 +61,12 @@ void balanced_winds(const Grid& grid, const Circulation& model,
                     std::span<const double> latitude_deg, std::span<const float> land_fraction,
                     std::span<const float> pressure_hpa, std::span<float> wind_east,
                     std::span<float> wind_north) {
+  check_sizes("balanced_winds", grid.ny(), {{"latitude_deg", latitude_deg.size()}});
+  check_sizes("balanced_winds", grid.size(),
+              {{"land_fraction", land_fraction.size()},
+               {"pressure_hpa", pressure_hpa.size()},
+               {"wind_east", wind_east.size()},
+               {"wind_north", wind_north.size()}});
   const double twice_rotation_s = 2.0 * model.rotation_rad_s();
   const double push_per_slope = -100.0 / model.air_density_kg_m3;  // from hPa
   for (int j = 0; j < grid.ny(); ++j) {

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "geo/core/array_sizes.hpp"
 #include "geo/core/parallel_errors.hpp"
 
 namespace geo {
@@ -262,6 +263,8 @@ void transform_any(const Grid& grid, const Metric& metric, std::span<const float
 
 void distance_to_coast(const Grid& grid, std::span<const float> elevation,
                        std::span<float> distance_m) {
+  check_sizes("distance_to_coast", grid.size(),
+              {{"elevation", elevation.size()}, {"distance_m", distance_m.size()}});
   if (grid.is_latitude_longitude()) {
     transform_any(grid, SphereMetric(grid), elevation, distance_m);
   } else {

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <optional>
 
+#include "geo/core/array_sizes.hpp"
 #include "geo/core/error.hpp"
 #include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/climate/thermodynamics.hpp"
@@ -204,6 +205,9 @@ double sea_ice_share(const EnergyBalance& model, double annual_mean_c) {
 void gyre_heat(const Grid& grid, const EnergyBalance& model, bool retrograde,
                std::span<const double> latitude_deg, std::span<const float> land_fraction,
                std::span<double> heat_w_m2) {
+  check_sizes("gyre_heat", grid.ny(), {{"latitude_deg", latitude_deg.size()}});
+  check_sizes("gyre_heat", grid.size(),
+              {{"land_fraction", land_fraction.size()}, {"heat_w_m2", heat_w_m2.size()}});
   const int nx = grid.nx();
   std::vector<double> west(nx), east(nx);
   for (int j = 0; j < grid.ny(); ++j) {
@@ -232,6 +236,10 @@ TemperatureCycle solve_energy_balance(const Grid& grid, const EnergyBalance& mod
                                       std::span<const double> zonal_wind_m_s,
                                       std::span<const float> land_fraction,
                                       std::span<const float> height_m) {
+  check_sizes("solve_energy_balance", grid.ny(),
+              {{"latitude_deg", latitude_deg.size()}, {"zonal_wind_m_s", zonal_wind_m_s.size()}});
+  check_sizes("solve_energy_balance", grid.size(),
+              {{"land_fraction", land_fraction.size()}, {"height_m", height_m.size()}});
   const auto size = static_cast<std::size_t>(grid.size());
   const HeatOperator heat(grid, model.advected_heat_j_m2_k, zonal_wind_m_s);
   const Surface surface(grid, model, latitude_deg, land_fraction, height_m);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "geo/core/array_sizes.hpp"
 #include "geo/core/error.hpp"
 #include "kernels/numerics/wide.hpp"
 
@@ -53,6 +54,17 @@ SteadyMoisture::SteadyMoisture(const Grid& grid, const MoistureBudget& model,
       column_(grid.size()) {
   if (grid.topology() == Topology::plane) throw Bug("moisture: the grid has edges");
   if (seasons.empty() || seasons.size() > kSeasons) throw Bug("moisture: too many seasons");
+  for (const MoistureSeason& season : seasons) {
+    check_sizes("moisture", grid.size(),
+                {{"wind_east", season.wind_east.size()},
+                 {"wind_north", season.wind_north.size()},
+                 {"diffusivity", season.diffusivity.size()},
+                 {"eddy_activity", season.eddy_activity.size()},
+                 {"saturated_mm", season.saturated_mm.size()},
+                 {"open_water_1_d", season.open_water_1_d.size()},
+                 {"land_evaporation", season.land_evaporation.size()},
+                 {"column_mm", season.column_mm.size()}});
+  }
   for (int lane = 0; lane < kSeasons; ++lane) take_exchange(lane);
 }
 

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "geo/core/array_sizes.hpp"
+
 namespace geo {
 namespace {
 
@@ -45,6 +47,11 @@ float DisplacedSampler::operator()(int column, int row, double east_m, double no
 void upwind_lift(const Grid& grid, std::span<const float> height_m,
                  std::span<const float> wind_east, std::span<const float> wind_north,
                  double reach_m, std::span<float> lift_m) {
+  check_sizes("upwind_lift", grid.size(),
+              {{"height_m", height_m.size()},
+               {"wind_east", wind_east.size()},
+               {"wind_north", wind_north.size()},
+               {"lift_m", lift_m.size()}});
   // Mid-points of six intervals in units of the reach, each with the weight of its interval.
   constexpr std::array<double, 6> kDistance{0.25, 0.75, 1.25, 1.75, 2.25, 2.75};
   std::array<double, 6> weight{};

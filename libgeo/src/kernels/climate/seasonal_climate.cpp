@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "geo/core/array_sizes.hpp"
 #include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/climate/evaporation.hpp"
 #include "geo/kernels/climate/insolation.hpp"
@@ -30,7 +31,7 @@ struct Month {
   std::vector<float> wind_east, wind_north, descent_1_s;
   std::vector<float> open_flow;  ///< share of the flow that relief lets pass
   std::vector<float> diffusivity, eddies, activity, saturated_mm, open_water_1_d;
-  std::vector<float> potential_evaporation_mm_d, land_evaporation_mm_d;
+  std::vector<float> potential_evapotranspiration_mm_d, land_evaporation_mm_d;
   std::vector<float> heating_w_m2;
   std::vector<double> column_mm, rain_mm_d;
   std::vector<double> sun_w_m2;  ///< per row
@@ -57,7 +58,7 @@ class SeasonalYear {
   void exchange();
   void rain(bool last);
   void evaporate();
-  void lift(const ReliefAscent& ascent);
+  void lift(const TerrainAscent& ascent);
   [[nodiscard]] SeasonalFields fields() const;
 
  private:
@@ -120,7 +121,7 @@ void SeasonalYear::begin_month(int m, const TemperatureCycle& temperature) {
   for (auto* values :
        {&month.temperature_c, &month.pressure_hpa, &month.wind_east, &month.wind_north,
         &month.descent_1_s, &month.open_flow, &month.diffusivity, &month.eddies, &month.activity,
-        &month.saturated_mm, &month.open_water_1_d, &month.potential_evaporation_mm_d,
+        &month.saturated_mm, &month.open_water_1_d, &month.potential_evapotranspiration_mm_d,
         &month.land_evaporation_mm_d, &month.heating_w_m2}) {
     values->assign(size_, 0.0F);
   }
@@ -164,15 +165,16 @@ void SeasonalYear::begin_month(int m, const TemperatureCycle& temperature) {
           at_sea_c - model_.energy.lapse_k_m * model_.orographic_share * height_m_[here];
       const double saturated = saturated_column_mm(lifted_c);
       month.saturated_mm[here] = static_cast<float>(saturated);
-      month.potential_evaporation_mm_d[here] =
+      month.potential_evapotranspiration_mm_d[here] =
           static_cast<float>(oudin_evaporation_mm_d(insolation, surface_c));
       const double resistance_d =
           1.0 / model_.moisture.evaporation_velocity_1_d + saturated / most_evaporation_mm_d_[j];
       month.open_water_1_d[here] = static_cast<float>((1.0 - land_[here]) / resistance_d);
       month.column_mm[here] = (has_sea_ ? 0.7 : 0.0) * saturated;
-      month.land_evaporation_mm_d[here] =
-          has_sea_ ? static_cast<float>(0.5 * land_[here]) * month.potential_evaporation_mm_d[here]
-                   : 0.0F;
+      month.land_evaporation_mm_d[here] = has_sea_
+                                              ? static_cast<float>(0.5 * land_[here]) *
+                                                    month.potential_evapotranspiration_mm_d[here]
+                                              : 0.0F;
     }
   }
 }
@@ -313,7 +315,7 @@ void SeasonalYear::evaporate_cell(std::size_t cell) {
     const Month& month = months_[m];
     temperature_c[m] = month.temperature_c[cell] - model_.energy.lapse_k_m * height_m_[cell];
     rain_mm[m] = kDaysPerMonth * month.rain_mm_d[cell];
-    potential_mm[m] = kDaysPerMonth * month.potential_evaporation_mm_d[cell];
+    potential_mm[m] = kDaysPerMonth * month.potential_evapotranspiration_mm_d[cell];
   }
   const auto evaporation_mm =
       soil_evaporation_mm(model_.soil, temperature_c, rain_mm, potential_mm);
@@ -323,7 +325,7 @@ void SeasonalYear::evaporate_cell(std::size_t cell) {
   }
 }
 
-void SeasonalYear::lift(const ReliefAscent& ascent) {
+void SeasonalYear::lift(const TerrainAscent& ascent) {
   std::vector<float> east(size_), north(size_);
   for (std::size_t cell = 0; cell < size_; ++cell) {
     double sum_east = 0.0, sum_north = 0.0;
@@ -365,7 +367,7 @@ std::vector<float> SeasonalYear::dryness() const {
     double rain = 0.0, potential = 0.0;
     for (const Month& month : months_) {
       rain += month.rain_mm_d[cell];
-      potential += month.potential_evaporation_mm_d[cell];
+      potential += month.potential_evapotranspiration_mm_d[cell];
     }
     if (potential > 0.0) {
       dry[cell] = static_cast<float>(land_[cell] * std::max(0.0, 1.0 - rain / potential / kMoist));
@@ -405,7 +407,11 @@ SeasonalFields SeasonalYear::fields() const {
 SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& model,
                                       std::span<const double> latitude_deg,
                                       std::span<const float> land_fraction,
-                                      std::span<const float> height_m, const ReliefAscent& ascent) {
+                                      std::span<const float> height_m,
+                                      const TerrainAscent& ascent) {
+  check_sizes("solve_seasonal_climate", grid.ny(), {{"latitude_deg", latitude_deg.size()}});
+  check_sizes("solve_seasonal_climate", grid.size(),
+              {{"land_fraction", land_fraction.size()}, {"height_m", height_m.size()}});
   SeasonalYear year(grid, model, latitude_deg, land_fraction, height_m);
   year.warm();
   constexpr int kRounds = 7, kLevelRounds = 3;

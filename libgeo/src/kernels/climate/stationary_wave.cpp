@@ -8,6 +8,7 @@
 #include <unsupported/Eigen/FFT>
 #include <vector>
 
+#include "geo/core/array_sizes.hpp"
 #include "geo/core/error.hpp"
 #include "kernels/numerics/thomas.hpp"
 
@@ -124,6 +125,14 @@ void stationary_wave(const Grid& grid, const StationaryWave& model, double rotat
                      std::span<const float> heating_w_m2, std::span<const float> height_m,
                      std::span<float> wind_east, std::span<float> wind_north,
                      std::span<float> descent_1_s) {
+  check_sizes("stationary_wave", grid.ny(),
+              {{"latitude_deg", latitude_deg.size()}, {"zonal_wind_m_s", zonal_wind_m_s.size()}});
+  check_sizes("stationary_wave", grid.size(),
+              {{"heating_w_m2", heating_w_m2.size()},
+               {"height_m", height_m.size()},
+               {"wind_east", wind_east.size()},
+               {"wind_north", wind_north.size()},
+               {"descent_1_s", descent_1_s.size()}});
   if (grid.topology() != Topology::sphere) throw Bug("stationary_wave: the grid is no sphere");
   constexpr double kGravity_m_s2 = 9.81;
   const int nx = grid.nx(), ny = grid.ny();

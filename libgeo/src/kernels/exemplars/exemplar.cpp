@@ -99,7 +99,7 @@ void measure_exemplar(Exemplar& e, std::optional<Terrain> terrain) {
   const auto [low, high] = std::minmax_element(e.elevation_m.begin(), e.elevation_m.end());
   e.lowest_m = *low;
   e.highest_m = *high;
-  if (e.lowest_m == e.highest_m) throw InputError("has no relief: all cells are level");
+  if (e.lowest_m == e.highest_m) throw InputError("has no local relief: all cells are level");
   e.local_relief_m = local_relief_m(e);
   e.terrain = terrain.value_or(terrain_of(e.local_relief_m));
 

@@ -13,7 +13,7 @@ namespace {
 
 void check_shape(const Grid& grid, std::span<const float> elevation_m) {
   if (elevation_m.size() != static_cast<std::size_t>(grid.size())) {
-    throw InputError("relief: elevation has " + std::to_string(elevation_m.size()) +
+    throw InputError("local relief: elevation has " + std::to_string(elevation_m.size()) +
                      " values, the grid " + std::to_string(grid.size()) + " cells");
   }
 }

@@ -4,6 +4,8 @@
 #include <functional>
 #include <map>
 
+#include "geo/core/array_sizes.hpp"
+
 namespace geo {
 namespace {
 
@@ -38,6 +40,11 @@ std::vector<std::pair<Index, Index>> build_deltas(const Grid& grid, const DeltaL
                                                   std::span<const float> elevation_m,
                                                   std::span<double> volume_m3,
                                                   std::span<float> laid_m) {
+  check_sizes("build_deltas", grid.size(),
+              {{"sea", sea.size()},
+               {"elevation_m", elevation_m.size()},
+               {"volume_m3", volume_m3.size()},
+               {"laid_m", laid_m.size()}});
   constexpr double kGentle_m = 10.0;
   const auto rise_m = [&](Index c) { return static_cast<float>(law.top_m) - elevation_m[c]; };
   const auto room_m3 = [&](Index c) {

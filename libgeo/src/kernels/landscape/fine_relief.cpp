@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "geo/core/array_sizes.hpp"
 #include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/noise/noise_row.hpp"
 
@@ -22,6 +23,9 @@ double edge_distance_m(const Grid& fine, int column, int row) {
 
 void local_roughness(const PlanetCells& cells, std::span<const float> planet_elevation_m,
                      std::span<float> covered) {
+  check_sizes("local_roughness", cells.planet().size(),
+              {{"planet_elevation_m", planet_elevation_m.size()}});
+  check_sizes("local_roughness", cells.size(), {{"covered", covered.size()}});
   const Grid& planet = cells.planet();
   std::vector<float> variance(cells.size());
   const int end = cells.first_row() + cells.rows();
@@ -60,6 +64,7 @@ void local_roughness(const PlanetCells& cells, std::span<const float> planet_ele
 
 void unit_detail(const Grid& fine, const DetailLaw& law, std::uint64_t seed,
                  std::string_view stream, std::span<float> detail) {
+  check_sizes("unit_detail", fine.size(), {{"detail", detail.size()}});
   const Noise noise(seed, stream);
   double sum = 0.0, squares = 0.0, amplitude = 1.0;
   for (int octave = 0; octave < law.octaves; ++octave) {
@@ -88,6 +93,7 @@ void unit_detail(const Grid& fine, const DetailLaw& law, std::uint64_t seed,
 
 void unit_detail_near_edge(const Grid& fine, const DetailLaw& law, double seam_m,
                            std::uint64_t seed, std::string_view stream, std::span<float> detail) {
+  check_sizes("unit_detail_near_edge", fine.size(), {{"detail", detail.size()}});
   const Noise noise(seed, stream);
   const double frequency = fine.figure().radius_m / law.wavelength_m;
   double squares = 0.0;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "geo/core/array_sizes.hpp"
 #include "geo/kernels/numerics/quantiles.hpp"
 #include "geo/kernels/numerics/smoothing.hpp"
 
@@ -52,6 +53,7 @@ double bend(const Grid& grid, std::span<float> elevation_m, double median_m, dou
 
 double bend_hypsometry(const Grid& grid, std::span<float> elevation_m, double median_m,
                        double smoothing_m) {
+  check_sizes("bend_hypsometry", grid.size(), {{"elevation_m", elevation_m.size()}});
   constexpr double kLeast = 0.2;
   constexpr int kTurns = 8;
   return bend(grid, elevation_m, median_m, smoothing_m, kLeast, kTurns);
@@ -59,6 +61,7 @@ double bend_hypsometry(const Grid& grid, std::span<float> elevation_m, double me
 
 double bend_hypsometry_once(const Grid& grid, std::span<float> elevation_m, double median_m,
                             double smoothing_m) {
+  check_sizes("bend_hypsometry_once", grid.size(), {{"elevation_m", elevation_m.size()}});
   return bend(grid, elevation_m, median_m, smoothing_m, 1.0, 1);
 }
 

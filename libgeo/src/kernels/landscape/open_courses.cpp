@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "geo/core/array_sizes.hpp"
 #include "geo/kernels/landscape/river_courses.hpp"
 
 namespace geo {
@@ -187,6 +188,8 @@ void lay_back_sides(const Grid& fine, std::span<const Index> cells,
 
 void open_river_courses(const Grid& fine, std::span<const std::uint8_t> outlets,
                         RiverCourses& courses, std::span<float> elevation_m) {
+  check_sizes("open_river_courses", fine.size(),
+              {{"outlets", outlets.size()}, {"elevation_m", elevation_m.size()}});
   lay_back_sides(fine, lower_courses(fine, outlets, courses, elevation_m), courses.side_slope,
                  elevation_m);
   // The sides of a deep cut may open a higher course beside it.

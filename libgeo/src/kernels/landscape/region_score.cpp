@@ -6,6 +6,7 @@
 #include <tuple>
 #include <vector>
 
+#include "geo/core/array_sizes.hpp"
 #include "geo/core/error.hpp"
 #include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/noise/noise.hpp"
@@ -215,6 +216,9 @@ double RegionFigures::score(double noise) const {
 RegionFigures region_figures(const Grid& planet, std::span<const float> elevation_m,
                              std::span<const std::int8_t> boundary_type, Index centre,
                              double width_m, double height_m) {
+  check_sizes("region_figures", planet.size(),
+              {{"elevation_m", elevation_m.size()},
+               {"boundary_type", boundary_type.size(), ArraySize::May::be_empty}});
   check_sphere(planet);
   const int i = planet.column(centre), j = planet.row(centre);
   const Reach reach = reach_at(planet, j, width_m, height_m);
@@ -242,6 +246,7 @@ double RegionLand::weight() const {
 
 RegionLand region_land(const Grid& planet, std::span<const float> elevation_m, Index centre,
                        double width_m, double height_m) {
+  check_sizes("region_land", planet.size(), {{"elevation_m", elevation_m.size()}});
   check_sphere(planet);
   return land_of(
       Pieces(planet, elevation_m, centre, reach_at(planet, planet.row(centre), width_m, height_m)));
@@ -250,6 +255,9 @@ RegionLand region_land(const Grid& planet, std::span<const float> elevation_m, I
 Index best_region(const Grid& planet, std::span<const float> elevation_m,
                   std::span<const std::int8_t> boundary_type, double width_m, double height_m,
                   std::uint64_t seed, RegionRule rule) {
+  check_sizes("best_region", planet.size(),
+              {{"elevation_m", elevation_m.size()},
+               {"boundary_type", boundary_type.size(), ArraySize::May::be_empty}});
   check_sphere(planet);
   const int ny = planet.ny(), middle = ny / 2;
   const int tenth = static_cast<int>(std::ceil(0.1 * ny));

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "geo/core/array_sizes.hpp"
 #include "geo/kernels/landscape/fine_relief.hpp"
 #include "kernels/water/planet_window.hpp"
 
@@ -284,6 +285,13 @@ std::vector<float> winding(const PlanetCells& cells, std::uint64_t seed) {
 RiverCourses trace_river_courses(const PlanetCells& cells, const PlanetWater& water,
                                  const Crossings& crossings, std::uint64_t seed,
                                  std::span<const float> elevation_m) {
+  check_sizes("trace_river_courses", cells.planet().size(),
+              {{"elevation_m", water.elevation_m.size()},
+               {"receiver", water.receiver.size()},
+               {"drainage_area_m2", water.drainage_area_m2.size()},
+               {"discharge_m3_s", water.discharge_m3_s.size()},
+               {"lake_id", water.lake_id.size(), ArraySize::May::be_empty}});
+  check_sizes("trace_river_courses", cells.fine().size(), {{"elevation_m", elevation_m.size()}});
   const std::vector<float> noise = winding(cells, seed);
   Beds beds(cells, water, elevation_m);
   Network network(cells.fine(), elevation_m, noise, beds.strip());

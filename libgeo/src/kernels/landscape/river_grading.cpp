@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "geo/core/array_sizes.hpp"
 #include "geo/kernels/water/breaching.hpp"
 #include "geo/kernels/water/rivers.hpp"
 
@@ -55,6 +56,11 @@ bool cut(const Grid& grid, const FlowGraph& graph, std::span<const double> disch
 int grade_rivers(const Grid& grid, const FlowGraph& graph, std::span<const std::uint8_t> outlets,
                  std::span<const double> discharge_m3_s, const GorgeLimits& limits,
                  std::span<float> elevation_m) {
+  check_sizes("grade_rivers", grid.size(),
+              {{"receiver", graph.receiver.size()},
+               {"outlets", outlets.size()},
+               {"discharge_m3_s", discharge_m3_s.size()},
+               {"elevation_m", elevation_m.size()}});
   // Where the way to the outlet starts to climb.
   std::vector<Index> pits;
   std::vector<std::uint8_t> has_lower_donor(grid.size(), 0);

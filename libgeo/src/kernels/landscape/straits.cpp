@@ -9,6 +9,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "geo/core/array_sizes.hpp"
+
 namespace geo {
 namespace {
 
@@ -190,6 +192,7 @@ class Search {
 }  // namespace
 
 int open_straits(const Grid& grid, const StraitLaw& law, std::span<float> elevation_m) {
+  check_sizes("open_straits", grid.size(), {{"elevation_m", elevation_m.size()}});
   return Search(grid, law, elevation_m).run();
 }
 

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "geo/core/array_sizes.hpp"
+
 namespace geo {
 
 double implicit_drop(double s0, double factor, double n) {
@@ -25,6 +27,12 @@ double implicit_drop(double s0, double factor, double n) {
 void incision_rate(const Grid& grid, const FlowGraph& graph, std::span<const double> area_m2,
                    std::span<const float> erodibility, const StreamPower& law,
                    std::span<const float> elevation_m, std::span<float> rate_m_yr) {
+  check_sizes("incision_rate", grid.size(),
+              {{"receiver", graph.receiver.size()},
+               {"area_m2", area_m2.size()},
+               {"erodibility", erodibility.size(), ArraySize::May::be_single},
+               {"elevation_m", elevation_m.size()},
+               {"rate_m_yr", rate_m_yr.size()}});
   const auto factor = detail::incision_factors(grid, graph, area_m2, erodibility, law);
 #pragma omp parallel for schedule(static)
   for (Index cell = 0; cell < grid.size(); ++cell) {

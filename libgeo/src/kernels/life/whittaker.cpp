@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "geo/core/array_sizes.hpp"
+
 namespace geo {
 namespace {
 
@@ -101,6 +103,7 @@ double treeline_deficit_k(double mean_c, double range_k) {
 
 void smooth_biomes(const Grid& grid, double length_m, std::span<std::int8_t> biome,
                    std::span<std::int8_t> scratch) {
+  check_sizes("smooth_biomes", grid.size(), {{"biome", biome.size()}, {"scratch", scratch.size()}});
   // At most a quarter of the grid, however small its planet is.
   const auto cells_in = [&](double spacing_m, int all) {
     return static_cast<int>(std::min(std::round(length_m / spacing_m), std::max(1.0, all / 4.0)));

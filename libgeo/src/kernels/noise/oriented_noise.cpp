@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "geo/core/array_sizes.hpp"
 #include "geo/core/error.hpp"
 #include "geo/core/parallel_errors.hpp"
 #include "geo/core/random.hpp"
@@ -179,6 +180,7 @@ Orientation across(Orientation orientation) {
 
 Orientation orientation_of(const Grid& grid, std::span<const float> east,
                            std::span<const float> north, double least) {
+  check_sizes("orientation_of", grid.size(), {{"east", east.size()}, {"north", north.size()}});
   Orientation out{std::vector<float>(grid.size()), std::vector<float>(grid.size())};
 #pragma omp parallel for schedule(static)
   for (Index cell = 0; cell < grid.size(); ++cell) {
@@ -191,6 +193,7 @@ Orientation orientation_of(const Grid& grid, std::span<const float> east,
 }
 
 Orientation level_lines(const Grid& grid, std::span<const float> field) {
+  check_sizes("level_lines", grid.size(), {{"field", field.size()}});
   std::vector<float> east(grid.size()), north(grid.size());
 #pragma omp parallel for schedule(static)
   for (int j = 0; j < grid.ny(); ++j) {

@@ -24,16 +24,17 @@ std::uint32_t to_key(float value) {
 
 void check(const Grid& grid, const TargetDistribution& target, std::span<const float> field) {
   if (field.size() != static_cast<std::size_t>(grid.size())) {
-    throw InputError("rank match: field of " + std::to_string(field.size()) +
+    throw InputError("quantile mapping: field of " + std::to_string(field.size()) +
                      " values on a grid of " + std::to_string(grid.size()) + " cells");
   }
   const auto f = target.fraction, v = target.value;
   if (f.size() < 2 || f.size() != v.size() || f.front() != 0.0 || f.back() != 1.0) {
-    throw InputError("rank match: a target needs as many values as fractions, from 0 to 1");
+    throw InputError("quantile mapping: a target needs as many values as fractions, from 0 to 1");
   }
   for (std::size_t i = 1; i < f.size(); ++i) {
     if (!(f[i] > f[i - 1] && v[i] >= v[i - 1])) {
-      throw InputError("rank match: the target does not ascend at entry " + std::to_string(i));
+      throw InputError("quantile mapping: the target does not ascend at entry " +
+                       std::to_string(i));
     }
   }
 }
@@ -42,7 +43,8 @@ void check(const Grid& grid, const TargetDistribution& target, std::span<const f
 std::vector<Entry> sorted(std::span<const float> field) {
   std::vector<Entry> from(field.size()), to(field.size());
   for (std::size_t c = 0; c < field.size(); ++c) {
-    if (std::isnan(field[c])) throw InputError("rank match: cell " + std::to_string(c) + " is NaN");
+    if (std::isnan(field[c]))
+      throw InputError("quantile mapping: cell " + std::to_string(c) + " is NaN");
     from[c] = {to_key(field[c]), static_cast<Index>(c)};
   }
   for (const int shift : {0, 16}) {

@@ -45,14 +45,14 @@ void smooth_broadly(const Grid& grid, std::span<float> field, double length_m) {
     return smooth(grid, field, length_m);
   }
   const Grid coarse = coarser_grid(grid, spacing_m);
-  const ConservativeRemapping overlay(grid, coarse);
+  const ConservativeRemapping remapping(grid, coarse);
   std::vector<float> mean(coarse.size());
-  overlay.average(field, mean);
+  remapping.average(field, mean);
   // A box of one cell, and a spline of four.
   const double cell_m = coarse.face_east_m(coarse.ny() / 2);
   const double added_m2 = (1.0 + 4.0) / 12.0 * cell_m * cell_m;
   smooth(coarse, mean, std::sqrt(length_m * length_m - added_m2));
-  const Interpolator smoothed(overlay, mean);
+  const Interpolator smoothed(remapping, mean);
   ParallelErrors errors;
 #pragma omp parallel
   {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "geo/core/array_sizes.hpp"
 #include "geo/core/error.hpp"
 #include "geo/core/parallel_errors.hpp"
 
@@ -58,7 +59,7 @@ ConservativeRemapping::ConservativeRemapping(const Grid& fine, const Grid& coars
       coarse_(coarse),
       column_edge_(even_edges(fine.nx(), coarse.nx())),
       row_edge_(even_edges(fine.ny(), coarse.ny())) {
-  if (fine.topology() != coarse.topology()) throw Bug("overlay: topologies differ");
+  if (fine.topology() != coarse.topology()) throw Bug("conservative remapping: topologies differ");
   overlap_columns();
 }
 
@@ -66,7 +67,8 @@ ConservativeRemapping::ConservativeRemapping(const Grid& fine, const Grid& coars
                                              std::span<const double> row_edge_deg,
                                              std::span<const double> column_edge_deg)
     : fine_(fine), coarse_(coarse_sphere) {
-  if (coarse_sphere.topology() != Topology::sphere) throw Bug("overlay: coarse grid is no sphere");
+  if (coarse_sphere.topology() != Topology::sphere)
+    throw Bug("conservative remapping: coarse grid is no sphere");
   for (const double edge : row_edge_deg) {
     row_edge_.push_back((std::clamp(edge, -90.0, 90.0) + 90.0) / 180.0 * coarse_.ny());
   }
@@ -104,6 +106,8 @@ void ConservativeRemapping::for_overlaps(int coarse_row, Visit&& visit) const {
 }
 
 void ConservativeRemapping::average(std::span<const float> values, std::span<float> mean) const {
+  check_sizes("ConservativeRemapping", fine_.size(), {{"values", values.size()}});
+  check_sizes("ConservativeRemapping", coarse_.size(), {{"mean", mean.size()}});
   ParallelErrors errors;
 #pragma omp parallel
   {
@@ -128,10 +132,15 @@ void ConservativeRemapping::average(std::span<const float> values, std::span<flo
   errors.rethrow();
 }
 
-void ConservativeRemapping::average_relief(std::span<const float> elevation,
-                                           std::span<float> land_fraction,
-                                           std::span<float> height_m,
-                                           std::span<float> coverage) const {
+void ConservativeRemapping::average_elevation(std::span<const float> elevation,
+                                              std::span<float> land_fraction,
+                                              std::span<float> height_m,
+                                              std::span<float> coverage) const {
+  check_sizes("ConservativeRemapping", fine_.size(), {{"elevation", elevation.size()}});
+  check_sizes("ConservativeRemapping", coarse_.size(),
+              {{"land_fraction", land_fraction.size()},
+               {"height_m", height_m.size()},
+               {"coverage", coverage.size()}});
   ParallelErrors errors;
 #pragma omp parallel
   {
@@ -178,9 +187,10 @@ Interpolator::Taps Interpolator::taps(double position, int count, bool wraps) {
            static_cast<float>(f * f * f / 6.0)}};
 }
 
-Interpolator::Interpolator(const ConservativeRemapping& overlay,
+Interpolator::Interpolator(const ConservativeRemapping& remapping,
                            std::span<const float> coarse_values, Kind kind) {
-  const Grid& coarse = overlay.coarse_;
+  check_sizes("Interpolator", remapping.coarse_.size(), {{"coarse_values", coarse_values.size()}});
+  const Grid& coarse = remapping.coarse_;
   const int nx = coarse.nx(), ny = coarse.ny();
   const Topology topology = coarse.topology();
   padded_nx_ = nx + 2 * kPad;
@@ -212,8 +222,8 @@ Interpolator::Interpolator(const ConservativeRemapping& overlay,
       out.push_back(taps(0.5 * (edges[k] + edges[k + 1]), count, wraps));
     }
   };
-  fill(overlay.column_edge_, nx, wraps_x, column_taps_);
-  fill(overlay.row_edge_, ny, wraps_y, row_taps_);
+  fill(remapping.column_edge_, nx, wraps_x, column_taps_);
+  fill(remapping.row_edge_, ny, wraps_y, row_taps_);
 }
 
 void Interpolator::row(int fine_row, std::span<float> out, std::span<float> scratch) const {

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "geo/core/array_sizes.hpp"
 #include "geo/core/error.hpp"
 #include "geo/core/parallel_errors.hpp"
 
@@ -158,7 +159,7 @@ int Healpix::side_like(const Grid& planet) {
   return nside;
 }
 
-HealpixOverlay::HealpixOverlay(const Grid& planet, const Healpix& pixels)
+HealpixRemapping::HealpixRemapping(const Grid& planet, const Healpix& pixels)
     : pixels_(pixels), nx_(planet.nx()), ny_(planet.ny()) {
   if (planet.topology() != Topology::sphere) {
     throw InputError("HEALPix covers a whole planet, this grid is a part of one");
@@ -174,7 +175,7 @@ HealpixOverlay::HealpixOverlay(const Grid& planet, const Healpix& pixels)
 /// Calls visit(cell, overlap) for all cells under a pixel; overlaps are in radians of longitude
 /// times sine of latitude and add up to 4 pi over the count of pixels.
 template <class Visit>
-void HealpixOverlay::for_overlaps(std::int32_t pixel, const Visit& visit) const {
+void HealpixRemapping::for_overlaps(std::int32_t pixel, const Visit& visit) const {
   const Place at = place_of(pixel, pixels_.nside());
   const double step = 8.0 * kQuarter / nx_;
   for (const bool upper : {false, true}) {
@@ -200,7 +201,9 @@ void HealpixOverlay::for_overlaps(std::int32_t pixel, const Visit& visit) const 
   }
 }
 
-void HealpixOverlay::mean(std::span<const float> values, std::span<float> mean) const {
+void HealpixRemapping::mean(std::span<const float> values, std::span<float> mean) const {
+  check_sizes("HealpixRemapping", static_cast<std::size_t>(nx_) * ny_, {{"values", values.size()}});
+  check_sizes("HealpixRemapping", pixels_.size(), {{"mean", mean.size()}});
 #pragma omp parallel for schedule(dynamic, 4096)
   for (std::int32_t pixel = 0; pixel < pixels_.size(); ++pixel) {
     double sum = 0.0, weight = 0.0;
@@ -214,8 +217,10 @@ void HealpixOverlay::mean(std::span<const float> values, std::span<float> mean) 
   }
 }
 
-void HealpixOverlay::commonest(std::span<const std::int32_t> values,
-                               std::span<std::int32_t> result) const {
+void HealpixRemapping::dominant(std::span<const std::int32_t> values,
+                                std::span<std::int32_t> result) const {
+  check_sizes("HealpixRemapping", static_cast<std::size_t>(nx_) * ny_, {{"values", values.size()}});
+  check_sizes("HealpixRemapping", pixels_.size(), {{"result", result.size()}});
   ParallelErrors errors;
 #pragma omp parallel for schedule(dynamic, 4096)
   for (std::int32_t pixel = 0; pixel < pixels_.size(); ++pixel) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "geo/core/array_sizes.hpp"
 #include "geo/core/error.hpp"
 #include "geo/kernels/remapping/catmull_rom.hpp"
 
@@ -29,6 +30,8 @@ PlanetCells::PlanetCells(const Grid& planet, const Grid& fine) : planet_(planet)
 
 std::vector<float> PlanetCells::means(std::span<const float> values,
                                       std::span<const std::uint8_t> wanted, float otherwise) const {
+  check_sizes("PlanetCells", cell_.size(),
+              {{"values", values.size()}, {"wanted", wanted.size(), ArraySize::May::be_empty}});
   // In the order of the cells, on one thread: a pass over memory, and the same bits always.
   std::vector<double> sum(size());
   std::vector<std::int32_t> count(size());

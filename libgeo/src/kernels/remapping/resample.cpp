@@ -104,8 +104,8 @@ void check_within(const Axis& source, const Axis& target, const char* what) {
   if (target.edges.front() < source.edges.front() - slack ||
       target.edges.back() > source.edges.back() + slack) {
     throw InputError(
-        std::string("relief covers ") + what + " " + std::to_string(source.edges.front()) + " to " +
-        std::to_string(source.edges.back()) + ", the grid wants " +
+        std::string("the raster covers ") + what + " " + std::to_string(source.edges.front()) +
+        " to " + std::to_string(source.edges.back()) + ", the grid wants " +
         std::to_string(target.edges.front()) + " to " + std::to_string(target.edges.back()));
   }
 }
@@ -179,7 +179,7 @@ void resample_raster(const Raster& source_raster, std::span<const float> source,
                      const Ellipsoid& figure) {
   const bool geographic = source_raster.geographic;
   if (geographic != target_raster.geographic) {
-    throw InputError("relief and grid have no coordinates in common: one is in degrees, one in m");
+    throw InputError("raster and grid have no coordinates in common: one is in degrees, one in m");
   }
   check_within(source_raster.rows, target_raster.rows, geographic ? "latitudes" : "y");
   check_within(source_raster.columns, target_raster.columns, geographic ? "longitudes" : "x");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geo/core/array_sizes.hpp"
 #include "geo/core/error.hpp"
 #include "geo/core/parallel_errors.hpp"
 #include "geo/core/place.hpp"
@@ -23,6 +24,7 @@ double sampled(const Grid& source, std::span<const float> values, const Centre& 
 
 std::vector<float> laid_out_turned(const Grid& source, std::span<const float> values,
                                    const Grid& target) {
+  check_sizes("laid_out_turned", source.size(), {{"values", values.size()}});
   if (source.topology() != Topology::sphere || target.topology() != Topology::sphere) {
     throw InputError("only a whole planet can be laid out with another pole");
   }

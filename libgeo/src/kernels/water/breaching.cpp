@@ -4,6 +4,8 @@
 #include <functional>
 #include <vector>
 
+#include "geo/core/array_sizes.hpp"
+
 namespace geo {
 namespace {
 
@@ -102,6 +104,8 @@ class Search {
 
 int breach_dams(const Grid& grid, std::span<const std::uint8_t> outlets, const BreachLimits& limits,
                 std::span<float> elevation_m) {
+  check_sizes("breach_dams", grid.size(),
+              {{"outlets", outlets.size()}, {"elevation_m", elevation_m.size()}});
   if (!(limits.depth_m > 0) || !(limits.length_m > 0)) return 0;
   std::vector<Index> receiver(grid.size()), pits;
   steepest_receivers(grid, elevation_m, outlets, receiver);

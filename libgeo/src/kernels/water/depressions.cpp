@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "catchments.hpp"
+#include "geo/core/array_sizes.hpp"
 
 namespace geo {
 namespace {
@@ -155,6 +156,10 @@ struct Spills {
 DepressionHierarchy build_depression_hierarchy(const Grid& grid, std::span<const float> elevation_m,
                                                std::span<const std::uint8_t> outlets,
                                                std::span<const Index> receiver) {
+  check_sizes("build_depression_hierarchy", grid.size(),
+              {{"elevation_m", elevation_m.size()},
+               {"outlets", outlets.size()},
+               {"receiver", receiver.size()}});
   Catchments catchments = detail::find_catchments(grid, outlets, receiver);
   const std::vector<Pass> passes = detail::spanning_passes(grid, elevation_m, outlets, catchments);
   DepressionHierarchy hierarchy;
@@ -167,6 +172,8 @@ DepressionHierarchy build_depression_hierarchy(const Grid& grid, std::span<const
 
 Routing route_unordered(const Grid& grid, std::span<const float> elevation_m,
                         std::span<const std::uint8_t> outlets, bool want_filled) {
+  check_sizes("route_water", grid.size(),
+              {{"elevation_m", elevation_m.size()}, {"outlets", outlets.size()}});
   Spills spills(grid, elevation_m, outlets);
   Routing routing;
   auto& receiver = routing.graph.receiver;
@@ -191,6 +198,10 @@ Routing route_water(const Grid& grid, std::span<const float> elevation_m,
 
 void fill_depressions(const Grid& grid, std::span<const float> elevation_m,
                       std::span<const std::uint8_t> outlets, std::span<float> filled_m) {
+  check_sizes("fill_depressions", grid.size(),
+              {{"elevation_m", elevation_m.size()},
+               {"outlets", outlets.size()},
+               {"filled_m", filled_m.size()}});
   Spills(grid, elevation_m, outlets).fill(elevation_m, filled_m);
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "geo/core/array_sizes.hpp"
 #include "geo/core/error.hpp"
 
 namespace geo {
@@ -51,6 +52,7 @@ std::vector<Index> downstream_order(std::span<const Index> receiver) {
 }
 
 void FlowGraph::accumulate(std::span<double> values) const {
+  check_sizes("accumulate", receiver.size(), {{"order", order.size()}, {"values", values.size()}});
   for (const Index cell : order) {
     const Index to = receiver[cell];
     if (to != cell) values[to] += values[cell];
@@ -59,6 +61,8 @@ void FlowGraph::accumulate(std::span<double> values) const {
 
 std::vector<std::int32_t> number_basins(const Grid& grid, const FlowGraph& graph,
                                         std::span<const std::uint8_t> sea) {
+  check_sizes("number_basins", grid.size(),
+              {{"receiver", graph.receiver.size()}, {"sea", sea.size()}});
   std::vector<std::int32_t> basin(grid.size(), 0);
   std::vector<double> area_m2;
   std::vector<Index> root;
@@ -91,6 +95,8 @@ std::vector<std::int32_t> number_basins(const Grid& grid, const FlowGraph& graph
 
 void strahler_order(const FlowGraph& graph, std::span<const std::uint8_t> is_channel,
                     std::span<std::int8_t> order) {
+  check_sizes("strahler_order", graph.receiver.size(),
+              {{"is_channel", is_channel.size()}, {"order", order.size()}});
   std::fill(order.begin(), order.end(), std::int8_t{0});
   // While a cell waits for its donors: the highest order among them, and whether two have it.
   std::vector<std::uint8_t> twice(order.size(), 0);

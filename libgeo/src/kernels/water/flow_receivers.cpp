@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "geo/core/array_sizes.hpp"
 #include "geo/kernels/water/flow_graph.hpp"
 #include "kernels/numerics/wide.hpp"
 
@@ -150,6 +151,10 @@ class FlatDrainage {
 
 void steepest_receivers(const Grid& grid, std::span<const float> elevation_m,
                         std::span<const std::uint8_t> outlets, std::span<Index> receiver) {
+  check_sizes("steepest_receivers", grid.size(),
+              {{"elevation_m", elevation_m.size()},
+               {"outlets", outlets.size()},
+               {"receiver", receiver.size()}});
 #pragma omp parallel for schedule(static)
   for (int j = 0; j < grid.ny(); ++j) {
     row_receivers(grid, elevation_m.data(), outlets.data(), j, receiver.data());
@@ -159,6 +164,7 @@ void steepest_receivers(const Grid& grid, std::span<const float> elevation_m,
 
 std::vector<std::uint8_t> find_outlets(const Grid& grid, std::span<const float> elevation_m,
                                        float sea_level_m) {
+  check_sizes("find_outlets", grid.size(), {{"elevation_m", elevation_m.size()}});
   std::vector<std::uint8_t> outlets(grid.size());
   const bool open = grid.topology() == Topology::plane && grid.edges() == Edges::open;
   int any = open ? 1 : 0;

@@ -5,6 +5,7 @@
 #include <map>
 #include <vector>
 
+#include "geo/core/array_sizes.hpp"
 #include "planet_window.hpp"
 
 namespace geo {
@@ -116,6 +117,16 @@ std::vector<Passage> find_passages(const PlanetCells& cells, const PlanetWater& 
 Crossings find_inflow(const PlanetCells& cells, const PlanetWater& water,
                       std::span<float> elevation_m, std::span<double> inflow_area_m2,
                       std::span<float> inflow_m3_s) {
+  check_sizes("find_inflow", cells.planet().size(),
+              {{"elevation_m", water.elevation_m.size()},
+               {"receiver", water.receiver.size()},
+               {"drainage_area_m2", water.drainage_area_m2.size()},
+               {"discharge_m3_s", water.discharge_m3_s.size()},
+               {"lake_id", water.lake_id.size(), ArraySize::May::be_empty}});
+  check_sizes("find_inflow", cells.fine().size(),
+              {{"elevation_m", elevation_m.size()},
+               {"inflow_area_m2", inflow_area_m2.size()},
+               {"inflow_m3_s", inflow_m3_s.size()}});
   const Grid& planet = cells.planet();
   const PlanetWindow window(cells, water.receiver);
   const Discharge discharge(cells, water);

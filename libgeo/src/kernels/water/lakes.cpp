@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "catchments.hpp"
+#include "geo/core/array_sizes.hpp"
 
 namespace geo {
 namespace {
@@ -260,6 +261,10 @@ class Balance {
 Lakes balance_lakes(const Grid& grid, std::span<const float> elevation_m,
                     const DepressionHierarchy& hierarchy, std::span<const double> runoff_m3_s,
                     std::span<const float> flooding_loss_m3_s) {
+  check_sizes("balance_lakes", grid.size(),
+              {{"elevation_m", elevation_m.size()},
+               {"runoff_m3_s", runoff_m3_s.size()},
+               {"flooding_loss_m3_s", flooding_loss_m3_s.size()}});
   return Balance(grid, elevation_m, hierarchy, runoff_m3_s, flooding_loss_m3_s).solve();
 }
 
@@ -275,6 +280,12 @@ void map_lakes(const Grid& grid, std::span<const float> elevation_m,
                const DepressionHierarchy& hierarchy, const Lakes& lakes,
                std::span<const std::uint8_t> hidden, std::span<float> depth_m,
                std::span<std::int32_t> lake_id) {
+  check_sizes("map_lakes", grid.size(),
+              {{"elevation_m", elevation_m.size()},
+               {"depth_m", depth_m.size()},
+               {"lake_id", lake_id.size()}});
+  check_sizes("map_lakes", lakes.lakes.size(),
+              {{"hidden", hidden.size(), ArraySize::May::be_empty}});
   std::vector<Number> by_area(lakes.lakes.size());
   std::iota(by_area.begin(), by_area.end(), 0);
   std::erase_if(by_area, [&](Number lake) {

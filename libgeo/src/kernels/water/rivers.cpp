@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "geo/core/array_sizes.hpp"
 #include "geo/core/error.hpp"
 #include "geo/kernels/water/valley_width.hpp"
 
@@ -42,6 +43,8 @@ double incised(double height_m, double discharge_m3_s, const CarvingLaw& law) {
 
 void steepest_slope(const Grid& grid, std::span<const float> elevation_m,
                     std::span<const std::uint8_t> sea, std::span<float> slope) {
+  check_sizes("steepest_slope", grid.size(),
+              {{"elevation_m", elevation_m.size()}, {"sea", sea.size()}, {"slope", slope.size()}});
   const auto offsets = grid.offsets();
 #pragma omp parallel for schedule(dynamic, 8)
   for (int j = 0; j < grid.ny(); ++j) {
@@ -65,6 +68,8 @@ void steepest_slope(const Grid& grid, std::span<const float> elevation_m,
 
 void flow_directions(const Grid& grid, std::span<const Index> receiver,
                      std::span<std::int8_t> direction) {
+  check_sizes("flow_directions", grid.size(),
+              {{"receiver", receiver.size()}, {"direction", direction.size()}});
   const auto offsets = grid.offsets();
   bool all_found = true;
 #pragma omp parallel for schedule(static) reduction(&& : all_found)
@@ -93,6 +98,8 @@ float river_prominence(double discharge_m3_s, double slope, RiverScale scale) {
 
 RiverScale blueprint_river_scale(const Grid& grid, std::span<const double> area_m2,
                                  std::span<const std::uint8_t> sea, double rounds) {
+  check_sizes("blueprint_river_scale", grid.size(),
+              {{"area_m2", area_m2.size()}, {"sea", sea.size()}});
   double largest_m2 = 0.0;
   for (std::size_t cell = 0; cell < area_m2.size(); ++cell) {
     if (sea[cell] == 0) largest_m2 = std::max(largest_m2, area_m2[cell]);
@@ -109,6 +116,11 @@ double valley_depth(double discharge_m3_s) {
 void carve_valleys(const Grid& grid, const FlowGraph& graph, std::span<const std::uint8_t> sea,
                    std::span<const double> discharge_m3_s, const CarvingLaw& law,
                    std::span<float> elevation_m) {
+  check_sizes("carve_valleys", grid.size(),
+              {{"receiver", graph.receiver.size()},
+               {"sea", sea.size()},
+               {"discharge_m3_s", discharge_m3_s.size()},
+               {"elevation_m", elevation_m.size()}});
   const auto is_river = [&](Index cell) {
     return sea[cell] == 0 && discharge_m3_s[cell] > law.threshold_m3_s;
   };

@@ -7,6 +7,8 @@
 #include <queue>
 #include <utility>
 
+#include "geo/core/array_sizes.hpp"
+
 namespace geo {
 namespace {
 
@@ -235,6 +237,10 @@ SurfaceRivers route_rivers(const SurfaceGraph& graph, std::span<const float> ele
 RiverWork run_rivers(const SurfaceGraph& graph, const SurfaceRivers& rivers, const RiverLaw& law,
                      std::span<const std::int8_t> is_rock, std::span<float> elevation_m,
                      std::span<float> rock_m) {
+  check_sizes("run_rivers", elevation_m.size(),
+              {{"receiver", rivers.receiver.size()},
+               {"is_rock", is_rock.size()},
+               {"rock_m", rock_m.size()}});
   RiverWork work;
   std::fill(rock_m.begin(), rock_m.end(), 0.0F);
   // Level of the water at each place; that of the sea is 0.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "geo/core/array_sizes.hpp"
 #include "geo/kernels/climate/evaporation.hpp"
 
 namespace geo {
@@ -18,6 +19,12 @@ LandWater land_water(const Grid& grid, std::span<const std::uint8_t> sea,
                      std::span<const float> precipitation_mm_yr,
                      std::span<const float> potential_mm_yr, std::span<double> runoff_m3_s,
                      std::span<float> flooding_loss_m3_s) {
+  check_sizes("land_water", grid.size(),
+              {{"sea", sea.size()},
+               {"precipitation_mm_yr", precipitation_mm_yr.size()},
+               {"potential_mm_yr", potential_mm_yr.size()},
+               {"runoff_m3_s", runoff_m3_s.size()},
+               {"flooding_loss_m3_s", flooding_loss_m3_s.size()}});
   std::vector<LandWater> rows(grid.ny());
 #pragma omp parallel for schedule(dynamic, 8)
   for (int j = 0; j < grid.ny(); ++j) {

@@ -318,7 +318,7 @@ class ClimateStage final : public Stage {
                       io.write(field::wind_east),
                       io.write(field::wind_north),
                       io.write(field::distance_to_coast),
-                      io.write(field::potential_evaporation),
+                      io.write(field::potential_evapotranspiration),
                       io.write(field::sea_ice_area_fraction),
                       io.write(field::koppen_class)};
     warn_of_slow_rotation(p_.seasonal.circulation, context);
@@ -333,10 +333,10 @@ class ClimateStage final : public Stage {
     const auto model = on_planet(p_.seasonal, context.planet, p_.blueprint.greenhouse_k);
     const auto relief_size = static_cast<std::size_t>(frame.relief().size());
     std::vector<float> relief_land(relief_size), relief_height(relief_size), coverage(relief_size);
-    frame.on_relief().average_relief(elevation, relief_land, relief_height, coverage);
+    frame.on_relief().average_elevation(elevation, relief_land, relief_height, coverage);
     const bool closed_formulas = p_.model == "blueprint";
     std::vector<float> ascent, planet_ascent;
-    ReliefAscent ascent_of;  // the blueprint has its own
+    TerrainAscent ascent_of;  // the blueprint has its own
     if (!closed_formulas) {
       ascent_of = [&](std::span<const float> wind_east, std::span<const float> wind_north) {
         ascent = relief_ascent(frame, wind_east, wind_north, relief_height, p_);
@@ -351,8 +351,8 @@ class ClimateStage final : public Stage {
         dim_the_sun(model.energy, closed_formulas ? &p_.blueprint : nullptr, context);
     if (closed_formulas) {
       ascent.resize(relief_size);
-      blueprint_relief_precipitation(frame.relief(), p_.blueprint, frame.relief_latitudes_deg(),
-                                     relief_land, relief_height, ascent);
+      blueprint_orographic_precipitation(frame.relief(), p_.blueprint, frame.relief_latitudes_deg(),
+                                         relief_land, relief_height, ascent);
       planet_ascent.assign(size, 1.0F);
     }
     finish(shared_frame, model, fields, planet_ascent, ascent, elevation, dimmed, context, out);
@@ -480,12 +480,12 @@ class ClimateStage final : public Stage {
 
   ClimateParameters p_;
   StageInfo info_{"climate",
-                  "temperature, winds and rain from insolation, relief and the sea",
+                  "temperature, winds and rain from insolation, topography and the sea",
                   {&field::elevation},
                   {},
                   {&field::temperature, &field::temperature_range, &field::precipitation,
                    &field::precipitation_seasonality, &field::wind_east, &field::wind_north,
-                   &field::distance_to_coast, &field::potential_evaporation,
+                   &field::distance_to_coast, &field::potential_evapotranspiration,
                    &field::sea_ice_area_fraction, &field::koppen_class},
                   /*own_grid=*/false,
                   /*feels_events=*/true};

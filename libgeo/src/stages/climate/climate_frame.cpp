@@ -92,7 +92,7 @@ ClimateFrame::ClimateFrame(const Grid& grid, const ClimateParameters& parameters
 void ClimateFrame::planet_relief(std::span<const float> elevation, std::span<float> land_fraction,
                                  std::span<float> height_m) const {
   std::vector<float> coverage(land_fraction.size());
-  on_planet_->average_relief(elevation, land_fraction, height_m, coverage);
+  on_planet_->average_elevation(elevation, land_fraction, height_m, coverage);
   if (on_planet_->fine().topology() == Topology::plane && edge_continues_) {
     continue_edge(coverage, land_fraction, height_m);
   }

@@ -23,7 +23,7 @@ namespace geo {
 std::vector<Parameter> ErosionParameters::declarations() {
   return {
       integer("erosion.steps", steps, "1", 0, 1'000'000,
-              "number of steps; 0 leaves the relief as it is and reports the present incision",
+              "number of steps; 0 leaves elevation as it is and reports the present incision",
               "design"),
       real("erosion.time_step_yr", time_step_yr, "yr", 1.0, 1e9, "length of a step", "braun2013"),
       integer("erosion.route_every", route_every, "1", 1, 1000,
@@ -43,15 +43,15 @@ std::vector<Parameter> ErosionParameters::declarations() {
           "cannot carry it, on plains, in lakes and at sea",
           "davy2009"),
       choice("erosion.discharge", discharge, {"rain", "area"},
-             "what makes rivers large: the runoff of the climate that the relief has, or the area "
-             "that they drain",
+             "what makes rivers large: the runoff of the climate of the surface as it stands, or "
+             "the area that they drain",
              "fekete2002"),
       real("erosion.reference_runoff_mm_yr", reference_runoff_mm_yr, "mm yr-1", 1.0, 10000.0,
            "runoff at which the erodibilities hold, with discharge = rain", "fekete2002"),
       real("erosion.least_runoff_mm_yr", least_runoff_mm_yr, "mm yr-1", 0.0, 10000.0,
            "runoff of the driest land, which flows in floods", "fekete2002"),
       integer("erosion.climates", climates, "1", 1, 1000,
-              "times that the climate is found anew while the relief changes, with discharge = "
+              "times that the climate is computed again while elevation changes, with discharge = "
               "rain",
               "design"),
       choice("erosion.ice.model", ice_model, {"none", "plastic"},
@@ -73,7 +73,7 @@ std::vector<Parameter> ErosionParameters::declarations() {
            "by how much the mean of the planet is colder in the cold times than today",
            "tierney2020"),
       integer("erosion.ice.glacial_cycles", glacial_cycles, "1", 1, 100,
-              "times in all that cold and warm ice are found anew", "design"),
+              "times in all that cold and warm ice are computed again", "design"),
       real("erosion.ice.abrasion", abrasion, "1", 0.0, 1.0,
            "lowering of the bed over the way that ice has moved on it", "humphrey1994"),
       real("erosion.ice.overdeepening", overdeepening, "1", 0.0, 100.0,
@@ -129,8 +129,8 @@ std::vector<Parameter> ErosionParameters::declarations() {
       real("erosion.reference_cell_km", reference_cell_km, "km", 0.01, 1000.0,
            "cell size at which the erodibilities hold", "design"),
       real("erosion.subgrid_exponent", subgrid_exponent, "1", 0.0, 2.0,
-           "erodibility falls with the cell size to this power, for the relief that larger cells "
-           "do not resolve",
+           "erodibility falls with the cell size to this power, for the local relief that larger "
+           "cells do not resolve",
            "hack1957"),
       real("erosion.rebound_fraction", rebound_fraction, "1", 0.0, 1.0,
            "share of the eroded thickness that the crust rises again, density of crust over mantle",
@@ -153,9 +153,9 @@ std::vector<Parameter> ErosionParameters::declarations() {
       real("erosion.land_smoothing_km", land_smoothing_km, "km", 0.0, 1000.0,
            "length over which the land is smoothed after that", "tectonica2026"),
       choice("erosion.hypsometry", hypsometry, {"none", "power-law", "blueprint", "rank"},
-             "whether the relief keeps its own hypsometric curve, has its land bent until it has a "
-             "median height, is bent once by the blueprint's 4.7 to 4.9, or takes over a given "
-             "curve by rank",
+             "whether the surface keeps its own hypsometric curve, has its land bent to a median "
+             "height, is bent once by the blueprint's 4.7 to 4.9, or takes over a given curve by "
+             "quantile mapping",
              "tectonica2026"),
       real("erosion.hypsometry_median_m", hypsometry_median_m, "m", 1.0, 20000.0,
            "median height of land, with power-law and blueprint", "cogley1984"),

@@ -152,7 +152,7 @@ class HydrologyStage final : public Stage {
     std::vector<double> water(grid.size());
     std::vector<float> loss(grid.size());
     const LandWater land = land_water(grid, sea, io.read(field::precipitation),
-                                      io.read(field::potential_evaporation), water, loss);
+                                      io.read(field::potential_evapotranspiration), water, loss);
     const double inflow = add_inflow(io.read_optional(field::inflow_discharge), water);
     context.advance(0.1);
     const Bytes closed =
@@ -235,8 +235,9 @@ class HydrologyStage final : public Stage {
     graph.accumulate(area);
   }
 
-  /// False dams cut, but for those of basins in `kept`, and valleys carved, as wide as cells are
-  /// high where meridians converge; rivers are those that flow while every depression overflows.
+  /// Breaches spurious depressions, but for those of basins in `kept`, and carves valleys, as wide
+  /// as cells are high where meridians converge; rivers are those that flow while every depression
+  /// overflows.
   void shape_valleys(const Grid& grid, const Bytes& outlets, const Bytes& kept, const Bytes& sea,
                      std::span<const double> runoff, std::span<const double> inflow_area,
                      std::span<const float> ice_m, std::span<float> z) const {
@@ -299,7 +300,7 @@ class HydrologyStage final : public Stage {
   StageInfo info_{"hydrology",
                   "runoff, lakes, rivers and basins; valleys carved by rivers",
                   {&field::elevation, &field::temperature, &field::precipitation,
-                   &field::potential_evaporation},
+                   &field::potential_evapotranspiration},
                   {&field::inflow_area, &field::inflow_discharge, &field::ice_thickness,
                    &field::glacial_erosion},
                   {&field::elevation, &field::slope, &field::flow_direction, &field::flow_receiver,
@@ -312,7 +313,7 @@ class HydrologyStage final : public Stage {
 std::vector<Parameter> HydrologyParameters::declarations() {
   return {
       real("hydrology.breach_depth_m", breach_depth_m, "m", 0.0, 1e4,
-           "deepest cut through narrow dams of a coarse relief; 0 cuts none", "lindsay2016"),
+           "deepest least-cost breach of a spurious depression; 0 breaches none", "lindsay2016"),
       real("hydrology.breach_length_km", breach_length_km, "km", 0.0, 1e4,
            "longest cut through such a dam", "lindsay2016"),
       real(
@@ -336,8 +337,7 @@ std::vector<Parameter> HydrologyParameters::declarations() {
       real("hydrology.river_reference_m3_s", river_reference_m3_s, "m3 s-1", 1.0, 1e8,
            "discharge of a river as prominent as rivers get", "tectonica2026"),
       real("hydrology.carving", carving, "1", 0.0, 10.0,
-           "depth of river valleys over that of hydraulic geometry; 0 leaves the relief alone",
-           "leopold1953"),
+           "depth of river valleys over that of hydraulic geometry; 0 carves none", "leopold1953"),
       integer("hydrology.carving_rounds", carving_rounds, "1", 1, 100,
               "parts in which valleys are cut, each limited to 23 % of the height",
               "tectonica2026"),

@@ -199,12 +199,12 @@ class IslandStage final : public Stage {
         io.read(field::temperature),       io.read(field::temperature_range),
         io.read(field::precipitation),     io.read(field::precipitation_seasonality),
         io.read(field::wind_east),         io.read(field::wind_north),
-        io.read(field::distance_to_coast), io.read(field::potential_evaporation)};
+        io.read(field::distance_to_coast), io.read(field::potential_evapotranspiration)};
     const ClimateFields<float> to{
         state.update(field::temperature),       state.update(field::temperature_range),
         state.update(field::precipitation),     state.update(field::precipitation_seasonality),
         state.update(field::wind_east),         state.update(field::wind_north),
-        state.update(field::distance_to_coast), state.update(field::potential_evaporation)};
+        state.update(field::distance_to_coast), state.update(field::potential_evapotranspiration)};
     island_climate(cells, climate,
                    {context.planet.pressure_bar, aerosol_of(context.events, context.planet)}, p_,
                    {io.read(field::elevation), planets_m, state.read(field::elevation)}, from, to);
@@ -247,7 +247,7 @@ class IslandStage final : public Stage {
       .reads = {&field::elevation, &field::flow_receiver, &field::drainage_area, &field::discharge,
                 &field::temperature, &field::temperature_range, &field::precipitation,
                 &field::precipitation_seasonality, &field::wind_east, &field::wind_north,
-                &field::distance_to_coast, &field::potential_evaporation},
+                &field::distance_to_coast, &field::potential_evapotranspiration},
       .optional = {&field::boundary_type, &field::erodibility, &field::lake_id},
       .writes = {&field::elevation,
                  &field::uplift_rate,
@@ -264,7 +264,7 @@ class IslandStage final : public Stage {
                  &field::wind_east,
                  &field::wind_north,
                  &field::distance_to_coast,
-                 &field::potential_evaporation,
+                 &field::potential_evapotranspiration,
                  &field::slope,
                  &field::discharge,
                  &field::river_intensity,

@@ -65,14 +65,14 @@ Grid air_grid(const Grid& fine, double spacing_m) {
 }
 
 /// How much higher the fine relief lifts the air than the interpolated one, m, on the air grid.
-std::vector<float> extra_lift(const Grid& fine, const ConservativeRemapping& overlay,
+std::vector<float> extra_lift(const Grid& fine, const ConservativeRemapping& remapping,
                               const IslandHeights& heights, std::span<const float> wind_east,
                               std::span<const float> wind_north, double reach_m) {
-  const Grid& air = overlay.coarse();
+  const Grid& air = remapping.coarse();
   const auto size = static_cast<std::size_t>(air.size());
   std::vector<float> land(size), coverage(size), own(size), planets(size);
-  overlay.average_relief(heights.elevation_m, land, own, coverage);
-  overlay.average_relief(heights.interpolated_m, land, planets, coverage);
+  remapping.average_elevation(heights.elevation_m, land, own, coverage);
+  remapping.average_elevation(heights.interpolated_m, land, planets, coverage);
   std::vector<float> east(size), north(size);
   for (Index c = 0; c < air.size(); ++c) {
     const int i =
@@ -193,8 +193,8 @@ void interpolate_climate(const PlanetCells& cells, const PlaceLaw& law,
       const double here = evaporating_warmth(to.temperature[c], to.temperature_range[c]);
       constexpr double kMost = 3.0;
       const double ratio = usual > 0.1 ? std::min(here / usual, kMost) : 1.0;
-      to.potential_evaporation[c] =
-          static_cast<float>(std::max(0.0F, take(from.potential_evaporation)) * ratio);
+      to.potential_evapotranspiration[c] =
+          static_cast<float>(std::max(0.0F, take(from.potential_evapotranspiration)) * ratio);
     }
   }
 }
@@ -246,9 +246,9 @@ void island_climate(const PlanetCells& cells, const ClimateParameters& climate,
 
   const double reach_m = 1000.0 * p.lift_reach_km;
   const Grid air = air_grid(fine, std::max(0.2 * reach_m, p.cell_m));
-  const ConservativeRemapping overlay(fine, air);
-  const auto lift = extra_lift(fine, overlay, heights, to.wind_east, to.wind_north, reach_m);
-  const Interpolator lift_of(overlay, lift);
+  const ConservativeRemapping remapping(fine, air);
+  const auto lift = extra_lift(fine, remapping, heights, to.wind_east, to.wind_north, reach_m);
+  const Interpolator lift_of(remapping, lift);
   ParallelErrors errors;
   // What the air loses over one part of a planet cell the rest lacks: the mean is the planet's.
   std::vector<float> ascent(to.precipitation.size());

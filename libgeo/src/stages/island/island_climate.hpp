@@ -13,7 +13,7 @@ namespace geo {
 template <class T>
 struct ClimateFields {
   std::span<T> temperature, temperature_range, precipitation, precipitation_seasonality, wind_east,
-      wind_north, distance_to_coast, potential_evaporation;
+      wind_north, distance_to_coast, potential_evapotranspiration;
 };
 
 /// The island's relief: the planet's interpolated, and its own.

@@ -9,18 +9,17 @@ std::vector<Parameter> IslandParameters::declarations() {
            "tectonica2026"),
       choice("island.choose_by", choose_by, {"whole", "figures"},
              "what auto looks for: windows that hold islands whole or one coast, of those the best "
-             "land, coast, relief and boundaries; or these figures alone",
+             "land, coast, local relief and boundaries; or these figures alone",
              "tectonica2026"),
       integer("island.nx", nx, "1", 32, 8192, "columns of the island's grid", "tectonica2026"),
       integer("island.ny", ny, "1", 32, 8192, "rows of the island's grid", "tectonica2026"),
       real("island.cell_m", cell_m, "m", 10.0, 20000.0, "size of the island's cells",
            "tectonica2026"),
-      choice(
-          "island.detail", detail, {"roughness", "height", "exemplars"},
-          "fractal detail whose amplitude follows the roughness of the planet's relief around, "
-          "whose spectrum it continues, or the height itself; or relief of exemplars, by terrain "
-          "and along folds, as high as that roughness",
-          "cortial2019"),
+      choice("island.detail", detail, {"roughness", "height", "exemplars"},
+             "fractal detail whose amplitude follows the roughness of the planet's surface around, "
+             "whose spectrum it continues, or the height itself; or terrain of exemplars, by kind "
+             "and along folds, as high as that roughness",
+             "cortial2019"),
       real("island.detail_amplitude", detail_amplitude, "1", 0.0, 10.0,
            "standard deviation of detail over the roughness of the planet's cells", "huang1989"),
       real("island.detail_hurst", detail_hurst, "1", 0.0, 1.0,
@@ -33,10 +32,9 @@ std::vector<Parameter> IslandParameters::declarations() {
           "design"),
       real("island.old_orogeny_myr", old_orogeny_myr, "Myr", 0.0, 5000.0,
            "age from which mountains look like exemplars of old ones", "cortial2019"),
-      real(
-          "island.plain_slope", plain_slope, "1", 0.0, 1.0,
-          "rise over run of the planet's relief below which a place looks like exemplars of plains",
-          "design"),
+      real("island.plain_slope", plain_slope, "1", 0.0, 1.0,
+           "slope of the planet's surface below which a place looks like exemplars of plains",
+           "design"),
       real("island.height_amplitude", height_amplitude, "1", 0.0, 1.0,
            "amplitude of detail over height, where it follows height", "tectonica2026"),
       real("island.height_frequency", height_frequency, "1", 0.1, 1000.0,
@@ -72,7 +70,8 @@ std::vector<Parameter> IslandParameters::declarations() {
       real("island.channel_area_km2", channel_area_km2, "km2", 0.0, 1e8,
            "drainage area from which a channel has a stream order", "design"),
       real("island.lift_reach_km", lift_reach_km, "km", 0.1, 1000.0,
-           "how far upwind the air remembers the fine relief that lifts it", "smith1979"),
+           "e-folding distance over which air remembers the fine topography that it crossed",
+           "smith1979"),
       real("island.climate_smoothing_km", climate_smoothing_km, "km", 0.0, 1000.0,
            "length over which temperature and precipitation are smoothed", "tectonica2026"),
       real("island.biome_smoothing_km", biome_smoothing_km, "km", 0.0, 1000.0,

@@ -10,7 +10,7 @@ std::vector<Parameter> IsostasyParameters::declarations() {
              "finer on top, or as plates gave it to the last metre",
              "tectonica2026"),
       choice("isostasy.compensation", compensation, {"flexural", "airy", "airy-dry"},
-             "what carries the relief: an elastic plate, every column by itself with the sea as a "
+             "what carries topography: an elastic plate, every column by itself with the sea as a "
              "load, or every column by itself without",
              "turcotte2002"),
       real("isostasy.mantle_density_kg_m3", density.mantle, "kg m-3", 1000.0, 10000.0,
@@ -57,7 +57,7 @@ std::vector<Parameter> IsostasyParameters::declarations() {
       real("isostasy.subduction_shortening", subduction_shortening, "1", 0.0, 1.0,
            "share of convergence that thickens a continent above an ocean", "oncken2006"),
       real("isostasy.front_shortening", front_shortening, "1", 0.0, 1.0,
-           "share of that thickening in the range behind the front", "dahlen1990"),
+           "share of that thickening in the range behind the deformation front", "dahlen1990"),
       real("isostasy.arc_km", arc_km, "km", 0.0, 80.0, "thickening of oceanic crust in arcs",
            "christensen1995"),
       real("isostasy.rift_km", rift_km, "km", 0.0, 80.0, "thinning at divergent boundaries",
@@ -101,7 +101,7 @@ std::vector<Parameter> IsostasyParameters::declarations() {
       real("isostasy.seafloor_roughness_m", seafloor_roughness_m, "m", 0.0, 5000.0,
            "standard deviation of the hills of young sea floor", "huang1989"),
       real("isostasy.fracture_m", fracture_m, "m", 0.0, 5000.0,
-           "standard deviation of the relief across fracture zones on new sea floor; 0 draws none",
+           "standard deviation of depth across fracture zones on new sea floor; 0 draws none",
            "cortial2019"),
       real("isostasy.fracture_spacing_km", fracture_spacing_km, "km", 5.0, 1000.0,
            "distance between fracture zones along a ridge", "cortial2019"),
@@ -114,11 +114,10 @@ std::vector<Parameter> IsostasyParameters::declarations() {
            "standard deviation of the noise from which rivers find their ways", "huang1989"),
       real("isostasy.noise_factor", noise_factor, "1", 0.0, 100.0,
            "factor of the blueprint's noise overlay, blueprint crust alone", "tectonica2026"),
-      choice(
-          "isostasy.detail", detail, {"noise", "exemplars"},
-          "what the relief of continents is made of where it is finer than plates make it: noise, "
-          "or relief like exemplars (fields.exemplars), turned to the folds",
-          "cortial2019"),
+      choice("isostasy.detail", detail, {"noise", "exemplars"},
+             "what continents have below the wavelengths that plates make: noise, or terrain like "
+             "exemplars (fields.exemplars), turned to the folds",
+             "cortial2019"),
       real("isostasy.detail_longest_km", detail_longest_km, "km", 10.0, 1000.0,
            "longest waves of detail made of exemplars; longer ones are the plates' work", "design"),
       real("isostasy.detail_amplitude", detail_amplitude, "1", 0.0, 10.0,
@@ -128,7 +127,7 @@ std::vector<Parameter> IsostasyParameters::declarations() {
       real("isostasy.old_orogeny_myr", old_orogeny_myr, "Myr", 0.0, 5000.0,
            "age from which orogens are made like old mountains", "cortial2019"),
       real("isostasy.plain_slope", plain_slope, "1", 0.0, 1.0,
-           "rise over run of the relief of longer waves below which terrain is a plain", "design"),
+           "slope of the longer wavelengths below which terrain is a plain", "design"),
       real("isostasy.pelagic_m", sediment.early_m, "m", 0.0, 10000.0,
            "sediment that soon covers new sea floor", "muller2008"),
       real("isostasy.pelagic_rate_m_myr", sediment.rate_m_myr, "m Myr-1", 0.0, 1000.0,

@@ -187,7 +187,7 @@ std::vector<Parameter> hypsography_parameters(PlatesParameters& p) {
       choice("plates.sphere.initial_elevation", p.initial_elevation,
              {"noise", "hypsography", "given"},
              "the first continents from noise, the first crust as the model hypsography "
-             "has it, or the relief of fields.initial_elevation",
+             "has it, or the elevation of fields.initial_elevation",
              "davidson2013"),
       choice("plates.hypsography.ranking", p.ranking.by, {"great-circles", "fbm"},
              "the noise that orders places by height, unless fields.ranking does", "davidson2013"),

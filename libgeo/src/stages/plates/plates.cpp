@@ -13,7 +13,7 @@ namespace geo {
 std::vector<Parameter> PlatesParameters::declarations() {
   std::vector<Parameter> rows{
       choice("plates.model", model, {"growth", "sphere", "raster", "hypsography"},
-             "how plates come about: they grow as they stand today; drift, go below each other, "
+             "how plates come about: they grow as they stand today; drift, subduct, "
              "collide and break on a sphere through time; drift and collide as height maps on a "
              "torus; or there is one at rest whose heights follow a hypsography",
              "cortial2019"),
@@ -108,7 +108,8 @@ std::vector<Parameter> PlatesParameters::declarations() {
       real("plates.sphere.summit_elevation_km", sphere.law.summit_km, "km", 0.1, 30.0,
            "highest continent", "cortial2019"),
       real("plates.sphere.subduction_distance_km", sphere.law.subduction_distance_km, "km", 10.0,
-           10000.0, "how far from its front subduction raises the upper plate", "cortial2019"),
+           10000.0, "distance from the trench over which subduction raises the overriding plate",
+           "cortial2019"),
       real("plates.sphere.subduction_uplift_mm_yr", sphere.law.uplift_mm_yr, "mm yr-1", 0.0, 100.0,
            "uplift above subduction, before the factors of distance, speed and elevation",
            "cortial2019"),
@@ -117,7 +118,7 @@ std::vector<Parameter> PlatesParameters::declarations() {
              "event, or begin with it as all others do",
              "cortial2019"),
       choice("plates.sphere.uplift_profile", uplift_profile, {"piecewise", "driftworld"},
-             "uplift over the distance from the front, by two cubics or by Driftworld's one",
+             "uplift over the distance from the trench, by two cubics or by Driftworld's one",
              "cortial2019"),
       choice("plates.sphere.overlap", overlap, {"crust", "score"},
              "what stays up where plates overlap: continents and the younger floor, or, as "
@@ -128,8 +129,8 @@ std::vector<Parameter> PlatesParameters::declarations() {
              "plates become one as soon as they touch",
              "cortial2019"),
       choice("plates.sphere.uplift_sources", uplift_sources, {"nearest", "all"},
-             "uplift is that of the nearest front, or, as in Driftworld, the sum over all "
-             "plates that go below",
+             "uplift is that of the nearest trench, or, as in Driftworld, the sum over all "
+             "subducting plates",
              "cortial2019"),
       choice("plates.sphere.accretion", accretion, {"wedge", "abyss"},
              "sediment piles in the wedge behind trenches, or, as in Driftworld, on all floor "
@@ -139,17 +140,19 @@ std::vector<Parameter> PlatesParameters::declarations() {
              "any plate may rift, or, as in Driftworld, the largest alone, into two",
              "cortial2019"),
       real("plates.sphere.uplift_control_km", sphere.uplift_control_km, "km", 1.0, 5000.0,
-           "distance from the front where subduction raises most", "cortial2019"),
+           "distance from the trench at which subduction raises most", "cortial2019"),
       real("plates.sphere.arc_reach_km", sphere.arc_reach_km, "km", 10.0, 10000.0,
-           "how far from its front subduction raises an upper plate of ocean floor", "cortial2019"),
+           "distance from the trench over which subduction raises an overriding plate of ocean "
+           "floor",
+           "cortial2019"),
       real("plates.sphere.elevation_weight", sphere.elevation_weight, "1", 0.0, 4.0,
-           "power of the factor by which the height of what goes down raises the upper "
-           "plate",
+           "power of the factor by which the elevation of the subducting crust raises the "
+           "overriding plate",
            "cortial2019"),
       real("plates.sphere.fold_turning_km", sphere.fold_per_km, "km-1", 0.0, 1.0,
            "weight of the relative motion in the direction of folds, per kilometre", "cortial2019"),
       real("plates.sphere.slab_pull_myr", sphere.slab_pull, "Myr-1", 0.0, 1.0,
-           "turning of a plate's axis by each 1000 km of its subduction fronts", "cortial2019"),
+           "turning of a plate's axis by each 1000 km of its trenches", "cortial2019"),
       flag("plates.sphere.forces", sphere.by_forces,
            "motion follows the balance of slabs, ridges and sutures with the mantle's drag, "
            "in place of the turning by slabs",
@@ -175,7 +178,7 @@ std::vector<Parameter> PlatesParameters::declarations() {
       real("plates.sphere.penetration_km", sphere.penetration_km, "km", 0.0, 5000.0,
            "how far one continent is thrust below another before they collide", "cortial2019"),
       real("plates.sphere.suture_drag", sphere.suture_drag, "1", 0.0, 1e6,
-           "drag between continents of which one has gone below the other, over that of "
+           "drag between continents of which one is thrust below the other, over that of "
            "the mantle below a plate; 0: they do not slow each other",
            "copley2010"),
       real("plates.sphere.collision_distance_km", sphere.law.collision_distance_km, "km", 0.0,
@@ -185,8 +188,8 @@ std::vector<Parameter> PlatesParameters::declarations() {
       real("plates.sphere.surge_km", sphere.surge_km, "km", 0.0, 20.0,
            "most that one collision lifts", "christensen1995"),
       real("plates.sphere.thickest_km", sphere.thickest_km, "km", 0.0, 200.0,
-           "thickest continental crust, whose deep part flows aside where there would be "
-           "more; 0 sets no limit",
+           "thickest continental crust: lower-crustal flow spreads what would be thicker; 0 "
+           "sets no limit",
            "clark2000"),
       choice("plates.sphere.ocean_floor", ocean_floor, {"damping", "age"},
              "sea floor that sinks by damping, or as deep as its age", "stein1992"),

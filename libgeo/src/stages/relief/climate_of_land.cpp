@@ -53,7 +53,7 @@ LandClimate climate_of_land(const Grid& grid, std::span<const float> elevation_m
     resample_raster(coarse, values, fine, on, grid.figure());
   };
   lay(scratch.read(field::precipitation), climate.precipitation_mm_yr);
-  lay(scratch.read(field::potential_evaporation), climate.potential_mm_yr);
+  lay(scratch.read(field::potential_evapotranspiration), climate.potential_mm_yr);
   lay(scratch.read(field::temperature_range), climate.range_k);
   std::vector<float> at_sea_level(scratch.grid().size());
   const auto temperature = scratch.read(field::temperature);

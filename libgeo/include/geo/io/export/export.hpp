@@ -50,8 +50,8 @@ struct ExportRequest {
 ///   type, coordinate system of planet or island, nodata, unit, colours of categories.
 /// - zarr: a store of Zarr 2 with everything that the NetCDF file of the stage says.
 /// - healpix: NetCDF, or Zarr where the output is called *.zarr; conservative means, of categories
-///   the commonest.
-/// - glb: glTF 2.0, a mesh of the relief with the field's map as texture. Axes as glTF has them: y
+///   that of the largest area.
+/// - glb: glTF 2.0, a mesh of the surface with the field's map as texture. Axes as glTF has them: y
 ///   to the north pole, z to longitude 0; islands lie in x (east) and z (south).
 ///
 /// Throws ConfigurationError for what does not go together, InputError, IoError.

@@ -13,11 +13,11 @@
 
 namespace geo::io {
 
-/// Every relief that a folder holds, in the order of the file names: NetCDF (.nc, .nc4, .cdf, .grd)
-/// as read_relief reads it, and GeoTIFF (.tif, .tiff). A file whose name has the word andean,
-/// himalayan, old or plain is of that terrain, any other of what its relief looks like. Cells that
-/// are not square are made so; of a relief with gaps, the largest part without one is taken. Throws
-/// IoError when the folder cannot be read, InputError when it holds no relief or one that cannot be
+/// Every DEM that a folder holds, in the order of the file names: NetCDF (.nc, .nc4, .cdf, .grd)
+/// as read_dem reads it, and GeoTIFF (.tif, .tiff). A file whose name has the word andean,
+/// himalayan, old or plain is of that terrain, any other of what it looks like. Cells that
+/// are not square are made so; of a DEM with gaps, the largest part without one is taken. Throws
+/// IoError when the folder cannot be read, InputError when it holds no DEM or one that cannot be
 /// used (names the file and why).
 [[nodiscard]] ExemplarLibrary read_exemplars(const std::filesystem::path& folder,
                                              const Planet& planet);

@@ -17,7 +17,7 @@ namespace geo::io {
 /// drift leaves, step by step, give the motions at its end. The outline of a plate is made of the
 /// edges of its cells. Throws InputError that names the file and what is wrong: no whole number,
 /// fewer than 2 or more than 200 plates, a plate without a row, a pole or rate out of range.
-[[nodiscard]] std::vector<PlateOutline> plates_of_raster(const Relief& numbers,
+[[nodiscard]] std::vector<PlateOutline> plates_of_raster(const Dem& numbers,
                                                          const Table& rotations);
 
 }  // namespace geo::io

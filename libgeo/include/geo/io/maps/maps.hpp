@@ -71,7 +71,7 @@ std::vector<std::filesystem::path> draw_maps(const State& state,
                                              const std::filesystem::path& folder,
                                              const MapView& view = {}, std::string_view note = {});
 
-/// Draws one field of a state into a PNG file: relief in hypsometric colours that break at the
+/// Draws one field of a state into a PNG file: elevation in hypsometric colours that break at the
 /// shore, categories with their names, numbers in a perceptual colour map that follows their
 /// spread, all over the coast and the shading of `elevation` where the state has it. Throws Bug
 /// when the state lacks the field, IoError.
@@ -79,7 +79,7 @@ MapFile draw_field_file(const State& state, const FieldSpec& spec,
                         const std::filesystem::path& file, const MapView& view = {},
                         std::string_view note = {});
 
-/// Area-weighted hypsometric curve of a relief beside Earth's, and the share of the area per 250 m
+/// Area-weighted hypsometric curve of a planet beside Earth's, and the share of the area per 250 m
 /// (hypsometry.png). Throws Bug when the state has no elevation, IoError.
 MapFile draw_hypsometry_file(const State& state, const std::filesystem::path& folder,
                              std::string_view note = {});

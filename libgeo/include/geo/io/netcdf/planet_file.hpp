@@ -20,6 +20,6 @@ State read_planet(const std::filesystem::path& folder, std::span<const FieldSpec
 /// The same from what a user names: a run's folder, one stage file, or any lat-lon elevation NetCDF
 /// as `FILE[:VARIABLE]`. Throws InputError for what does not cover the whole planet, IoError when
 /// there is no such file.
-State read_planet_or_relief(const std::string& place, std::span<const FieldSpec* const> wanted);
+State read_planet_or_dem(const std::string& place, std::span<const FieldSpec* const> wanted);
 
 }  // namespace geo::io

@@ -38,7 +38,7 @@ struct Snapshot {
 };
 
 /// Writes a snapshot as NetCDF-4 with CF-1.10 metadata: temporary name, flush, rename. Shuffled,
-/// chunked, deflated; at level 1, relief hardly shrinks further however long one tries, level 0
+/// chunked, deflated; at level 1, elevation hardly shrinks further however long one tries, level 0
 /// stores. Throws IoError (which names the path and the reason).
 void write_netcdf(const std::filesystem::path& path, const Snapshot& snapshot,
                   const Provenance& provenance, int compression = 1);

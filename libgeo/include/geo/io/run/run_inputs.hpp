@@ -15,12 +15,12 @@ namespace geo::io {
 struct RunInputs {
   std::optional<State> state;
   std::vector<PlateOutline> plates;
-  std::shared_ptr<const GivenRelief> initial_elevation;
+  std::shared_ptr<const GivenElevation> initial_elevation;
   std::shared_ptr<const ExemplarLibrary> exemplars, planet_exemplars;
   std::vector<std::string> warnings;  ///< of what was given
 };
 
-/// Reads all that the plan's stages begin with: the relief or the bare planet (or `loaded`, what
+/// Reads all that the plan's stages begin with: the DEM or the bare planet (or `loaded`, what
 /// earlier stages left), given fields, initial conditions, given exemplars. Settles run.grid and
 /// dem.variable in the settings, and leaves the island out of the plan where there is no place for
 /// one. `on_grid` is told the grid before its values are read, so that a run too large ends early.

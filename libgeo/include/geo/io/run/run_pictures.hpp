@@ -68,7 +68,7 @@ FieldsOfRun read_fields_of_run(const RunFolder& folder, const FieldOfRun& wanted
                                const std::function<bool(const FieldSpec&)>& besides);
 
 /// Draws one field of a run into `pictures`/FIELD.png, or STAGE-FIELD.png where a stage is named,
-/// over the coast and the shading of the relief. Throws ConfigurationError that names what is near
+/// over the coast and the hillshading. Throws ConfigurationError that names what is near
 /// where the run has no such stage or field, InputError, IoError.
 std::filesystem::path draw_field(const RunFolder& folder, const MapView& view,
                                  const FieldOfRun& wanted, const std::filesystem::path& pictures);

@@ -34,11 +34,11 @@ struct RunPlan {
 /// Position of a stage. ConfigurationError that begins with `asked_by` and names what is near.
 int position_of(const Pipeline& pipeline, const std::string& stage, std::string_view asked_by);
 
-/// From `from` (as configured where it is empty; a real relief takes the place of the stages that
+/// From `from` (as configured where it is empty; a real DEM takes the place of the stages that
 /// would make one) to `to` (likewise). Throws ConfigurationError.
 RunPlan plan_run(const RunConfiguration& run, const std::string& from, const std::string& to);
 
-/// The stage that a run from a relief begins with.
+/// The stage that a run from a DEM begins with.
 int first_stage_of_input(const RunConfiguration& run);
 
 /// A part of a planet has no island of its own: the plan ends before it. Throws ConfigurationError

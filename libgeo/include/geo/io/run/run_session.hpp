@@ -25,7 +25,7 @@ class FrameFiles;
 /// What a command line asks of a run besides its configuration.
 struct RunRequest {
   std::filesystem::path folder;
-  /// First stage to compute. In a new folder the run starts there, from the relief itself. With
+  /// First stage to compute. In a new folder the run starts there, from the DEM itself. With
   /// `overwrite` on a folder that holds a run, earlier stages keep their files.
   std::string from;
   std::string to;                  ///< last stage; empty: as configured
@@ -38,7 +38,7 @@ struct RunRequest {
   int threads = 1;
 };
 
-/// One run of a pipeline into a folder: configuration, relief, stages, files.
+/// One run of a pipeline into a folder: configuration, DEM, stages, files.
 ///
 /// A stage is complete when its files are there whole and the manifest has its entry; the manifest
 /// is replaced after each stage. So whatever ends a run, the folder holds complete stages and
@@ -49,7 +49,7 @@ class RunSession {
   RunSession(RunConfiguration run, std::vector<int> numbers, RunRequest request);
 
   /// Checks everything that can be checked before a cell is computed, and reads the input: names of
-  /// stages, the folder, the relief, the wiring, room on the disk. Writes nothing. Throws
+  /// stages, the folder, the DEM, the wiring, room on the disk. Writes nothing. Throws
   /// ConfigurationError, InputError, IoError.
   void prepare();
   /// What the prepared run will take on a machine of some speed.

@@ -31,8 +31,8 @@ struct Scorecard {
 };
 
 /// Measures all figures that the fields of a whole planet allow. Those that depend on resolution
-/// are taken at that of Earth's data: relief at 0.2 degrees, crust at 1 degree, or at the planet's
-/// own where it is coarser. Throws InputError when the grid is not the whole planet.
+/// are taken at that of Earth's data: elevation at 0.2 degrees, crust at 1 degree, or at the
+/// planet's own where it is coarser. Throws InputError when the grid is not the whole planet.
 Scorecard score_planet(const State& state);
 
 /// The fields that `score_planet` looks at.

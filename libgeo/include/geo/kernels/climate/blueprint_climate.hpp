@@ -46,14 +46,16 @@ struct BlueprintClimate {
 [[nodiscard]] double sea_exposure(const DisplacedSampler& land, int column, int row,
                                   double reach_m);
 
-/// What the relief and the wind make of precipitation, mm yr-1 per cell: windward moisture (5.5),
+/// What topography and the wind make of precipitation, mm yr-1 per cell: windward moisture (5.5),
 /// coastal exposure (5.6), orographic lift (5.7), rain shadow (5.8, subtracted), traced against the
 /// three-cell wind in kilometres over wrapping edges and poles.
 /// @param latitude_deg  per row
-void blueprint_relief_precipitation(const Grid& grid, const BlueprintClimate& model,
-                                    std::span<const double> latitude_deg,
-                                    std::span<const float> land_fraction,
-                                    std::span<const float> height_m, std::span<float> rain_mm_yr);
+/// `latitude_deg`: one value per row, from south to north; the others one per cell; Bug otherwise.
+void blueprint_orographic_precipitation(const Grid& grid, const BlueprintClimate& model,
+                                        std::span<const double> latitude_deg,
+                                        std::span<const float> land_fraction,
+                                        std::span<const float> height_m,
+                                        std::span<float> rain_mm_yr);
 
 /// The whole of eq. 5.10 for one cell. Land loses `aerosol_mm_yr` per unit of `aerosol`, the
 /// optical depth of what events have left in the air, and is clamped to 20..4500 mm yr-1; rain at

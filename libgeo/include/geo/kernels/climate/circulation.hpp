@@ -48,6 +48,7 @@ struct Circulation {
 /// @param latitude_deg     per row
 /// @param pressure_hpa     per cell
 /// @param[out] wind_east, wind_north  m s-1, where the air goes
+/// Throws Bug where sizes differ.
 void balanced_winds(const Grid& grid, const Circulation& model,
                     std::span<const double> latitude_deg, std::span<const float> land_fraction,
                     std::span<const float> pressure_hpa, std::span<float> wind_east,

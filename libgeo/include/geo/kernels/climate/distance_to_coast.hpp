@@ -18,6 +18,7 @@ namespace geo {
 /// blocks of columns; needs 4 bytes per cell.
 ///
 /// Without any coast every cell gets half the circumference (half the perimeter of a plane).
+/// Arrays have one value per cell (`check_sizes`); Bug otherwise.
 void distance_to_coast(const Grid& grid, std::span<const float> elevation,
                        std::span<float> distance_m);
 

@@ -44,6 +44,7 @@ struct EnergyBalance {
 ///   q = gyre_heat cos(2 lat) (land to the west - land to the east) * water,
 /// the land shares weighted by exp(-distance / reach) along the parallel. On a planet that turns
 /// the other way, west is east.
+/// Throws Bug where sizes differ.
 void gyre_heat(const Grid& grid, const EnergyBalance& model, bool retrograde,
                std::span<const double> latitude_deg, std::span<const float> land_fraction,
                std::span<double> heat_w_m2);
@@ -82,6 +83,7 @@ class TemperatureCycle {
 /// @param latitude_deg, zonal_wind_m_s  per row
 /// @param land_fraction  0..1 per cell
 /// @param height_m       mean elevation of the cell above sea level, 0 at sea
+/// Throws Bug where sizes differ.
 [[nodiscard]] TemperatureCycle solve_energy_balance(const Grid& grid, const EnergyBalance& model,
                                                     bool retrograde,
                                                     std::span<const double> latitude_deg,

@@ -43,6 +43,7 @@ class SteadyMoisture {
 
   /// Of one to kSeasons seasons, which stay where they are; what moves water and makes it rain is
   /// taken over now, evaporation from land and the columns when solved.
+  /// Throws Bug where an array has not one value per cell.
   SteadyMoisture(const Grid& grid, const MoistureBudget& model,
                  std::span<const MoistureSeason> seasons);
   /// Gauss-Seidel alone: near enough while evaporation from land is still sought.

@@ -6,10 +6,11 @@
 
 namespace geo {
 
-/// How far each cell stands above the relief that the air crossed before it, m:
+/// How far each cell stands above the ground that the air crossed before it, m:
 ///   lift = h - weighted mean of h upwind, weights exp(-d / reach) at distances up to 3 reaches.
 /// Positive on windward slopes and crests, negative in the lee, zero on plains and plateaux.
-/// The relief is sampled bilinearly; beyond the edge of a plane it continues.
+/// Heights are sampled bilinearly; beyond the edge of a plane they continue.
+/// Arrays have one value per cell (`check_sizes`); Bug otherwise.
 void upwind_lift(const Grid& grid, std::span<const float> height_m,
                  std::span<const float> wind_east, std::span<const float> wind_north,
                  double reach_m, std::span<float> lift_m);

@@ -37,7 +37,7 @@ struct SeasonalClimate {
   double convection_1_k = 0.0506;  ///< by which rain-out grows with relative moist static energy
   double convection_latitude_deg = 35.9;  ///< to which the free atmosphere is level
   double orographic_share = 0.0;  ///< of the mean height by which moist air is lifted over a cell
-  double blocking_height_m = 5.24e3;  ///< height at which relief halves the moist flow
+  double blocking_height_m = 5.24e3;  ///< height at which topography halves the moist flow
   double land_transpiration = 0.973;  ///< share of the soil's evaporation that returns to the air
 };
 
@@ -59,22 +59,23 @@ struct SeasonalFields {
 };
 
 /// From the annual mean winds, east and north, how many times more than over level ground the air
-/// over each cell rains out, given that its relief lifts it here and lets it sink there.
-using ReliefAscent = std::function<std::vector<float>(std::span<const float> wind_east,
-                                                      std::span<const float> wind_north)>;
+/// over each cell rains out, given that its topography lifts it here and lets it sink there.
+using TerrainAscent = std::function<std::vector<float>(std::span<const float> wind_east,
+                                                       std::span<const float> wind_north)>;
 
-/// Twelve months of climate of a sphere or torus from its relief. Temperature at sea level comes
-/// from the energy balance; pressure from cells about the thermal equator, heat lows and the
+/// Twelve months of climate of a sphere or torus from its topography. Temperature at sea level
+/// comes from the energy balance; pressure from cells about the thermal equator, heat lows and the
 /// stationary waves that latent heat and warm land set up; winds balance it with friction; they
 /// and eddies, strongest where temperature changes most, carry moisture, which rains out where air
 /// is humid, rises, or is warmer and moister than the tropics' even free atmosphere; soil gives
 /// rain back. Waves and rain are iterated together. What `ascent` (empty: level ground) lets rain
 /// in one cell the air lacks in the next; rain and evaporation of the whole surface agree every
 /// month. Months run in parallel; the same bits for any number of threads.
+/// `latitude_deg`: one value per row, from south to north; the others one per cell; Bug otherwise.
 SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& model,
                                       std::span<const double> latitude_deg,
                                       std::span<const float> land_fraction,
                                       std::span<const float> height_m,
-                                      const ReliefAscent& ascent = {});
+                                      const TerrainAscent& ascent = {});
 
 }  // namespace geo

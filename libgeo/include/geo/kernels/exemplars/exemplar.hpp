@@ -12,14 +12,14 @@
 
 namespace geo {
 
-/// What kind of relief a place has (Cortial et al. 2019, section 5): mountains above subduction,
+/// What kind of terrain a place has (Cortial et al. 2019, section 5): mountains above subduction,
 /// of a collision, long worn down, or none.
 enum class Terrain : std::uint8_t { andean, himalayan, old_mountains, plain };
 inline constexpr int kTerrains = 4;
 /// "andean", "himalayan", "old_mountains", "plain".
 [[nodiscard]] std::string_view name_of(Terrain terrain);
 
-/// A piece of relief that terrain is made like: square cells, row 0 the southernmost.
+/// A piece of a DEM that terrain is made like: square cells, row 0 the southernmost.
 struct Exemplar {
   std::string name;
   Terrain terrain = Terrain::plain;
@@ -48,14 +48,14 @@ struct ExemplarLibrary {
 [[nodiscard]] std::array<double, 2> ridge_direction(const Grid& grid,
                                                     std::span<const float> elevation_m);
 
-/// Fills what is measured: the fold direction of the relief smoothed over 3 % of its shorter side,
-/// the range of elevations and the local relief. With no `terrain` that of its local relief:
+/// Fills what is measured: the fold direction of the elevation smoothed over 3 % of its shorter
+/// side, the range of elevations and the local relief. With no `terrain` that of its local relief:
 /// himalayan from 1500 m, andean from 600 m, old mountains from 150 m. Throws InputError when it
 /// has fewer than 32 cells a side, cells of no size, more than 2000 km, heights that are no
-/// numbers, or no relief.
+/// numbers, or level everywhere.
 void measure_exemplar(Exemplar& exemplar, std::optional<Terrain> terrain = {});
 
-/// How large relief is that is grown, on a torus of 256 cells a side.
+/// How large terrain is that is grown, on a torus of 256 cells a side.
 struct GrownSize {
   double cell_m = 300.0;
   double folds = 1.0;   ///< factor of their number across the torus
@@ -70,7 +70,7 @@ inline constexpr GrownSize kGrownForPlanets{.cell_m = 4000.0, .folds = 1.75, .ra
 /// creep against uplift on a torus, over beds of hard and soft rock and folds that run east. Uplift
 /// is one-sided (andean), broad and fast (himalayan), slow over strongly banded rock with much
 /// creep (old mountains), or next to none (plain). With exponents 1/2 and 1 of area and slope,
-/// steady relief is as high on a torus of any size. A function of its size alone: the same library
+/// steady terrain is as high on a torus of any size. A function of its size alone: the same library
 /// always. Takes some seconds.
 [[nodiscard]] ExemplarLibrary grow_exemplars(const GrownSize& size = kGrownForIslands);
 [[nodiscard]] Exemplar grow_exemplar(Terrain terrain, const GrownSize& size = kGrownForIslands);

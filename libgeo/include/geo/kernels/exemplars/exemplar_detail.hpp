@@ -9,7 +9,7 @@
 
 namespace geo {
 
-/// What a planet says about the relief of a place. One value per cell of a sphere; all but the
+/// What a planet says about the terrain of a place. One value per cell of a sphere; all but the
 /// elevation may be empty.
 struct TerrainGuide {
   std::span<const float> elevation_m;
@@ -18,7 +18,7 @@ struct TerrainGuide {
   std::span<const float> fold_east, fold_north;
   double old_myr = 100.0;      ///< age from which orogens count as old mountains
   double plain_slope = 0.005;  ///< rise over run about a place below which it is a plain
-  double level_weight = 0.0;   ///< what the level lines of the relief count beside given folds
+  double level_weight = 0.0;   ///< what contours count beside given folds
 };
 
 /// What a planet's cells about one place say, in the frame of east and north there.
@@ -29,14 +29,14 @@ struct LocalTerrain {
 };
 /// Looks at 5 x 5 places a cell apart. Terrain as Cortial et al. (2019): in an orogeny, by its type
 /// or old by its age; else old mountains where it is steep, plain where not. Folds run as given,
-/// or where there are none along the level lines of the planet's own relief; with a `level_weight`
+/// or where there are none along the contours of the planet's own surface; with a `level_weight`
 /// between the two.
 [[nodiscard]] LocalTerrain look_around(const Grid& planet, const TerrainGuide& guide,
                                        const std::array<double, 3>& unit, double spacing_m);
 
 /// Wavelengths that detail made of exemplars holds.
 struct ExemplarBand {
-  double spacing_m = 10e3;    ///< of the planet's cells, whose own relief ends at about twice that
+  double spacing_m = 10e3;    ///< of the planet's cells, whose own detail ends at about twice that
   double longest_m = 20e3;    ///< of the exemplars' waves
   double shortest_m = 600.0;  ///< what their cells can show
   double hurst = 0.75;        ///< amplitudes of waves go with this power of their length
@@ -45,9 +45,9 @@ struct ExemplarBand {
 [[nodiscard]] ExemplarBand exemplar_band(const ExemplarLibrary& library, double spacing_m,
                                          double fine_cell_m, double hurst = 0.75);
 
-/// Relief of zero mean and unit variance, as exemplars have it below the planet's cells.
+/// Terrain of zero mean and unit variance, as exemplars have it below the planet's cells.
 ///
-/// Primitives, discs of relief, stand about the points of a jittered Fibonacci lattice on the
+/// Primitives, discs of terrain, stand about the points of a jittered Fibonacci lattice on the
 /// sphere, so that they belong to places whatever grid looks at them. Each draws a terrain from
 /// what the planet says at its centre, an exemplar of that terrain (likelier the more its roughness
 /// is like the planet's), a piece of it, and a mirror image or not; and is turned so that its folds
@@ -71,11 +71,11 @@ void exemplar_detail(const Grid& planet, const TerrainGuide& guide, const Grid& 
 /// Whether it is that large, and its cells are a twelfth of the waves at most.
 [[nodiscard]] bool holds_waves(const Exemplar& exemplar, double longest_m);
 
-/// The band of a whole planet, whose plates make its relief down to waves of `longest_m`: what
+/// The band of a whole planet, whose plates make its surface down to waves of `longest_m`: what
 /// discs of the library hold of it, on cells of a 64th of its longest wave, whatever the grid.
 [[nodiscard]] ExemplarBand planetary_band(const ExemplarLibrary& library, double longest_m);
 
-/// The same relief on a whole planet, below the waves that its plates make: unit variance and no
+/// The same terrain on a whole planet, below the waves that its plates make: unit variance and no
 /// mean within the band. `guide` belongs to the sphere `on`, which may be coarser than `grid`.
 /// Cells with 0 in `wanted` (one byte per cell of `grid`, or empty: all) are left out and become 0.
 /// Grids differ by what their cells can show, waves longer than about 2.5 of them; there is no seam

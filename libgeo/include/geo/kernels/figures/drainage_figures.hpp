@@ -15,7 +15,7 @@ struct DrainedPlanet {
   std::span<const double> area_m2;         ///< upstream, the cell included
 };
 
-/// Length of the longest way of water to each cell from upstream, m: centre to centre along
+/// Flow length, m: that of the longest flow path to each cell from upstream, centre to centre along
 /// receivers. Sea cells end ways. Throws Bug on a cycle. Cost: linear.
 std::vector<float> flow_length_m(const Grid& grid, const DrainedPlanet& drainage);
 

@@ -9,8 +9,8 @@
 namespace geo {
 
 /// Local relief, m: the range of heights among a cell and its eight neighbours. The surface of the
-/// sea counts as 0, so that the relief of a coast is that of its land. 0 at sea. `elevation_m` has
-/// one value per cell (InputError otherwise). Cost: linear.
+/// sea counts as 0, so that the local relief of a coast is that of its land. 0 at sea.
+/// `elevation_m` has one value per cell (InputError otherwise). Cost: linear.
 std::vector<float> local_relief_m(const Grid& grid, std::span<const float> elevation_m);
 
 /// Share of the coastal sea poleward of a latitude that lies between land: of the sea with land

@@ -26,6 +26,7 @@ struct DeltaLaw {
 /// cells that became land, each with the cell of the sea that is nearest to it then, kNoCell where
 /// there is none. Cost: m log
 /// m in the cells filled, and a sort of the mouths. The same bits always.
+/// Arrays have one value per cell (`check_sizes`); Bug otherwise.
 std::vector<std::pair<Index, Index>> build_deltas(const Grid& grid, const DeltaLaw& law,
                                                   std::span<const std::uint8_t> sea,
                                                   std::span<const float> elevation_m,

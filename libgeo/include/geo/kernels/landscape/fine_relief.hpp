@@ -9,10 +9,11 @@
 
 namespace geo {
 
-/// Roughness of a planet's relief at the scale of its own cells, m: the root mean square, over the
+/// Roughness of a planet's surface at the scale of its own cells, m: the root mean square, over the
 /// four directions through a cell, of its height above the mean of the two neighbours, and over the
 /// cell and its eight neighbours. Slopes do not count, and heights beyond a shore count as the sea
 /// level. `covered` holds one value per covered cell of the planet.
+/// `planet_elevation_m`: one value per cell of the planet; `covered`: cells.size(). Bug otherwise.
 void local_roughness(const PlanetCells& cells, std::span<const float> planet_elevation_m,
                      std::span<float> covered);
 
@@ -25,6 +26,7 @@ struct DetailLaw {
 
 /// Fractional Brownian motion of unit variance at every cell: a function of seed, stream and
 /// position.
+/// `detail`: one value per cell; Bug otherwise.
 void unit_detail(const Grid& fine, const DetailLaw& law, std::uint64_t seed,
                  std::string_view stream, std::span<float> detail);
 
@@ -32,6 +34,7 @@ void unit_detail(const Grid& fine, const DetailLaw& law, std::uint64_t seed,
 /// `seam_m` where that is shorter: were all to fade in with the longest, the ground along the edge
 /// would be an even slope, on which water runs straight. Only cells nearer than `seam_m` are
 /// written.
+/// `detail`: one value per cell; Bug otherwise.
 void unit_detail_near_edge(const Grid& fine, const DetailLaw& law, double seam_m,
                            std::uint64_t seed, std::string_view stream, std::span<float> detail);
 

@@ -41,7 +41,7 @@ struct Crater {
 /// D_t^4 / (112 r^3). A peak reaches to 0.22 R (Pike 1985), a ring lies from 0.4 to 0.6 R.
 [[nodiscard]] double crater_profile_m(const Crater& crater, double distance_m);
 
-/// How much of the old relief is gone there: 1 in the crater, 0 from 1.2 radii.
+/// How much of the old surface is gone there: 1 in the crater, 0 from 1.2 radii.
 [[nodiscard]] double crater_erasure(const Crater& crater, double distance_m);
 
 }  // namespace geo

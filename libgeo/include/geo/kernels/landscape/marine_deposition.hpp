@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "geo/core/array_sizes.hpp"
 #include "geo/core/grid.hpp"
 #include "geo/core/numeric.hpp"
 #include "geo/kernels/numerics/area_sum.hpp"
@@ -28,9 +29,12 @@ namespace geo {
 /// negative. `supply_m` in: S, 0 on land; out: D, at most the room as long as the sea has room for
 /// all; otherwise what exceeds it stays where it was left. Length L >= 0 in m. Numbers may carry
 /// derivatives (core/numeric.hpp). Cost: linear, two diffusions; the same bits for any threads.
+/// Throws Bug where sizes differ.
 template <class Number>
 void lay_at_sea(const Grid& grid, std::span<const std::uint8_t> sea, const Number& length_m,
                 std::span<const Number> room_m, std::span<Number> supply_m) {
+  check_sizes("lay_at_sea", grid.size(),
+              {{"sea", sea.size()}, {"room_m", room_m.size()}, {"supply_m", supply_m.size()}});
   std::vector<std::uint8_t> land(sea.size());
 #pragma omp parallel for schedule(static)
   for (Index cell = 0; cell < grid.size(); ++cell) land[cell] = sea[cell] == 0 ? 1 : 0;

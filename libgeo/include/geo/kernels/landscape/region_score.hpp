@@ -22,6 +22,7 @@ struct RegionFigures {
 /// The window of `width_m` x `height_m` round a cell: whole rows and columns of the planet, as many
 /// as fit that size at the latitude of the cell (at least one), wrapping round.
 /// `boundary_type` may be empty.
+/// Arrays have one value per cell, `boundary_type` may be empty; Bug otherwise.
 RegionFigures region_figures(const Grid& planet, std::span<const float> elevation_m,
                              std::span<const std::int8_t> boundary_type, Index centre,
                              double width_m, double height_m);
@@ -36,6 +37,7 @@ struct RegionLand {
   /// the more is seen of other lands of which only an end is there (design).
   [[nodiscard]] double weight() const;
 };
+/// `elevation_m`: one value per cell; Bug otherwise.
 RegionLand region_land(const Grid& planet, std::span<const float> elevation_m, Index centre,
                        double width_m, double height_m);
 
@@ -48,6 +50,7 @@ enum class RegionRule { figures, whole };
 /// the middle row alone is searched. Noise in 0..1 is a function of seed and position. How whole
 /// their land is, is asked of the 64 best windows of each row, best first, until none behind can be
 /// better. Cost: linear in cells. Throws InputError unless `planet` is a sphere.
+/// Arrays have one value per cell, `boundary_type` may be empty; Bug otherwise.
 Index best_region(const Grid& planet, std::span<const float> elevation_m,
                   std::span<const std::int8_t> boundary_type, double width_m, double height_m,
                   std::uint64_t seed, RegionRule rule = RegionRule::whole);

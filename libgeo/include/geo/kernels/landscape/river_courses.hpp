@@ -9,7 +9,7 @@
 
 namespace geo {
 
-/// Courses of a planet's rivers over the relief of a part of it: trees of neighbouring fine cells.
+/// Courses of a planet's rivers over the surface of a part of it: trees of neighbouring fine cells.
 struct RiverCourses {
   std::vector<Index> cell;         ///< downstream first
   std::vector<std::int32_t> next;  ///< place of the next cell downstream; kCourseEnds at the end
@@ -28,17 +28,18 @@ inline constexpr std::int32_t kCourseEnds = -1;
 /// path of least
 ///   integral of exp(1.2 n) (1 + 6 s^2) (1 + max(0, z - b) / 20 m) ds,
 /// b = level - min(level / 2, 100 m), level = the planet's, linear between, n = noise of unit
-/// variance, s = 1 at the edge to 0 an eighth of a planet cell from it, over the fine relief. It
+/// variance, s = 1 at the edge to 0 an eighth of a planet cell from it, over the fine surface. It
 /// keeps clear of other courses, of the edge and of the sea where it can. Courses end at the sea,
 /// at the edge or at the bottom of an endorheic basin. On lakes the level is that of their outlet,
 /// and does not sink; elsewhere it may sink to a quarter of the planet's, and by 30 m anywhere:
 /// plains near the level of the sea have no other way out. `elevation_m`: one value per fine cell.
 /// Cost: n log n in the fine cells that each step passes. The same bits for any number of threads.
+/// `water`: as for find_inflow. `elevation_m`: one value per fine cell; Bug otherwise.
 RiverCourses trace_river_courses(const PlanetCells& cells, const PlanetWater& water,
                                  const Crossings& crossings, std::uint64_t seed,
                                  std::span<const float> elevation_m);
 
-/// Opens courses in a relief, so that what flows in one of them stays in it.
+/// Opens courses in a surface, so that what flows in one of them stays in it.
 ///
 /// A planet's valley is one cell wide and often runs diagonally: interpolation, and detail on top,
 /// dam it, or let the river out over a lower place at its side. So the water's level on a course is
@@ -51,6 +52,7 @@ RiverCourses trace_river_courses(const PlanetCells& cells, const PlanetWater& wa
 /// nothing is cut below the level of the sea, and of the edge only cells on a course sink.
 /// `level_m` of the courses becomes the level found. Cost: n log n in the cells of courses and
 /// pools. Runs on one thread.
+/// Arrays have one value per cell (`check_sizes`); Bug otherwise.
 void open_river_courses(const Grid& fine, std::span<const std::uint8_t> outlets,
                         RiverCourses& courses, std::span<float> elevation_m);
 

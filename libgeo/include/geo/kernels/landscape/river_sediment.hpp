@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "geo/core/array_sizes.hpp"
 #include "geo/core/grid.hpp"
 #include "geo/core/numeric.hpp"
 #include "geo/kernels/landscape/stream_power.hpp"
@@ -15,8 +16,11 @@ namespace geo {
 
 /// Cells under the water of depressions that `graph` leads over their sills (route_water): from
 /// there to the outlet the way climbs. One byte per cell.
+/// Arrays have one value per cell (`check_sizes`); Bug otherwise.
 template <class Z>
 std::vector<std::uint8_t> flooded_cells(const FlowGraph& graph, std::span<const Z> elevation_m) {
+  check_sizes("flooded_cells", graph.receiver.size(),
+              {{"order", graph.order.size()}, {"elevation_m", elevation_m.size()}});
   std::vector<std::uint8_t> flooded(elevation_m.size(), 0);
   std::vector<float> surface_m(elevation_m.size());
   for (auto at = graph.order.rbegin(); at != graph.order.rend(); ++at) {
@@ -57,19 +61,26 @@ std::vector<std::uint8_t> flooded_cells(const FlowGraph& graph, std::span<const 
 /// (sediment_outflow). `area_m2`, `erodibility`: as for `incise`. `flooded`: one byte per cell, or
 /// empty. `elevation_m` in and out. Derivatives (core/numeric.hpp) are those of the step along
 /// these receivers. Cost: linear; in double, not threaded, the same bits always.
+/// Throws Bug where sizes differ.
 template <class K, class Z>
 void incise_and_deposit(const Grid& grid, const FlowGraph& graph, std::span<const double> area_m2,
                         std::span<const K> erodibility, const BasicStreamPower<Arithmetic<Z>>& law,
                         const Arithmetic<Z>& deposition, std::span<const std::uint8_t> flooded,
                         std::span<Z> elevation_m);
 
-/// Rock and sediment that leave each cell along its receiver while a relief changes from
+/// Rock and sediment that leave each cell along its receiver while elevation changes from
 /// `before_m` to `after_m`, m3: its own loss and that of all cells upstream. At a root: what
 /// arrives there, its own change aside.
+/// Arrays have one value per cell (`check_sizes`); Bug otherwise.
 template <class Z>
 std::vector<Arithmetic<Z>> sediment_outflow(const Grid& grid, const FlowGraph& graph,
                                             std::span<const Z> before_m,
                                             std::span<const Z> after_m) {
+  check_sizes("sediment_outflow", grid.size(),
+              {{"receiver", graph.receiver.size()},
+               {"order", graph.order.size()},
+               {"before_m", before_m.size()},
+               {"after_m", after_m.size()}});
   using Number = Arithmetic<Z>;
   std::vector<Number> volume_m3(before_m.size(), Number(0.0));
   for (const Index cell : graph.order) {
@@ -255,6 +266,13 @@ void incise_and_deposit(const Grid& grid, const FlowGraph& graph, std::span<cons
                         std::span<const K> erodibility, const BasicStreamPower<Arithmetic<Z>>& law,
                         const Arithmetic<Z>& deposition, std::span<const std::uint8_t> flooded,
                         std::span<Z> elevation_m) {
+  check_sizes("incise_and_deposit", grid.size(),
+              {{"receiver", graph.receiver.size()},
+               {"order", graph.order.size()},
+               {"area_m2", area_m2.size()},
+               {"erodibility", erodibility.size(), ArraySize::May::be_single},
+               {"flooded", flooded.size(), ArraySize::May::be_empty},
+               {"elevation_m", elevation_m.size()}});
   using Number = Arithmetic<Z>;
   const auto factor = detail::incision_factors(grid, graph, area_m2, erodibility, law);
   detail::SedimentSweeps<Z> sweeps(grid, graph, deposition, law.sea_level_m, flooded, elevation_m);

@@ -6,7 +6,7 @@
 
 namespace geo {
 
-/// Level L at which the water over the relief fills `volume_m3`:
+/// Level L at which the water over the surface fills `volume_m3`:
 ///   sum over cells of area * max(0, L - z) = volume,
 /// one float per cell (m), L in m on the datum of `elevation_m`. The left side is convex and
 /// piecewise linear in L, so Newton's method from above reaches L in finitely many steps; exact

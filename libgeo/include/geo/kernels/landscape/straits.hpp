@@ -25,6 +25,7 @@ struct StraitLaw {
 ///
 /// `elevation_m`: one value per cell, in and out; land is 0 and above. Cost: linear in the cells,
 /// and a search over those within reach of each such sea. One thread; the same bits always.
+/// `elevation_m`: one value per cell, in and out; Bug otherwise.
 int open_straits(const Grid& grid, const StraitLaw& law, std::span<float> elevation_m);
 
 }  // namespace geo

@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "geo/core/array_sizes.hpp"
 #include "geo/core/grid.hpp"
 #include "geo/core/numeric.hpp"
 #include "geo/kernels/water/flow_graph.hpp"
@@ -41,6 +42,8 @@ using StreamPower = BasicStreamPower<double>;
 /// m^(1-2m) yr-1, one per cell, or a single value for all. `elevation_m` in and out: hold uplift of
 /// the step already. Elevations and erodibilities may carry derivatives (core/numeric.hpp), which
 /// are those of the step along these receivers. The solve is in double.
+/// `erodibility`: one value per cell, or a single one. The other arrays: one value per cell; Bug
+/// otherwise.
 template <class K, class Z>
 void incise(const Grid& grid, const FlowGraph& graph, std::span<const double> area_m2,
             std::span<const K> erodibility, const BasicStreamPower<Arithmetic<Z>>& law,
@@ -65,14 +68,20 @@ template <class T>
 
 /// Rate of incision K A^m S^n along receivers, m yr-1; 0 where the receiver is not lower.
 /// Outlets below `law.sea_level_m` count as standing at it.
+/// Shapes as for `incise`; `rate_m_yr`: one value per cell.
 void incision_rate(const Grid& grid, const FlowGraph& graph, std::span<const double> area_m2,
                    std::span<const float> erodibility, const StreamPower& law,
                    std::span<const float> elevation_m, std::span<float> rate_m_yr);
 
 /// Cuts sills down to the water behind them: along the forest, no receiver stays above its donor.
 /// Outlets are left alone. Returns the volume removed, m3.
+/// `elevation_m`: one value per cell, in and out; Bug otherwise.
 template <class Z>
 double breach_sills(const Grid& grid, const FlowGraph& graph, std::span<Z> elevation_m) {
+  check_sizes("breach_sills", grid.size(),
+              {{"receiver", graph.receiver.size()},
+               {"order", graph.order.size()},
+               {"elevation_m", elevation_m.size()}});
   std::vector<double> removed_m3(grid.ny(), 0.0);
   for (const Index cell : graph.order) {
     const Index to = graph.receiver[cell];
@@ -133,6 +142,12 @@ template <class K, class Z>
 void incise(const Grid& grid, const FlowGraph& graph, std::span<const double> area_m2,
             std::span<const K> erodibility, const BasicStreamPower<Arithmetic<Z>>& law,
             std::span<Z> elevation_m) {
+  check_sizes("incise", grid.size(),
+              {{"receiver", graph.receiver.size()},
+               {"order", graph.order.size()},
+               {"area_m2", area_m2.size()},
+               {"erodibility", erodibility.size(), ArraySize::May::be_single},
+               {"elevation_m", elevation_m.size()}});
   using Number = Arithmetic<Z>;
   const auto factor = detail::incision_factors(grid, graph, area_m2, erodibility, law);
   const Index* receiver = graph.receiver.data();

@@ -35,7 +35,7 @@ struct SettlementLimits {
 [[nodiscard]] double slope_limit(double slope);
 
 /// The slope at the length of fields, 1 km, from the range of elevation in a wider neighbourhood:
-/// ranges of relief grow with the root of the length (Hurst exponent 1/2, Turcotte 1997).
+/// ranges of elevation grow with the root of the length (Hurst exponent 1/2, Turcotte 1997).
 [[nodiscard]] double field_slope(double range_m, double length_m);
 
 /// Temperature of a wet bulb in air of the pressure at sea level, degC, within 1 K from 5 to 99 %

@@ -70,9 +70,10 @@ double treeline_deficit_k(double mean_c, double range_k);
 
 /// Removes patches of biome smaller than `length_m`: a land cell that shares its biome with fewer
 /// than two of the four cells that lie that far to the north, east, south and west takes the
-/// commonest land biome among them (of equal counts the lower number). Two sweeps, each from the
-/// result of the one before. A length under half a cell changes nothing. `scratch` holds as many
-/// cells as `biome`. Cost: linear, threaded over rows.
+/// most frequent land biome among them (of equal counts the lower number). Two sweeps, each from
+/// the result of the one before. A length under half a cell changes nothing. `scratch` holds as
+/// many cells as `biome`. Cost: linear, threaded over rows.
+/// Throws Bug where sizes differ.
 void smooth_biomes(const Grid& grid, double length_m, std::span<std::int8_t> biome,
                    std::span<std::int8_t> scratch);
 

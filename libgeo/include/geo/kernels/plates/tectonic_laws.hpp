@@ -28,7 +28,7 @@ struct TectonicConstants {
   double uplift_mm_yr = 6e-1;            ///< u_0
 };
 
-/// f of 4.1, a piecewise cubic: 3 s^2 - 2 s^3 from the front to its maximum at `control_km` (s = d
+/// f of 4.1, a piecewise cubic: 3 s^2 - 2 s^3 from the trench to its maximum at `control_km` (s = d
 /// / control), then (1 - s)^3 to 0 at `reach_km` (s = (d - control) / (reach - control)). 0
 /// outside.
 [[nodiscard]] inline double uplift_by_distance(double d_km, double control_km, double reach_km) {
@@ -53,8 +53,8 @@ struct TectonicConstants {
 [[nodiscard]] inline double uplift_by_speed(double v_mm_yr, double fastest_mm_yr) {
   return v_mm_yr / fastest_mm_yr;
 }
-/// h of 4.1: the square of the elevation of what goes down, from 0 in the deepest trench to 1 at
-/// the highest summit.
+/// h of 4.1: the square of the elevation of the subducting crust, from 0 in the deepest trench to 1
+/// at the highest summit.
 [[nodiscard]] inline double uplift_by_elevation(double z_km, double trench_km, double summit_km) {
   const double s = std::clamp((z_km - trench_km) / (summit_km - trench_km), 0.0, 1.0);
   return s * s;
@@ -64,10 +64,10 @@ struct TectonicConstants {
                                          double beta, double step_myr) {
   return add(fold, relative_mm_yr, beta * step_myr);
 }
-/// What one point q of a subduction front adds to the axis of the plate with centre c that goes
-/// down there: (c x q) / |c x q|; nothing where the two are parallel.
-[[nodiscard]] inline Vector3 slab_pull(const Vector3& centre, const Vector3& front) {
-  return normalised(cross(centre, front));
+/// What one point q of a trench adds to the axis of the subducting plate with centre c:
+/// (c x q) / |c x q|; nothing where the two are parallel.
+[[nodiscard]] inline Vector3 slab_pull(const Vector3& centre, const Vector3& trench) {
+  return normalised(cross(centre, trench));
 }
 
 /// r of 4.2: r_c sqrt(v / v_0) A / A_0, at most r_c.

@@ -12,8 +12,8 @@ namespace geo {
 /// never finer than `fine`.
 Grid coarser_grid(const Grid& fine, double spacing_m);
 
-/// A coarse raster laid over a fine one: averages relief onto it and interpolates fields back, so
-/// that smooth physics costs nothing per fine cell and does not depend on the fine resolution.
+/// A coarse raster laid over a fine one: averages elevation onto it and interpolates fields back,
+/// so that smooth physics costs nothing per fine cell and does not depend on the fine resolution.
 ///
 /// Either both grids cover the same area (sphere on sphere, torus on torus, plane on plane), or the
 /// fine one is a part of the planet (a window, or a plane that knows or is given its latitude)
@@ -33,11 +33,13 @@ class ConservativeRemapping {
 
   /// Area-weighted mean of the fine values that each coarse cell holds; 0 where the fine grid
   /// covers nothing.
+  /// `values`: one per fine cell, `mean`: one per coarse cell; Bug otherwise.
   void average(std::span<const float> values, std::span<float> mean) const;
   /// Area-weighted means of the land fraction (elevation >= 0) and of the elevation above sea
   /// level, and the share of each coarse cell that the fine grid covers (0..1).
-  void average_relief(std::span<const float> elevation, std::span<float> land_fraction,
-                      std::span<float> height_m, std::span<float> coverage) const;
+  /// `elevation`: one per fine cell, the others one per coarse cell; Bug otherwise.
+  void average_elevation(std::span<const float> elevation, std::span<float> land_fraction,
+                         std::span<float> height_m, std::span<float> coverage) const;
 
  private:
   friend class Interpolator;
@@ -58,13 +60,14 @@ class ConservativeRemapping {
   std::vector<ColumnOverlap> column_overlaps_;
 };
 
-/// Uniform cubic B-spline through an overlay: twice differentiable, never beyond the range of the
+/// Uniform cubic B-spline through a remapping: twice differentiable, never beyond the range of the
 /// coarse values, smooths over about one coarse cell. Crosses the poles of a coarse sphere; a
 /// component of a vector changes its sign there.
 class Interpolator {
  public:
   enum class Kind { scalar, vector_component };
-  Interpolator(const ConservativeRemapping& overlay, std::span<const float> coarse_values,
+  /// `coarse_values`: one per coarse cell; Bug otherwise.
+  Interpolator(const ConservativeRemapping& remapping, std::span<const float> coarse_values,
                Kind kind = Kind::scalar);
 
   /// Values along one fine row. `scratch` holds at least scratch_size() floats.

@@ -37,16 +37,16 @@ class Healpix {
 /// edges of pixels are curves of longitude by sine of latitude whose integrals are known, so sums
 /// of value times area are those of the grid (conservative to round-off). Cost: linear in cells and
 /// pixels.
-class HealpixOverlay {
+class HealpixRemapping {
  public:
   /// Throws InputError unless `planet` is a sphere.
-  HealpixOverlay(const Grid& planet, const Healpix& pixels);
+  HealpixRemapping(const Grid& planet, const Healpix& pixels);
 
   /// Mean by area; cells that are NaN have no say, pixels without any other are NaN. `mean` holds
   /// one value per pixel.
   void mean(std::span<const float> values, std::span<float> mean) const;
   /// The value that covers most of each pixel, of equals the smallest.
-  void commonest(std::span<const std::int32_t> values, std::span<std::int32_t> result) const;
+  void dominant(std::span<const std::int32_t> values, std::span<std::int32_t> result) const;
 
  private:
   template <class Visit>

@@ -32,6 +32,7 @@ class PlanetCells {
 
   /// Means of `values` over the fine cells that `wanted` (empty: all) marks, in each covered planet
   /// cell; `otherwise` where there are none. The same for any number of threads.
+  /// One value per fine cell; Bug otherwise.
   [[nodiscard]] std::vector<float> means(std::span<const float> values,
                                          std::span<const std::uint8_t> wanted,
                                          float otherwise) const;

@@ -38,6 +38,7 @@ struct DepressionHierarchy {
 /// outlets. Method: the minimum spanning tree of the graph of catchments (Cordonnier, Bovy & Braun
 /// 2019) by Kruskal's algorithm, whose order of passes is that in which depressions join. Cost:
 /// linear but for a radix sort of the passes.
+/// Arrays have one value per cell (`check_sizes`); Bug otherwise.
 DepressionHierarchy build_depression_hierarchy(const Grid& grid, std::span<const float> elevation_m,
                                                std::span<const std::uint8_t> outlets,
                                                std::span<const Index> receiver);
@@ -52,6 +53,7 @@ struct Routing {
 /// outlet: the path from pass to pit is reversed (Cordonnier et al. 2019, "carving"). Receivers
 /// stay neighbours, and no step climbs the filled surface. Filled elevations only if asked for.
 /// Cost: linear, but for a radix sort of the passes.
+/// Arrays have one value per cell (`check_sizes`); Bug otherwise.
 Routing route_water(const Grid& grid, std::span<const float> elevation_m,
                     std::span<const std::uint8_t> outlets, bool want_filled = false);
 /// The same receivers, and filled elevations, with the order left to be made (downstream_order).
@@ -59,6 +61,7 @@ Routing route_unordered(const Grid& grid, std::span<const float> elevation_m,
                         std::span<const std::uint8_t> outlets, bool want_filled = true);
 
 /// Raises every cell to the level at which its water can reach an outlet (Barnes et al. 2014).
+/// Arrays have one value per cell (`check_sizes`); Bug otherwise.
 void fill_depressions(const Grid& grid, std::span<const float> elevation_m,
                       std::span<const std::uint8_t> outlets, std::span<float> filled_m);
 

@@ -28,6 +28,7 @@ struct FlowGraph {
 
   /// Adds to each cell what its donors hold: afterwards values[i] is the sum over the upstream
   /// area of i, itself included. Drainage area when `values` held cell areas.
+  /// One value per node; Bug otherwise.
   void accumulate(std::span<double> values) const;
 };
 
@@ -39,11 +40,13 @@ std::vector<Index> downstream_order(std::span<const Index> receiver);
 
 /// Number of the root that each cell drains to: basins are numbered 1.. by falling area, ties by
 /// root index; cells that are outlets in the sea get 0. Shape: one per cell.
+/// `sea`: one byte per cell, Bug otherwise.
 std::vector<std::int32_t> number_basins(const Grid& grid, const FlowGraph& graph,
                                         std::span<const std::uint8_t> sea);
 
 /// Strahler order of the network of cells whose `is_channel` is non-zero: 1 at its heads, one more
 /// where two of equal order meet, 0 outside.
+/// Both arrays have one value per node of the graph; Bug otherwise.
 void strahler_order(const FlowGraph& graph, std::span<const std::uint8_t> is_channel,
                     std::span<std::int8_t> order);
 

@@ -37,7 +37,7 @@ struct Crossings {
 /// the edge while its water goes in from there. Wherever the planet's water passes from outside to
 /// inside or back, largest first, it crosses at the lowest land cell that no other has taken within
 /// half a planet cell of where the line between the two cell centres crosses the edge, and that
-/// cell sinks to the planet's level, interpolated between the two, so that the coarse relief dams
+/// cell sinks to the planet's level, interpolated between the two, so that the coarse surface dams
 /// no river at the edge. What gathered outside (drainage area and discharge) enters there. What
 /// falls on as much of an inside cell as lies beyond the edge comes in with the largest of its
 /// rivers from outside, or else as a brook, at the lowest of its edge cells whose ground falls
@@ -46,6 +46,7 @@ struct Crossings {
 /// in over is to be an outlet; where water leaves, none enters. On a lake, whose cells all carry
 /// the discharge of the whole, discharge goes by the share of the drainage area. Outputs: one value
 /// per fine cell, 0 elsewhere; `elevation_m` of the fine cells: in and out.
+/// Throws Bug where `water` does not have a value for each cell of the planet.
 Crossings find_inflow(const PlanetCells& cells, const PlanetWater& water,
                       std::span<float> elevation_m, std::span<double> inflow_area_m2,
                       std::span<float> inflow_m3_s);

@@ -44,6 +44,7 @@ struct Lakes {
 /// sort of those beneath endorheic sills.
 ///
 /// Idea: Fill-Spill-Merge (Barnes, Callaghan & Wickert 2021), with evaporation in place of volume.
+/// Arrays have one value per cell (`check_sizes`); Bug otherwise.
 Lakes balance_lakes(const Grid& grid, std::span<const float> elevation_m,
                     const DepressionHierarchy& hierarchy, std::span<const double> runoff_m3_s,
                     std::span<const float> flooding_loss_m3_s);
@@ -55,6 +56,7 @@ void connect_lakes(const Lakes& lakes, std::span<Index> receiver);
 
 /// Depth of water and number of the lake, 1 the largest, in each cell; 0 where there is none.
 /// Lakes flagged in `hidden` (one byte per lake; empty: none) stay out.
+/// Arrays have one value per cell (`check_sizes`); Bug otherwise.
 void map_lakes(const Grid& grid, std::span<const float> elevation_m,
                const DepressionHierarchy& hierarchy, const Lakes& lakes,
                std::span<const std::uint8_t> hidden, std::span<float> depth_m,

@@ -10,11 +10,13 @@ namespace geo {
 
 /// Steepest descent to any of the eight neighbours by true distance, m/m; 0 in pits and where
 /// `sea` is non-zero. A neighbour below sea level counts as the water's surface.
+/// Arrays have one value per cell (`check_sizes`); Bug otherwise.
 void steepest_slope(const Grid& grid, std::span<const float> elevation_m,
                     std::span<const std::uint8_t> sea, std::span<float> slope);
 
 /// Direction of each receiver as files have it: 0 at roots, else 1..8 clockwise from north.
 /// Throws Bug if a receiver is no neighbour.
+/// Arrays have one value per cell (`check_sizes`); Bug otherwise.
 void flow_directions(const Grid& grid, std::span<const Index> receiver,
                      std::span<std::int8_t> direction);
 
@@ -29,6 +31,7 @@ struct RiverScale {
 /// 0.00018 + 0.00007 `rounds` of all area on (6.4 counts it in cells), are as large as rivers get
 /// where `area_m2` is largest on land, and the slope is 35 m from cell to cell of 9.77 km. Both
 /// areas stand in place of discharges.
+/// Arrays have one value per cell (`check_sizes`); Bug otherwise.
 RiverScale blueprint_river_scale(const Grid& grid, std::span<const double> area_m2,
                                  std::span<const std::uint8_t> sea, double rounds);
 
@@ -57,6 +60,7 @@ struct CarvingLaw {
 /// (`valley_width_m`) are wider than these, all that is taken by the share of the widths, so that
 /// as much rock goes from a coarse grid as from a fine one. No cell sinks below its receiver or the
 /// sea or rises, so every way down stays one, no pit forms, and land stays land. Cost: linear.
+/// Arrays have one value per cell (`check_sizes`); Bug otherwise.
 void carve_valleys(const Grid& grid, const FlowGraph& graph, std::span<const std::uint8_t> sea,
                    std::span<const double> discharge_m3_s, const CarvingLaw& law,
                    std::span<float> elevation_m);

@@ -58,6 +58,7 @@ struct RiverWork {
 ///
 /// `is_rock`: places that rivers erode. `elevation_m` in and out; `rock_m`: change of the thickness
 /// of rock and sediment. Cost linear but for the order of places off the coast, n log n.
+/// Arrays have one value per place; Bug otherwise.
 RiverWork run_rivers(const SurfaceGraph& graph, const SurfaceRivers& rivers, const RiverLaw& law,
                      std::span<const std::int8_t> is_rock, std::span<float> elevation_m,
                      std::span<float> rock_m);

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "geo/core/array_sizes.hpp"
 #include "geo/core/grid.hpp"
 #include "geo/core/numeric.hpp"
 #include "geo/core/parallel_errors.hpp"
@@ -42,9 +43,14 @@ inline double valley_floor_beyond_cell_m2(const Grid& grid, int row) {
 /// keep their height, and no valley reaches across them. Cost: cells times height over width.
 ///
 /// `before_m`: z0, m. `elevation_m`: z1 in, z out. Both have one value per cell.
+/// So has `fixed`; Bug otherwise.
 template <class V>
 void widen_valleys(const Grid& grid, std::span<const V> before_m,
                    std::span<const std::uint8_t> fixed, std::span<V> elevation_m) {
+  check_sizes("widen_valleys", grid.size(),
+              {{"before_m", before_m.size()},
+               {"fixed", fixed.size()},
+               {"elevation_m", elevation_m.size()}});
   if (grid.topology() != Topology::sphere) return;
   constexpr double kLeast_m = 1e-3;  // of lowering that makes a valley
   const int nx = grid.nx();

@@ -22,6 +22,7 @@ struct LandWater {
 /// What each land cell yields, P - E >= 0, and what it would lose beside that if it were flooded,
 /// PET - E >= 0 (so that its balance becomes P - PET); both in m3/s over the cell's true area, 0
 /// where `sea` is non-zero. Shapes: one value per cell. Cost: linear, threaded over rows.
+/// Arrays have one value per cell (`check_sizes`); Bug otherwise.
 LandWater land_water(const Grid& grid, std::span<const std::uint8_t> sea,
                      std::span<const float> precipitation_mm_yr,
                      std::span<const float> potential_mm_yr, std::span<double> runoff_m3_s,

@@ -28,7 +28,7 @@ struct ClimateParameters {
   [[nodiscard]] std::vector<Parameter> declarations();
 };
 
-/// Temperature, winds and rain of a planet from its relief.
+/// Temperature, winds and rain of a planet from its topography.
 ///
 /// `climate.model = "energy-balance"`: temperature from insolation by an energy-balance model with
 /// snow, ice, moist transport and seasons; winds from cells, heat lows and stationary waves; rain

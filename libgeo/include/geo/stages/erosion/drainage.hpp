@@ -16,7 +16,7 @@ struct LandClimate {
   std::vector<float> range_k;                  ///< warmest less coldest month
 };
 
-/// The ways of the water over a relief: receivers, their order, the area that drains through each
+/// The drainage of a surface: receivers, their order, the area that drains through each
 /// cell, and what lies under the water of depressions.
 struct Drainage {
   FlowGraph graph;
@@ -26,7 +26,7 @@ struct Drainage {
   std::vector<std::uint8_t> flooded;  ///< lakes that catch sediment; empty where none do
 };
 
-/// Routes the water of a relief as erosion.flow_routing says, over the sills of all depressions.
+/// Routes the water of a surface as erosion.flow_routing says, over the sills of all depressions.
 /// With a climate each cell sheds its runoff (land_water), not less than `least_runoff_mm_yr`; what
 /// lakes lose to the air (balance_lakes) is gone beyond their sills, in closed basins all of it: no
 /// river cuts them open. `drainage` is replaced; what it held is released first: two would not fit

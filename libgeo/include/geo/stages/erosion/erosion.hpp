@@ -90,10 +90,10 @@ struct ErosionParameters {
 /// counts for as much as it yields: the climate stage is run within on a coarse grid, `climates`
 /// times, and runoff over the reference weighs cells; on whole planets whose run has that stage.
 /// There ice forms in the last `glacial_time_yr`, in cold and warm times by turns, and works on its
-/// bed after the rivers; that of today lies on the finished relief, whose surface is then its.
+/// bed after the rivers; that of today lies on the finished bed, and elevation is then its surface.
 /// Before the first step and after the last straits join seas behind low sills to the ocean of a
 /// whole planet; those that stay cut off fill to the brim and become land. In the last step rivers
-/// build deltas. With no steps the relief stays as it is and the present rate of incision is
+/// build deltas. With no steps elevation stays as it is and the present rate of incision is
 /// reported.
 std::unique_ptr<Stage> make_erosion_stage();
 

@@ -60,11 +60,11 @@ bool warp(const ErosionParameters& p, const ActiveVariables<V>& active, const Gr
 #pragma omp parallel
   {
     NoiseRow row(grid);
-    const auto draw_swell = [&](double km, std::vector<float>& line) {
+    const auto draw_warping = [&](double km, std::vector<float>& line) {
       line.resize(grid.nx());
       row.fbm(noise, radius_km / km, 3, 0.5, line);
     };
-    std::vector<float> swell, rate, shorter, longer;
+    std::vector<float> bend_noise, rate, shorter, longer;
     // The noise is read at places that scale with radius / wavelength, the finest octave at four
     // times that.
     constexpr double kMove = 0.04;  // of a wave of the finest octave
@@ -72,8 +72,8 @@ bool warp(const ErosionParameters& p, const ActiveVariables<V>& active, const Gr
     const auto draw_rate = [&] {
       rate.assign(grid.nx(), 0.0F);
       for (const auto& [part, weight] : {std::pair{1.0, -1.0 / 3.0}, std::pair{0.5, 4.0 / 3.0}}) {
-        draw_swell(p.warping_km - part * step_km, shorter);
-        draw_swell(p.warping_km + part * step_km, longer);
+        draw_warping(p.warping_km - part * step_km, shorter);
+        draw_warping(p.warping_km + part * step_km, longer);
         const double scale = weight / (2.0 * part * step_km);
         for (int i = 0; i < grid.nx(); ++i) {
           rate[i] += static_cast<float>(scale * (longer[i] - shorter[i]));
@@ -85,12 +85,12 @@ bool warp(const ErosionParameters& p, const ActiveVariables<V>& active, const Gr
       errors.guard([&] {
         V* heights = &elevation_m[grid.cell(0, j)];
         row.choose(j, [&](int i) { return value_of(heights[i]) > 0.0; });
-        draw_swell(p.warping_km, swell);
+        draw_warping(p.warping_km, bend_noise);
         if (wavelength_matters) draw_rate();
         for (int i = 0; i < grid.nx(); ++i) {
           V& height = heights[i];
           if (value_of(height) <= 0.0) continue;
-          V bend(swell[i]);
+          V bend(bend_noise[i]);
           if (wavelength_matters) {
             bend += V(static_cast<double>(rate[i]) * (wavelength_km - p.warping_km));
           }

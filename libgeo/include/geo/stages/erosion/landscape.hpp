@@ -41,19 +41,19 @@ struct SedimentRecord {
   std::vector<float> carried_m3_yr;
 };
 
-/// Ice that changes a relief, m: returns the rock that it lets out to the water of each cell, m3.
+/// Ice that changes elevation, m: returns the rock that it lets out to the water of each cell, m3.
 using IceWork = std::function<std::vector<double>(std::span<float> elevation_m)>;
 
-/// One run of the landscape: rivers, hillslopes and rebound work on a relief, step by step, along
+/// One run of the landscape: rivers, hillslopes and rebound work on a surface, step by step, along
 /// the drainage that each step is given. V as in core/numeric.hpp; derivatives are those with the
-/// drainage held fast. Without deposition what rivers take is gone, and the sea floor stays.
+/// frozen drainage. Without deposition what rivers take is gone, and the sea floor stays.
 template <class V>
 class Landscape {
  public:
   using Number = Arithmetic<V>;
 
   /// `thickening_m_yr`: crust that shortening adds, whose uplift `uplift_m_yr` holds; or empty.
-  /// `outlets`: find_outlets of the relief. `erodibility`: resolved for this grid, one per cell.
+  /// `outlets`: find_outlets of the surface. `erodibility`: resolved for this grid, one per cell.
   Landscape(const ErosionParameters& parameters, const ActiveVariables<V>& active, const Grid& grid,
             std::span<V> elevation_m, std::span<const V> uplift_m_yr,
             std::span<const V> thickening_m_yr, std::span<const V> erodibility,
@@ -129,7 +129,7 @@ class Landscape {
     rock_.rebound += volume_since_before();
   }
 
-  /// Lets `reshape` change the relief at will. Returns whether it did; land and sea are then to be
+  /// Lets `reshape` change elevation at will. Returns whether it did; land and sea are then to be
   /// told apart again.
   template <class Reshape>
   bool book_reshaping(Reshape&& reshape) {
@@ -176,7 +176,7 @@ class Landscape {
   [[nodiscard]] const std::vector<double>& crust_change_m() const { return crust_change_m_; }
   /// How far rock has come up in all, by uplift and rebound, m. Empty without shortening.
   [[nodiscard]] const std::vector<float>& raised_m() const { return raised_m_; }
-  /// Volume above the initial relief, m3.
+  /// Volume above the initial surface, m3.
   [[nodiscard]] Number stored_m3() const {
     return area_sum<Number>(grid_, [&](Index c) { return Number(z_[c]) - Number(initial_[c]); });
   }

@@ -52,13 +52,13 @@ struct IslandParameters {
 };
 
 /// A part of the planet seen closer, on an equal-area grid of its own (Tectonica blueprint,
-/// section 9): the most interesting window or a given place; relief by Catmull-Rom interpolation
+/// section 9): the most interesting window or a given place; elevation by Catmull-Rom interpolation
 /// and detail, fractal or after exemplars (Cortial et al. 2019, section 5); some fine steps of
 /// erosion with the rivers that enter from outside; then hydrology, climate, biomes and settlement.
 ///
 /// The crop inherits the planet: its edge keeps the planet's heights, rivers enter with their area
 /// and discharge, mean heights of land over each planet cell stay (the crust rises by as much as
-/// rivers take away), temperature and rain are the planet's, adapted to the finer relief. The
+/// rivers take away), temperature and rain are the planet's, adapted to the finer topography. The
 /// stages inside take the settings that their namesakes have in the run.
 /// Reads a whole planet; throws ConfigurationError on any other grid.
 std::unique_ptr<Stage> make_island_stage(IslandParameters parameters = {});

@@ -186,7 +186,7 @@ class Columns {
     }
     crust_.density[cell] = V(density_.oceanic_crust +
                              (density_.continental_crust - density_.oceanic_crust) * at.share);
-    // Roots of cratons that their lithosphere weighs down: they do not show in the relief.
+    // Roots of cratons that their lithosphere weighs down: they do not show at the surface.
     const Number root_m =
         1e3 * p_.craton_compensation * Number(row.thickness_noise_km[i]) * at.share;
     crust_.thickness_m[cell] = limited(V(crust_.thickness_m[cell] + V(root_m)), 3000.0, 80000.0);

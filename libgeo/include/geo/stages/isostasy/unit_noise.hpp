@@ -64,18 +64,18 @@ class UnitNoise {
   /// A row's values, in the columns that were wanted.
   class Line {
    public:
-    Line(const UnitNoise& swell, int columns) : swell_(swell), noise_(columns) {}
+    Line(const UnitNoise& source, int columns) : source_(source), noise_(columns) {}
     void read(NoiseRow& row) {
-      if (swell_.stored_ != nullptr) {
-        std::copy_n(swell_.stored_->begin() + row.first_cell(), noise_.size(), noise_.begin());
+      if (source_.stored_ != nullptr) {
+        std::copy_n(source_.stored_->begin() + row.first_cell(), noise_.size(), noise_.begin());
       } else {
-        row.fbm(swell_.noise_, swell_.frequency_, swell_.octaves_, swell_.gain_, noise_);
+        row.fbm(source_.noise_, source_.frequency_, source_.octaves_, source_.gain_, noise_);
       }
     }
-    double operator[](int column) const { return swell_.scale_ * noise_[column]; }
+    double operator[](int column) const { return source_.scale_ * noise_[column]; }
 
    private:
-    const UnitNoise& swell_;
+    const UnitNoise& source_;
     std::vector<float> noise_;
   };
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "geo/kernels/plates/raster/raster_relief.hpp"
+#include "geo/kernels/plates/raster/raster_elevation.hpp"
 #include "geo/kernels/plates/raster/raster_tectonics.hpp"
 
 namespace geo {

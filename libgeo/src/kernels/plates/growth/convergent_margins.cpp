@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "geo/core/array_sizes.hpp"
 #include "geo/core/field.hpp"
 #include "geo/core/vector3.hpp"
 #include "geo/kernels/numerics/nearest_source.hpp"
@@ -134,6 +135,14 @@ ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int1
                                      std::span<const float> age_myr,
                                      std::span<const float> east_mm_yr,
                                      std::span<const float> north_mm_yr) {
+  check_sizes("convergent_margins", grid.size(),
+              {{"plate", plate.size()},
+               {"boundary_type", boundary_type.size()},
+               {"boundary_strength", boundary_strength.size()},
+               {"continental_fraction", continental_fraction.size()},
+               {"age_myr", age_myr.size()},
+               {"east_mm_yr", east_mm_yr.size()},
+               {"north_mm_yr", north_mm_yr.size()}});
   constexpr auto kConvergent = static_cast<std::int8_t>(BoundaryType::convergent);
   constexpr double kWindow_m = 220e3, kWidest_rad = 0.35, kHandicap_m = 150e3;
   // On small planets a window of that width holds all plates.
@@ -193,18 +202,18 @@ ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int1
     const auto decides = [&](double left, double right) {
       return left < right || (left == right && side[0].plate < side[1].plate);
     };
-    bool first_goes_down;
+    bool first_subducts;
     if (a != b) {
-      first_goes_down = b;
+      first_subducts = b;
       kind.push_back(Convergence::ocean_continent);
     } else if (a) {
-      first_goes_down = decides(side[1].speed, side[0].speed);
+      first_subducts = decides(side[1].speed, side[0].speed);
       kind.push_back(Convergence::continents);
     } else {
-      first_goes_down = decides(side[1].floor_myr, side[0].floor_myr);
+      first_subducts = decides(side[1].floor_myr, side[0].floor_myr);
       kind.push_back(Convergence::oceans);
     }
-    down.push_back(side[first_goes_down ? 0 : 1].plate);
+    down.push_back(side[first_subducts ? 0 : 1].plate);
     closing.push_back(
         static_cast<float>(closing_speed(grid, side[0], side[1], east_mm_yr, north_mm_yr)));
     sources.add(grid, cell, kHandicap_m * (1.0 - boundary_strength[cell]));
@@ -231,6 +240,9 @@ ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int1
 DeformationSources deformation_sources(const Grid& grid, std::span<const std::int8_t> boundary_type,
                                        std::span<const float> boundary_strength, std::int8_t type,
                                        double length_km) {
+  check_sizes(
+      "deformation_sources", grid.size(),
+      {{"boundary_type", boundary_type.size()}, {"boundary_strength", boundary_strength.size()}});
   Sources sources(grid);
   for (Index cell = 0; cell < grid.size(); ++cell) {
     if (boundary_type[cell] != type || boundary_strength[cell] <= 0.0F) continue;
@@ -263,6 +275,7 @@ std::vector<float> propagated_deformation(const Grid& grid,
 }
 
 std::vector<float> distance_to_marked_km(const Grid& grid, std::span<const std::uint8_t> marked) {
+  check_sizes("distance_to_marked_km", grid.size(), {{"marked", marked.size()}});
   Sources sources(grid);
   for (Index cell = 0; cell < grid.size(); ++cell) {
     if (marked[cell] != 0) sources.add(grid, cell, 0.0);

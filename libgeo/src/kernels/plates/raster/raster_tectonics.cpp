@@ -207,7 +207,7 @@ void RasterTectonics::raise_arcs() {
   }
 }
 
-/// Books of folding: friction, and how far which continents overlap.
+/// Budget of folding: friction, and how far which continents overlap.
 void RasterTectonics::slow_down() {
   std::vector<Overlap> overlaps;
   std::map<std::array<std::int32_t, 4>, std::size_t> number;

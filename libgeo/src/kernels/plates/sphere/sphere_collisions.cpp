@@ -36,10 +36,10 @@ void SphereTectonics::collide() {
     for (std::int32_t k = from; k < std::min(count, from + kChunk); ++k) {
       const std::int32_t i = contacts_[k], above = partner_[i];
       if (hidden_[i] == 0 || crust.continental[i] == 0 || crust.continental[above] == 0) continue;
-      const std::int32_t front = front_of_[above];
-      if (front < 0 || fronts_[front].lower != crust.plate[i]) continue;
+      const std::int32_t trench = trench_of_[above];
+      if (trench < 0 || trenches_[trench].lower != crust.plate[i]) continue;
       const double still_km = needed_km - pair_of(i).under_km;
-      if (distance_km(above, fronts_[front].sample) < still_km) continue;
+      if (distance_km(above, trenches_[trench].sample) < still_km) continue;
       if (penetration_km(i) < still_km) continue;
       found[chunk].push_back(i);
     }
@@ -68,9 +68,10 @@ void SphereTectonics::remember_penetration() {
     const std::int32_t above = partner_[i];
     if (hidden_[i] == 0 || crust.plate[i] < 0 || crust.plate[above] < 0) continue;
     if (crust.continental[i] == 0 || crust.continental[above] == 0) continue;
-    const std::int32_t front = front_of_[above];
-    if (front < 0 || fronts_[front].lower != crust.plate[i]) continue;
-    const double gone_km = std::min(distance_km(above, fronts_[front].sample), penetration_km(i));
+    const std::int32_t trench = trench_of_[above];
+    if (trench < 0 || trenches_[trench].lower != crust.plate[i]) continue;
+    const double gone_km =
+        std::min(distance_km(above, trenches_[trench].sample), penetration_km(i));
     float& most_km = farthest_km[&pair_of(i) - state_.pairs.data()];
     most_km = std::max(most_km, static_cast<float>(gone_km));
   }
@@ -86,9 +87,9 @@ const PlatePair& SphereTectonics::pair_of(std::int32_t sample) const {
   return state_.pair(state_.root(plate[sample]), state_.root(plate[partner_[sample]]));
 }
 
-/// How far a sample has gone below another plate: back along the way by which it has come since all
-/// crust was resampled, when no plates overlapped, to that plate's edge, which it finds to a
-/// quarter of the spacing. Never more than that way itself.
+/// How far a sample has been thrust below another plate: back along the way by which it has come
+/// since all crust was resampled, when no plates overlapped, to that plate's edge, which it finds
+/// to a quarter of the spacing. Never more than that way itself.
 double SphereTectonics::penetration_km(std::int32_t sample) const {
   const FibonacciSphere& samples = mesh_->samples();
   const int lower = state_.crust.plate[sample], upper = state_.crust.plate[partner_[sample]];

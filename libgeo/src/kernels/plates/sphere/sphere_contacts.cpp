@@ -112,7 +112,7 @@ bool SphereTectonics::is_on_top(std::int32_t sample, std::int32_t other) const {
   return (top == 1) == (a > b);
 }
 
-void SphereTectonics::find_fronts() {
+void SphereTectonics::find_trenches() {
   const FibonacciSphere& samples = mesh_->samples();
   const SphereCrust& crust = state_.crust;
   const auto count = static_cast<std::int32_t>(contacts_.size());
@@ -123,7 +123,7 @@ void SphereTectonics::find_fronts() {
     hidden_[i] = is_on_top(i, partner_[i]) ? 0 : 1;
   }
   constexpr std::int32_t kChunk = 1024;
-  std::vector<std::vector<Front>> found((count + kChunk - 1) / kChunk);
+  std::vector<std::vector<TrenchSample>> found((count + kChunk - 1) / kChunk);
   const auto search = [&](std::size_t chunk) {
     const auto from = static_cast<std::int32_t>(chunk) * kChunk;
     for (std::int32_t k = from; k < std::min(count, from + kChunk); ++k) {
@@ -151,7 +151,7 @@ void SphereTectonics::find_fronts() {
 #pragma omp parallel for schedule(dynamic)
   for (std::size_t chunk = 0; chunk < found.size(); ++chunk) errors.guard([&] { search(chunk); });
   errors.rethrow();
-  fronts_ = joined(found);
+  trenches_ = joined(found);
 }
 
 /// The square of the chord that spans the reach of subduction.
@@ -161,9 +161,9 @@ float SphereTectonics::farthest_chord2() const {
   return static_cast<float>(4.0 * half * half);
 }
 
-/// The nearest front to each sample of an overriding plate within the reach of subduction: fronts
-/// are handed from sample to sample, each plate by itself.
-void SphereTectonics::spread_fronts() {
+/// The nearest trench to each sample of an overriding plate within the reach of subduction:
+/// trenches are handed from sample to sample, each plate by itself.
+void SphereTectonics::spread_trenches() {
   const FibonacciSphere& samples = mesh_->samples();
   const SphereCrust& crust = state_.crust;
   const float most = farthest_chord2();
@@ -179,8 +179,8 @@ void SphereTectonics::spread_fronts() {
                  hidden_[i] != 0 ? std::int16_t{-1} : crust.plate[i]};
   }
   std::vector<std::vector<std::int32_t>> of_plate(state_.plates.size());
-  for (std::size_t k = 0; k < fronts_.size(); ++k) {
-    of_plate[crust.plate[fronts_[k].sample]].push_back(static_cast<std::int32_t>(k));
+  for (std::size_t k = 0; k < trenches_.size(); ++k) {
+    of_plate[crust.plate[trenches_[k].sample]].push_back(static_cast<std::int32_t>(k));
   }
   ParallelErrors errors;
 #pragma omp parallel for schedule(dynamic, 1)
@@ -191,35 +191,35 @@ void SphereTectonics::spread_fronts() {
   }
   errors.rethrow();
 #pragma omp parallel for schedule(static)
-  for (std::int32_t i = 0; i < n; ++i) front_of_[i] = spots_[i].front;
+  for (std::int32_t i = 0; i < n; ++i) trench_of_[i] = spots_[i].trench;
 }
 
-/// Hands fronts of a plate on within it and tells whom they reach.
-void SphereTectonics::spread(int plate, std::span<const std::int32_t> fronts,
+/// Hands trenches of a plate on within it and tells whom they reach.
+void SphereTectonics::spread(int plate, std::span<const std::int32_t> trenches,
                              std::vector<std::int32_t>* reached) {
   std::vector<std::int32_t> queue, next;
-  const auto take = [&](std::int32_t i, Spot& at, std::int32_t front, float chord2) {
-    if (reached != nullptr && at.front < 0) reached->push_back(i);
-    at.front = front;
+  const auto take = [&](std::int32_t i, Spot& at, std::int32_t trench, float chord2) {
+    if (reached != nullptr && at.trench < 0) reached->push_back(i);
+    at.trench = trench;
     at.chord2 = chord2;
   };
-  for (const std::int32_t k : fronts) {
-    const std::int32_t i = fronts_[k].sample;
+  for (const std::int32_t k : trenches) {
+    const std::int32_t i = trenches_[k].sample;
     take(i, spots_[i], k, 0.0F);
     queue.push_back(i);
   }
   while (!queue.empty()) {
     next.clear();
     for (const std::int32_t i : queue) {
-      const std::int32_t front = spots_[i].front;
-      const Spot source = spots_[fronts_[front].sample];
+      const std::int32_t trench = spots_[i].trench;
+      const Spot source = spots_[trenches_[trench].sample];
       for (const std::int32_t j : mesh_->neighbours(i)) {
         Spot& at = spots_[j];
-        if (at.plate != static_cast<std::int16_t>(plate) || at.front == front) continue;
+        if (at.plate != static_cast<std::int16_t>(plate) || at.trench == trench) continue;
         const float x = at.x - source.x, y = at.y - source.y, z = at.z - source.z;
         const float chord2 = x * x + y * y + z * z;
         if (chord2 >= at.chord2) continue;
-        take(j, at, front, chord2);
+        take(j, at, trench, chord2);
         next.push_back(j);
       }
     }

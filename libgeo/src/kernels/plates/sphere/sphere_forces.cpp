@@ -106,7 +106,7 @@ class SphereTectonics::EdgeForces {
     const auto [across, speed] = leaving(i, j, crust_.plate[k]);
     return across < -kAcross * std::max(speed, still_);
   }
-  /// Whether floor goes below a neighbour that it has met but not yet reached since resampling.
+  /// Whether floor subducts below a neighbour that it has met but not yet reached since resampling.
   [[nodiscard]] bool goes_below(std::int32_t i, std::int32_t k) const {
     if (crust_.continental[i] != 0) return false;
     if (crust_.continental[k] == 0 && m_.state_.pair(plate_, crust_.plate[k]).ocean_top < 0) {
@@ -121,7 +121,7 @@ class SphereTectonics::EdgeForces {
     if (force_.suction_share <= 0.0 || upper < 0) return;
     sum.on_others.emplace_back(upper, scaled(along(i, j), -slab_suction_n_m(age_myr, force_)));
   }
-  /// Where the plate goes down, at k: floor pulls, a continent resists and so does the one above.
+  /// Where the plate subducts, at k: floor pulls, a continent resists and so does the one above.
   void add_trench(std::int32_t i, std::int32_t j, std::int32_t k, Part& sum) const {
     const std::int32_t above = m_.partner_[k];
     if (crust_.continental[k] == 0) {

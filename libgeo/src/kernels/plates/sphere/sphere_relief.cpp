@@ -19,31 +19,31 @@ constexpr float kYoung_myr = 40.0F;
 
 }  // namespace
 
-/// What the fronts of a step do to the plates above them.
-class SphereTectonics::FrontUplift {
+/// What the trenches of a step do to the plates above them.
+class SphereTectonics::TrenchUplift {
  public:
-  explicit FrontUplift(const SphereTectonics& model)
-      : m_(model), relative_(model.fronts_.size()), lift_(model.fronts_.size()) {
+  explicit TrenchUplift(const SphereTectonics& model)
+      : m_(model), relative_(model.trenches_.size()), lift_(model.trenches_.size()) {
     const SphereSettings& s = m_.settings_;
-    for (std::size_t k = 0; k < m_.fronts_.size(); ++k) {
-      const Front& front = m_.fronts_[k];
-      const int own = m_.state_.crust.plate[front.sample];
+    for (std::size_t k = 0; k < m_.trenches_.size(); ++k) {
+      const TrenchSample& trench = m_.trenches_[k];
+      const int own = m_.state_.crust.plate[trench.sample];
       relative_[k] =
-          scaled(back(m_.frame_[own], add(m_.rotation_[front.lower], m_.rotation_[own], -1.0)),
+          scaled(back(m_.frame_[own], add(m_.rotation_[trench.lower], m_.rotation_[own], -1.0)),
                  s.radius_km);
       lift_[k] = std::pow(
-          uplift_by_elevation(1e-3 * front.lower_elevation_m, s.law.trench_km, s.law.summit_km),
+          uplift_by_elevation(1e-3 * trench.lower_elevation_m, s.law.trench_km, s.law.summit_km),
           s.elevation_weight);
     }
   }
   struct Work {
     double d_km, f, rate_mm_yr;
-    Vector3 speed;  // of what goes down below the sample, mm/yr, in the frame of its plate
+    Vector3 speed;  // of the plate that subducts below the sample, mm/yr, in the frame of its plate
   };
   [[nodiscard]] Work at(std::int32_t i, std::int32_t k) const {
     const SphereSettings& s = m_.settings_;
     const TectonicConstants& law = s.law;
-    Work work{m_.distance_km(i, m_.fronts_[k].sample), 0.0, 0.0,
+    Work work{m_.distance_km(i, m_.trenches_[k].sample), 0.0, 0.0,
               cross(relative_[k], m_.mesh_->samples().position(i))};
     const double reach_km =
         m_.state_.crust.continental[i] != 0 ? law.subduction_distance_km : s.arc_reach_km;
@@ -58,23 +58,23 @@ class SphereTectonics::FrontUplift {
 
  private:
   const SphereTectonics& m_;
-  std::vector<Vector3> relative_;  // of each front, in the frame of its plate
-  std::vector<double> lift_;       // how much the height of what goes down counts
+  std::vector<Vector3> relative_;  // of each trench, in the frame of its plate
+  std::vector<double> lift_;       // how much the height of the subducting crust counts
 };
 
-/// The sum of what all plates that go below one do to it, each by its own nearest front.
-void SphereTectonics::add_uplifts(const FrontUplift& uplift) {
+/// The sum of what all plates that subduct below one do to it, each by its own nearest trench.
+void SphereTectonics::add_uplifts(const TrenchUplift& uplift) {
   const std::size_t plates = state_.plates.size();
   std::vector<std::vector<std::int32_t>> of_pair(plates * plates);
-  for (std::size_t k = 0; k < fronts_.size(); ++k) {
-    const auto upper = static_cast<std::size_t>(state_.crust.plate[fronts_[k].sample]);
-    const auto lower = static_cast<std::size_t>(state_.root(fronts_[k].lower));
+  for (std::size_t k = 0; k < trenches_.size(); ++k) {
+    const auto upper = static_cast<std::size_t>(state_.crust.plate[trenches_[k].sample]);
+    const auto lower = static_cast<std::size_t>(state_.root(trenches_[k].lower));
     of_pair[upper * plates + lower].push_back(static_cast<std::int32_t>(k));
   }
   uplift_km_.assign(state_.crust.plate.size(), 0.0F);
   const float most = farthest_chord2();
   const auto forget = [&](std::int32_t i) {
-    spots_[i].front = -1;
+    spots_[i].trench = -1;
     spots_[i].chord2 = most;
   };
 #pragma omp parallel for schedule(static)
@@ -85,7 +85,7 @@ void SphereTectonics::add_uplifts(const FrontUplift& uplift) {
       reached.clear();
       spread(static_cast<int>(p), of_pair[p * plates + q], &reached);
       for (const std::int32_t i : reached) {
-        const double rate_mm_yr = uplift.at(i, spots_[i].front).rate_mm_yr;
+        const double rate_mm_yr = uplift.at(i, spots_[i].trench).rate_mm_yr;
         uplift_km_[i] += static_cast<float>(rate_mm_yr * settings_.law.step_myr);
         forget(i);
       }
@@ -107,7 +107,7 @@ void SphereTectonics::raise() {
     return time_myr > 0.0 ? -std::expm1(-law.step_myr / time_myr) : 0.0;
   };
   const double decayed = share_gone(s.swell_decay_myr), worn = share_gone(s.island_wear_myr);
-  const FrontUplift uplift(*this);
+  const TrenchUplift uplift(*this);
   if (s.add_uplifts) add_uplifts(uplift);
   enum { kRaised, kEroded, kEmerged, kEmergedArea, kAccreted, kSums };
   constexpr std::int32_t kBlock = 4096;
@@ -120,7 +120,7 @@ void SphereTectonics::raise() {
       if (crust.plate[i] < 0) continue;
       double z_km = 1e-3 * crust.elevation_m[i], raised_km = 0.0;
       bool wedge = false, is_arc = false;
-      if (const std::int32_t k = front_of_[i]; k >= 0) {
+      if (const std::int32_t k = trench_of_[i]; k >= 0) {
         const auto work = uplift.at(i, k);
         const double rise_km =
             s.add_uplifts ? static_cast<double>(uplift_km_[i]) : work.rate_mm_yr * law.step_myr;
@@ -153,7 +153,7 @@ void SphereTectonics::raise() {
         const double age = crust.age_myr[i];
         double sunk_km = 0.0;
         if (s.floor_by_age) {
-          // What volcanoes have laid on floor goes down with it; what has lifted it from below
+          // What volcanoes have laid on floor subsides with it; what has lifted it from below
           // decays.
           const double plain_km =
               1e-3 * (-ocean_depth_m(age) + crust.thickness_m[i]) - s.oceanic_km;

@@ -106,7 +106,7 @@ void SphereTectonics::resample() {
       now.ridge[i] = turned(frame_[p], reading(before.ridge));
       now.fold[i] = turned(frame_[p], reading(before.fold));
       if (below < 0 || root[before.plate[below]] == root[p]) continue;
-      // Continental crust that has gone below another continent stays there, as its root.
+      // Continental crust that was thrust below another continent stays there, as its root.
       if (before.continental[below] != 0 && before.continental[top] != 0) {
         const double added = before.thickness_m[below];
         now.thickness_m[i] += static_cast<float>(added);
@@ -132,7 +132,7 @@ void SphereTectonics::resample() {
   const double volume_before_km3 = budget_.continental_km3;
   budget_.created_km2 =
       sample_km2() * sum_over(n, [&](std::int32_t i) { return owner[i] < 0 ? 1.0 : 0.0; });
-  // Only where plates are ranked does a continent go below floor.
+  // Only where plates are ranked does a continent subduct below floor.
   const double sunk_km3 =
       1e-3 * sample_km2() * sum_over(n, [&](std::int32_t i) {
         const bool is_below_floor = before.plate[i] >= 0 && before.continental[i] != 0 &&
@@ -162,8 +162,8 @@ void SphereTectonics::resample() {
   repartition();
   std::fill(partner_.begin(), partner_.end(), -1);
   std::fill(hidden_.begin(), hidden_.end(), 0);
-  std::fill(front_of_.begin(), front_of_.end(), -1);
-  fronts_.clear();
+  std::fill(trench_of_.begin(), trench_of_.end(), -1);
+  trenches_.clear();
   contacts_.clear();
   const double lost_before_km3 = budget_.lost_km3;
   budget_.lost_km3 += sunk_km3;

@@ -118,7 +118,7 @@ std::vector<SphereTectonics::Link> SphereTectonics::links_of_rifts(
   return links;
 }
 
-/// Continents of which one has gone below the other rub: k times the drag of the mantle, as far as
+/// Continents of which one is thrust below the other rub: k times the drag of the mantle, as far as
 /// they overlap.
 std::vector<SphereTectonics::Link> SphereTectonics::links_of_continents() const {
   const SphereCrust& crust = state_.crust;

@@ -212,15 +212,15 @@ class InitialConditions {
     if (!start_.elevation_m.empty()) return take_relief();
     SphereCrust& crust = state_.crust;
     const std::vector<float> boundary_km = distance_to_boundary_km();
-    const Noise swell(seed_, "plates.first_relief");
+    const Noise noise(seed_, "plates.first_relief");
     const auto relief =
-        fbm_at(swell, mesh_.samples().positions(), settings_.radius_km / 1800.0, 5, 0.5);
+        fbm_at(noise, mesh_.samples().positions(), settings_.radius_km / 1800.0, 5, 0.5);
     const std::vector<double> kept = shares_kept_at_edges();
-    constexpr double kHalfRate_mm_yr = 35.0, kLow_m = 350.0, kSwell_m = 900.0;
+    constexpr double kHalfRate_mm_yr = 35.0, kLow_m = 350.0, kAmplitude_m = 900.0;
 #pragma omp parallel for schedule(static)
     for (std::int32_t i = 0; i < mesh_.size(); ++i) {
       if (crust.continental[i] != 0) {
-        const double lift_m = std::max(10.0, kLow_m + kSwell_m * relief[i]);
+        const double lift_m = std::max(10.0, kLow_m + kAmplitude_m * relief[i]);
         const double whole_m = 1e3 * start_.continental_km + settings_.rebound * (lift_m - kLow_m);
         const double lost_m = (1.0 - kept[i]) * whole_m;
         crust.elevation_m[i] =

@@ -77,7 +77,7 @@ SphereTectonics::SphereTectonics(const SphereMesh& mesh, const SphereSettings& s
   }
   const std::size_t n = state_.crust.plate.size();
   partner_.assign(n, -1);
-  front_of_.assign(n, -1);
+  trench_of_.assign(n, -1);
   hidden_.assign(n, 0);
   chord2_.resize(n);
   spots_.resize(n);
@@ -180,14 +180,14 @@ void SphereTectonics::move() {
 }
 
 void SphereTectonics::pull_slabs() {
-  // Fronts stand in the order of their samples, so the sums have one shape.
+  // Trenches stand in the order of their samples, so the sums have one shape.
   const double per_front = settings_.slab_pull * settings_.law.step_myr *
                            mesh_->samples().spacing() * settings_.radius_km / 1000.0;
   std::vector<Vector3> pull(state_.plates.size(), Vector3{});
-  for (const Front& front : fronts_) {
-    const int lower = state_.root(front.lower);
-    const int upper = state_.crust.plate[front.sample];
-    const Vector3 at = times(frame_[upper], mesh_->samples().position(front.sample));
+  for (const TrenchSample& trench : trenches_) {
+    const int lower = state_.root(trench.lower);
+    const int upper = state_.crust.plate[trench.sample];
+    const Vector3 at = times(frame_[upper], mesh_->samples().position(trench.sample));
     const Vector3 centre = times(frame_[lower], partition_.cap(lower).centre);
     pull[lower] = add(pull[lower], slab_pull(centre, at));
   }
@@ -253,8 +253,8 @@ void SphereTectonics::advance() {
   move();
   find_contacts();
   decide_pairs();
-  find_fronts();
-  spread_fronts();
+  find_trenches();
+  spread_trenches();
   raise();
   erupt();
   if (settings_.by_rivers) run_rivers();

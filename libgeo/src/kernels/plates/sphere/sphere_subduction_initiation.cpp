@@ -46,8 +46,8 @@ std::vector<std::int32_t> SphereTectonics::old_margins() const {
   return joined(found);
 }
 
-/// Old floor at a passive margin breaks away from the continent and becomes a plate that goes below
-/// it: a Poisson process, at a rate for each length of margin whose floor is old enough.
+/// Old floor at a passive margin breaks away from the continent and becomes a plate that subducts
+/// below it: a Poisson process, at a rate for each length of margin whose floor is old enough.
 void SphereTectonics::initiate_subduction_by_chance() {
   if (settings_.initiation_per_myr <= 0.0) return;
   const RandomStream random(seed_, "plates.foundering");

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "geo/kernels/plates/raster/raster_relief.hpp"
+#include "geo/kernels/plates/raster/raster_elevation.hpp"
 #include "geo/kernels/plates/raster/raster_sphere.hpp"
 #include "geo/stages/plates/plates.hpp"
 

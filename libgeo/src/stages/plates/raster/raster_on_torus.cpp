@@ -18,7 +18,7 @@ struct Contact {
 class TorusBoundaries {
  public:
   TorusBoundaries(const PlatesParameters& p, const RasterTectonics& model,
-                  const RasterRelief& relief, const RasterScale& scale)
+                  const RasterElevation& relief, const RasterScale& scale)
       : p_(p), model_(model), relief_(relief), mm_yr_(scale.cell_km / scale.step_myr) {
     reach_ = std::max(2, static_cast<int>(std::lround(p.boundary_smoothing_km / scale.cell_km)));
     contact_.resize(relief.plate.size());
@@ -70,7 +70,7 @@ class TorusBoundaries {
 
   const PlatesParameters& p_;
   const RasterTectonics& model_;
-  const RasterRelief& relief_;
+  const RasterElevation& relief_;
   double mm_yr_;
   int reach_ = 2;
   std::vector<Contact> contact_;
@@ -84,7 +84,7 @@ void lay_on_torus(const PlatesParameters& parameters, const RasterTectonics& mod
   std::vector<float> heights;
   for (const RasterCrust& crust : model.map().crust) heights.push_back(crust.height);
   fit_scale(std::move(heights), wanted_ocean(context), parameters.raster.median_land_m, scale);
-  const RasterRelief relief = raster_relief(model, scale);
+  const RasterElevation relief = raster_elevation(model, scale);
   const RasterWorld& world = relief.world;
   const TorusBoundaries boundaries(parameters, model, relief, scale);
   const auto plate = io.write(field::plate_id);

@@ -38,7 +38,7 @@ std::vector<Parameter> raster_declarations(RasterParameters& p) {
            "it has",
            "viitanen2012"),
       real("plates.raster.ocean_crust", model.ocean_crust, "1", 0.01, 0.9,
-           "height of new ocean floor, and most that goes down in a step; 1 is sea level",
+           "height of new ocean floor, and most that subducts in a step; 1 is sea level",
            "viitanen2012"),
       real("plates.raster.melting_ratio", model.melting_ratio, "1", 0.0, 1.0,
            "share of crust gone down below deep sea that rises as magma", "viitanen2012"),

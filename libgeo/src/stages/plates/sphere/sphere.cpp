@@ -224,8 +224,8 @@ void tell(const SphereTectonics& model, const Grid& grid, Context& context) {
   }
 }
 
-/// Reads all crust anew to be seen. Plates that have come apart show one number still: their pieces
-/// are plates once the drift itself reads the crust anew.
+/// Resamples all crust to be seen. Plates that have come apart show one number still: their pieces
+/// are plates once the drift itself resamples the crust.
 void finish_to_be_seen(SphereTectonics& model) {
   const std::size_t lives = model.state().lives.size();
   model.finish();

@@ -85,7 +85,7 @@ void take_plates(const SphereMesh& mesh, Context& context, SphereStart& start) {
 
 /// Means of cells over the samples that are nearest to them; a sample without cells takes the cell
 /// that it lies in. NaN where the cells are.
-std::vector<float> means_at_samples(const GivenRelief& given, const std::vector<float>& values,
+std::vector<float> means_at_samples(const GivenElevation& given, const std::vector<float>& values,
                                     const SphereMesh& mesh) {
   const Grid& grid = given.grid;
   std::vector<std::int32_t> nearest(grid.size());
@@ -121,9 +121,9 @@ void take_relief(const SphereMesh& mesh, const Context& context, SphereStart& st
   if (!context.initial_elevation) {
     throw InputError(
         "plates: plates.sphere.initial_elevation = given needs fields.initial_elevation, a NetCDF "
-        "file of a planet's relief");
+        "file of a planet's elevation");
   }
-  const GivenRelief& given = *context.initial_elevation;
+  const GivenElevation& given = *context.initial_elevation;
   start.real_floor = true;
   start.elevation_m = means_at_samples(given, given.elevation_m, mesh);
   if (given.age_myr.empty()) return;

@@ -48,7 +48,7 @@ struct SphereOnGrid::Outputs {
   std::span<float> strength, age;
   std::span<std::int8_t> orogeny;
   std::span<float> heat;
-  std::span<std::int8_t> polarity;  // empty where the model does not know which plate goes below
+  std::span<std::int8_t> polarity;  // empty where the model does not know which plate subducts
   std::span<float> elevation, thickness, orogeny_age;
   std::span<float> fold_east, fold_north, ridge_east, ridge_north;
 };

@@ -9,16 +9,16 @@
 namespace geo {
 
 /// Cross sections of convergent margins. `across_km` is the distance from the boundary, positive on
-/// the overriding plate and negative on the one that goes down; `strength` is that of the boundary,
+/// the overriding plate and negative on the subducting one; `strength` is that of the boundary,
 /// 0 to 1. Heights are shares of the largest unless they carry a unit. The shapes are drawn after
 /// the Andes, Tibet and the western Pacific arcs (Turcotte & Schubert 2002, chapter 2).
 
 /// Thickening of a continent above a subducting ocean: nothing up to the fore-arc, a range some
 /// 200 km from the trench, a plateau behind it that is wider where plates close faster.
 [[nodiscard]] double andean_thickening(double across_km, double strength);
-/// Thickening where continents meet: a steep front on the plate that goes down, a broad plateau.
+/// Thickening where continents meet: a steep deformation front on the lower plate, a broad plateau.
 [[nodiscard]] double himalayan_thickening(double across_km, double strength);
-/// A volcanic arc above ocean that goes below ocean.
+/// A volcanic arc where ocean subducts below ocean.
 [[nodiscard]] double island_arc(double across_km, double strength);
 /// Trench and outer rise, m, negative down; kDeepestTrench_m at full strength.
 inline constexpr double kDeepestTrench_m = 3000.0;
@@ -26,8 +26,8 @@ inline constexpr double kDeepestTrench_m = 3000.0;
 
 /// Where crust is shortened across a convergent margin, km-1: densities whose integrals over
 /// `across_km` are 1. `sheet` lies under the whole width of the belt, that of the sections above (a
-/// thin viscous sheet, England & McKenzie 1982); `wedge` under the ranges behind its front, where
-/// what arrives is stacked first (Dahlen 1990).
+/// thin viscous sheet, England & McKenzie 1982); `wedge` under the ranges behind its deformation
+/// front, where what arrives is stacked first (Dahlen 1990).
 struct ShorteningDensity {
   double sheet, wedge;
 };
@@ -45,10 +45,11 @@ struct ConvergentMargins {
   std::vector<float> closing_mm_yr;  ///< how fast the two plates approach across the boundary
 };
 
-/// Which plate goes down at each convergent boundary, and how far each cell is from it. The less
-/// continental plate goes down; of two oceans the older; of two continents the faster.
+/// Which plate subducts at each convergent boundary, and how far each cell is from it. The less
+/// continental plate subducts; of two oceans the older; of two continents the faster.
 /// @param plate, boundary_type, boundary_strength, continental_fraction, age_myr, velocities of
 ///        plates, mm yr-1  per cell of a sphere grid
+/// Throws Bug where sizes differ.
 ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int16_t> plate,
                                      std::span<const std::int8_t> boundary_type,
                                      std::span<const float> boundary_strength,
@@ -63,6 +64,7 @@ struct DeformationSources {
   std::vector<float> strength;  ///< 0 where there is none at all
   std::vector<double> distance_km;
 };
+/// Arrays have one value per cell (`check_sizes`); Bug otherwise.
 DeformationSources deformation_sources(const Grid& grid, std::span<const std::int8_t> boundary_type,
                                        std::span<const float> boundary_strength, std::int8_t type,
                                        double length_km);
@@ -75,6 +77,7 @@ std::vector<float> propagated_deformation(const Grid& grid,
                                           std::int8_t type, double length_km);
 
 /// Distance of each cell to the nearest cell whose byte is not zero, km; 1e9 without any.
+/// Arrays have one value per cell (`check_sizes`); Bug otherwise.
 std::vector<float> distance_to_marked_km(const Grid& grid, std::span<const std::uint8_t> marked);
 
 }  // namespace geo

@@ -13,7 +13,7 @@ namespace geo {
 /// The rules of plates as height maps (Viitanen 2012, chapter 7), which know of no map: the same on
 /// a torus and on a sphere. Heights: 1 is sea level.
 
-/// Which of two plates at a place goes down, or that both are too thick for it: the one with less
+/// Which of two plates at a place subducts, or that both are too thick for it: the one with less
 /// crust, if that is below sea level; of equals the older, and of twins the second.
 enum class RasterMeeting { first_sinks, second_sinks, both_stay };
 [[nodiscard]] inline RasterMeeting raster_meeting(const RasterCrust& first,
@@ -28,8 +28,8 @@ enum class RasterMeeting { first_sinks, second_sinks, both_stay };
   return first.height < 1.0F ? RasterMeeting::first_sinks : RasterMeeting::both_stay;
 }
 
-/// What a step takes from crust that goes down: `floor` at most. Of it r (1 - h) melts: water on
-/// top is what melts the mantle, so that the deeper what goes down, the more comes up.
+/// What a step takes from subducting crust: `floor` at most. Of it r (1 - h) melts: water on
+/// top is what melts the mantle, so that the deeper the subducting crust, the more magma.
 struct RasterSinking {
   float after, melt;
 };
@@ -39,7 +39,7 @@ struct RasterSinking {
   return {after, static_cast<float>(melting_ratio) * (height - after) * (1.0F - height)};
 }
 
-/// How far from where crust goes down its magma rises, along the lower plate's motion as the upper
+/// How far from the trench its magma rises, along the lower plate's motion as the upper
 /// one sees it: `reach` steps of that motion, plus a scatter of up to `scatter` to all sides, most
 /// of it near the middle. Vectors of two (torus) or three components (sphere); two words are noise.
 template <std::size_t n>
@@ -134,7 +134,7 @@ struct RasterSettings {
   double melting_ratio = 0.5;      ///< of subducted crust at depth 1 that rises as magma
   double speed = 1.0;              ///< of a new plate, cells per step
   double speed_spread = 0.5;       ///< relative, uniform
-  double arc_cells = 10.0;         ///< from where crust goes down to where its magma rises
+  double arc_cells = 10.0;         ///< from the trench to where magma rises
   double arc_scatter_cells = 3.0;
   double friction = 2.0;           ///< of folded crust over a plate's mass, in new plates' speed
   double spin = 0.0;               ///< fastest turn of a new plate, radians per step
@@ -154,11 +154,11 @@ struct RasterSettings {
   }
 };
 
-/// Books of crust, sums of heights over cells since the start.
+/// Budget of crust, sums of heights over cells since the start.
 struct RasterBudget {
   double start = 0.0;      ///< crust of the first map
   double created = 0.0;    ///< new floor where plates part
-  double subducted = 0.0;  ///< taken from plates that go down
+  double subducted = 0.0;  ///< taken from subducting plates
   double melted = 0.0;     ///< of that, what came up again
   double folded = 0.0;     ///< moved from smaller to larger continents
   double merged = 0.0;     ///< moved with continents from plate to plate

@@ -90,7 +90,7 @@ class RasterSphere {
   struct Arc {
     std::int32_t at;
     std::int16_t below, above;
-    std::int32_t from;  ///< sample of the upper plate where the lower one goes down
+    std::int32_t from;  ///< sample of the upper plate where the lower one subducts
     float melt;
   };
   struct Overlap {

@@ -113,7 +113,7 @@ class RasterSpherePlate {
   }
 
   /// Levels land: a lower neighbour takes a part of the step down to it, never below sea level, so
-  /// that relief spreads as far as by `strength` / 4 on a square lattice.
+  /// that height spreads as far as by `strength` / 4 on a square lattice.
   void erode(double strength);
   /// Drops empty pages and counts the mass anew; without crust the plate is no more.
   void tighten();

@@ -15,7 +15,7 @@ namespace geo {
 /// A step moves the plates, looks where they meet, and fills what they leave:
 ///  - Of two plates at a cell, ocean floor (height < 1) that is lower, or as low and older, loses
 ///    `ocean_crust`; `melting_ratio` (1 - h) of it rises some way inland along the relative motion.
-///  - What cannot go down meets as continents do: the larger of both continents takes
+///  - What cannot subduct collides as continents do: the larger of both continents takes
 ///    `folding_ratio` of the smaller one's crust there, and both plates lose speed,
 ///    friction * crust / mass.
 ///  - Continents that overlap by `overlap_cells` or by `overlap_relative` of the smaller one's area

@@ -29,14 +29,14 @@ struct PlateForces {
 inline constexpr double kSecondsPerMyr = 3.15576e13;
 
 /// Weight of a slab below each metre of its trench, N/m: 2 rho_m alpha Delta T sqrt(kappa t / pi) g
-/// L, t the age of the floor that goes down.
+/// L, t the age of the subducting floor.
 [[nodiscard]] inline double slab_weight_n_m(double age_myr, const PlateForces& k = {}) {
   const double cold_m =
       std::sqrt(k.diffusivity_m2_s * std::fmax(age_myr, 0.0) * kSecondsPerMyr / std::numbers::pi);
   return 2.0 * k.mantle_kg_m3 * k.expansion_k * k.contrast_k * cold_m * k.gravity_m_s2 * 1e3 *
          k.slab_km;
 }
-/// What of this weight W pulls the plate that goes down, W epsilon, and what draws the plate above
+/// What of this weight W pulls the subducting plate, W epsilon, and what draws the plate above
 /// to the trench by the flow that the slab drives in the mantle, W epsilon_s, N/m (Conrad &
 /// Lithgow-Bertelloni 2002).
 [[nodiscard]] inline double slab_pull_n_m(double age_myr, const PlateForces& k = {}) {

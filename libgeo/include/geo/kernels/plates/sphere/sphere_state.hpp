@@ -55,7 +55,7 @@ struct PlateLife {
   Origin origin = Origin::first;
   std::int16_t parent = -1;  ///< number of the plate of which it was a part
   double born_myr = 0.0;
-  double ended_myr = kLives;  ///< when it collided, or the last of it had gone below others
+  double ended_myr = kLives;  ///< when it collided, or the last of it had subducted
   std::int16_t joined = -1;   ///< number of the plate that it is part of since then
 
   static constexpr double kLives = std::numeric_limits<double>::infinity();
@@ -67,7 +67,7 @@ struct PlatePair {
   std::int8_t continent_top = -1;  ///< the same of their continents
   float last_contact_myr = -1e9F;
   float parted_myr = -1e9F;  ///< when a rift made them
-  float under_km = 0.0F;  ///< how far their continents had gone below each other up to resampling
+  float under_km = 0.0F;  ///< how far one continent had been thrust below the other at resampling
 };
 
 /// A plume of the mantle, below the plates and at rest.

@@ -27,7 +27,7 @@ struct SphereSettings {
   double arc_reach_km = 1800.0;      ///< of the uplift where the overriding crust is oceanic
   double elevation_weight = 1.0;     ///< power of the factor h in the uplift
   double fold_per_km = 0.002;        ///< beta of the fold direction, per km of relative motion
-  double slab_pull = 1e-3;           ///< epsilon, per Myr and 1000 km of front
+  double slab_pull = 1e-3;           ///< epsilon, per Myr and 1000 km of trench
   bool by_forces = false;            ///< motion balances forces, in place of that
   PlateForces force;
   double penetration_km = 300.0;      ///< of continents, before they collide
@@ -52,7 +52,7 @@ struct SphereSettings {
   double initiation_per_myr =
       0.01;  ///< rate at which 1000 km of old passive margin begin to subduct
   double initiation_age_myr = 120.0;     ///< from which floor at a passive margin is old
-  double initiation_speed_mm_yr = 50.0;  ///< at which such floor goes below its continent
+  double initiation_speed_mm_yr = 50.0;  ///< at which such floor subducts
   double coast_warp_km = 120.0;          ///< of crust that events change
   double mean_area_km2 = 1.27e7;         ///< A_0
   double smallest_piece_km2 = 5e5;       ///< detached pieces below join a neighbour
@@ -66,7 +66,7 @@ struct SphereSettings {
   // Rules of Driftworld in place of the paper's.
   bool rank_by_score = false;  ///< whole plates stay up by score(), not continents and young floor
   bool merge_plates = false;   ///< plates whose continents touch become one
-  bool add_uplifts = false;    ///< of all plates that go below one, not of the nearest alone
+  bool add_uplifts = false;    ///< of all subducting plates, not of the nearest alone
   bool fill_abyss = false;     ///< sediment piles on all floor below accretion_top_km
   bool rift_largest = false;   ///< only the largest plate rifts, into two, however much is land
   bool by_rivers = false;      ///< rivers carve and deposit, in place of erosion by height
@@ -86,8 +86,8 @@ struct SphereBudget {
   int collisions = 0, rifts = 0, subduction_initiations = 0;
   double area_error = 0.0;        ///< sum of the plates' areas over the sphere's, less 1
   double created_km2 = 0.0;       ///< new ocean floor
-  double consumed_km2 = 0.0;      ///< ocean floor that had gone below another plate
-  double buried_km2 = 0.0;        ///< continents that had gone below others
+  double consumed_km2 = 0.0;      ///< ocean floor that had subducted
+  double buried_km2 = 0.0;        ///< continents thrust below others
   double ocean_change_km2 = 0.0;  ///< of the oceanic area, measured
   double ocean_error_km2 = 0.0;   ///< created - consumed - turned into continent - change
   double emerged_km2 = 0.0;       ///< ocean floor that became continental
@@ -99,10 +99,10 @@ struct SphereBudget {
   double sea_floor_km3 = 0.0;   ///< laid on ocean floor by rivers
   double emerged_km3 = 0.0;     ///< of arcs when they became continental
   double stretched_km2 = 0.0;   ///< margins that broken continents grew
-  double swallowed_km3 = 0.0;   ///< taken by collisions from below and given back as mountains
+  double swallowed_km3 = 0.0;   ///< moved by collisions from roots into mountains
   double changed_km3 = 0.0;     ///< made or taken by change_crust
   double erupted_km3 = 0.0;     ///< that plumes laid on ocean floor
-  double lost_km3 = 0.0;        ///< gone below oceanic crust, or from roots that found no room
+  double lost_km3 = 0.0;        ///< subducted below floor, or from roots that found no room
   double resampling_km3 = 0.0;  ///< what interpolation added or took
 };
 
@@ -123,7 +123,7 @@ struct SphereEvent {
 /// over the sample nearest to it. Only samples in blocks that may touch another plate are asked.
 /// The top of an overlap is the continental crust, of two oceans the plate whose floor was younger
 /// when they met, of two continents the plate that carries more of it. From time to time all is
-/// resampled at the lattice's places (resampling), where new floor fills what has opened.
+/// resampled at the lattice's places, where new floor fills what has opened.
 ///
 /// Results do not depend on the number of threads. Cost: linear in samples.
 class SphereTectonics {
@@ -140,7 +140,7 @@ class SphereTectonics {
   void begin_step();
   /// One step of settings.law.step_myr.
   void advance();
-  /// Reads the crust anew at the places of the lattice and fills gaps with new floor.
+  /// Resamples the crust at the places of the lattice and fills gaps with new floor.
   void resample();
   /// Resamples unless the last step has; the budget is that of this alone.
   void finish();
@@ -193,22 +193,23 @@ class SphereTectonics {
   [[nodiscard]] const std::vector<Vector3>& rotations() const noexcept { return rotation_; }
   /// Sample of another plate that lies at the same place, or -1, as of the last step.
   [[nodiscard]] std::span<const std::int32_t> partners() const noexcept { return partner_; }
-  /// Whether a sample has gone below its partner.
+  /// Whether a sample lies below its partner.
   [[nodiscard]] std::span<const std::uint8_t> hidden() const noexcept { return hidden_; }
 
-  /// An edge of an overriding plate above one that goes down.
-  struct Front {
+  /// A sample at the edge of an overriding plate, above a subducting one: a trench, or where
+  /// continents meet the deformation front.
+  struct TrenchSample {
     std::int32_t sample;      ///< of the overriding plate
-    std::int16_t lower;       ///< plate that goes down
-    float lower_elevation_m;  ///< of what goes down there
+    std::int16_t lower;       ///< subducting plate
+    float lower_elevation_m;  ///< of its crust there
   };
-  [[nodiscard]] const std::vector<Front>& fronts() const noexcept { return fronts_; }
-  /// The nearest front of the same plate to each sample, or -1.
-  [[nodiscard]] std::span<const std::int32_t> nearest_front() const noexcept { return front_of_; }
+  [[nodiscard]] const std::vector<TrenchSample>& trenches() const noexcept { return trenches_; }
+  /// The nearest trench of the same plate to each sample, or -1.
+  [[nodiscard]] std::span<const std::int32_t> nearest_trench() const noexcept { return trench_of_; }
 
  private:
   class EdgeForces;
-  class FrontUplift;
+  class TrenchUplift;
   class GapHistory;
   class MovingSurface;
   void move();
@@ -216,11 +217,12 @@ class SphereTectonics {
   void rank_plates();
   void find_contacts();
   void decide_pairs();
-  void find_fronts();
-  void spread_fronts();
-  void spread(int plate, std::span<const std::int32_t> fronts, std::vector<std::int32_t>* reached);
+  void find_trenches();
+  void spread_trenches();
+  void spread(int plate, std::span<const std::int32_t> trenches,
+              std::vector<std::int32_t>* reached);
   [[nodiscard]] float farthest_chord2() const;
-  void add_uplifts(const FrontUplift& uplift);
+  void add_uplifts(const TrenchUplift& uplift);
   void raise();
   void erupt();
   struct Eruption {
@@ -287,16 +289,16 @@ class SphereTectonics {
   SpherePartition partition_;
   std::vector<Matrix3> frame_;     // of each plate
   std::vector<Vector3> rotation_;  // of each plate, rad/Myr
-  std::vector<std::int32_t> partner_, contacts_, front_of_;
+  std::vector<std::int32_t> partner_, contacts_, trench_of_;
   std::vector<std::uint8_t> hidden_;
-  std::vector<Front> fronts_;
+  std::vector<TrenchSample> trenches_;
   std::vector<double> score_;     // of each plate
   std::vector<float> uplift_km_;  // of each sample in a step, where uplifts add up
   std::vector<float> chord2_;
-  /// What spreading fronts asks of a sample, in one place of memory.
+  /// What spreading trenches asks of a sample, in one place of memory.
   struct Spot {
-    float x, y, z, chord2;  // of the nearest front so far
-    std::int32_t front;
+    float x, y, z, chord2;  // of the nearest trench so far
+    std::int32_t trench;
     std::int16_t plate;  // -1 also below another plate
   };
   std::vector<Spot> spots_;

@@ -1,4 +1,4 @@
-#include "geo/kernels/plates/raster/raster_relief.hpp"
+#include "geo/kernels/plates/raster/raster_elevation.hpp"
 
 #include <algorithm>
 #include <array>
@@ -100,12 +100,12 @@ RasterOrogeny raster_orogeny(const RasterCrust& crust, double now, const RasterS
           (now - crust.folded / 2) * scale.step_myr};
 }
 
-RasterRelief raster_relief(const RasterTectonics& model, const RasterScale& scale) {
+RasterElevation raster_elevation(const RasterTectonics& model, const RasterScale& scale) {
   const RasterWorld& world = model.settings().world;
   const double ocean_crust = model.settings().ocean_crust;
   const RasterMap map = model.map();
   const auto now = static_cast<double>(model.steps());
-  RasterRelief relief;
+  RasterElevation relief;
   relief.world = world;
   relief.plate = map.plate;
   const std::size_t n = map.crust.size();

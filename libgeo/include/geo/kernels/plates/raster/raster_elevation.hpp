@@ -50,7 +50,7 @@ struct RasterOrogeny {
                                            const RasterScale& scale);
 
 /// A raster world in the vocabulary of the planet, one value a cell.
-struct RasterRelief {
+struct RasterElevation {
   RasterWorld world;
   std::vector<float> height, elevation_m, thickness_m, age_myr, orogeny_age_myr;
   std::vector<std::int8_t> orogeny;  ///< OrogenyType
@@ -59,7 +59,7 @@ struct RasterRelief {
   /// age, each smoothed over a few cells.
   std::vector<float> fold_x, fold_y, ridge_x, ridge_y;
 };
-RasterRelief raster_relief(const RasterTectonics& model, const RasterScale& scale);
+RasterElevation raster_elevation(const RasterTectonics& model, const RasterScale& scale);
 
 /// Velocity of a plate at a place of the world, cells per step.
 struct RasterVelocity {
