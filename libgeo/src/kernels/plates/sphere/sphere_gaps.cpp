@@ -4,12 +4,13 @@
 
 #include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/crust/ocean_depth.hpp"
-#include "geo/kernels/plates/sphere/sphere_tectonics.hpp"
+#include "sphere_steps.hpp"
 
 namespace geo {
+namespace {
 
 /// How plates have moved since the last resampling, and so when what lies open now has opened.
-class SphereTectonics::GapHistory {
+class GapHistory {
  public:
   explicit GapHistory(const SphereState& state) : time_myr_(state.past_myr) {
     time_myr_.push_back(state.time_myr);
@@ -64,13 +65,15 @@ class SphereTectonics::GapHistory {
   std::vector<std::vector<Matrix3>> frames_;  // of each plate at each of the times
 };
 
+}  // namespace
+
 /// New floor where no plate is: each place hears of the nearest sample of the two nearest plates;
 /// the ridge runs half way between them.
-void SphereTectonics::fill_gaps(SphereCrust& now, std::vector<std::int16_t>& owner,
-                                std::span<const std::int16_t> body) {
-  const FibonacciSphere& samples = mesh_->samples();
-  const SphereSettings& s = settings_;
-  const std::int32_t n = mesh_->size();
+void fill_gaps(SphereTectonics& model, SphereCrust& now, std::vector<std::int16_t>& owner,
+               std::span<const std::int16_t> body) {
+  const FibonacciSphere& samples = model.mesh->samples();
+  const SphereSettings& s = model.settings;
+  const std::int32_t n = model.mesh->size();
   struct Sides {
     std::array<std::int32_t, 2> source{-1, -1};
     std::array<float, 2> chord2{9.0F, 9.0F};
@@ -103,7 +106,7 @@ void SphereTectonics::fill_gaps(SphereCrust& now, std::vector<std::int16_t>& own
   };
   for (const std::int32_t i : gaps) {
     bool reached = false;
-    for (const std::int32_t j : mesh_->neighbours(i)) {
+    for (const std::int32_t j : model.mesh->neighbours(i)) {
       if (owner[j] >= 0) reached = offer(i, j) || reached;
     }
     if (reached) queue.push_back(i);
@@ -111,7 +114,7 @@ void SphereTectonics::fill_gaps(SphereCrust& now, std::vector<std::int16_t>& own
   while (!queue.empty()) {
     next.clear();
     for (const std::int32_t i : queue) {
-      for (const std::int32_t j : mesh_->neighbours(i)) {
+      for (const std::int32_t j : model.mesh->neighbours(i)) {
         if (owner[j] >= 0) continue;
         bool reached = false;
         for (const std::int32_t source : sides[number[i]].source) {
@@ -122,7 +125,7 @@ void SphereTectonics::fill_gaps(SphereCrust& now, std::vector<std::int16_t>& own
     }
     queue.swap(next);
   }
-  const GapHistory history(state_);
+  const GapHistory history(model.state);
   const auto gap_count = static_cast<std::int32_t>(gaps.size());
   std::vector<std::int16_t> nearest_plate(gaps.size());
   ParallelErrors errors;
@@ -131,8 +134,8 @@ void SphereTectonics::fill_gaps(SphereCrust& now, std::vector<std::int16_t>& own
     errors.guard([&] {
       const std::int32_t i = gaps[k];
       const auto [first, second] = sides[k].source;
-      const double near_km = distance_km(i, first);
-      const double far_km = second >= 0 ? distance_km(i, second) : near_km;
+      const double near_km = model.distance_km(i, first);
+      const double far_km = second >= 0 ? model.distance_km(i, second) : near_km;
       const double ridge_km = 0.5 * (far_km - near_km);
       const double share = ridge_share(ridge_km, near_km);
       const double mean_km =
@@ -163,7 +166,7 @@ void SphereTectonics::fill_gaps(SphereCrust& now, std::vector<std::int16_t>& own
   errors.rethrow();
   std::vector<std::int32_t> nearest(gaps.size());
   for (std::int32_t k = 0; k < gap_count; ++k) nearest[k] = sides[k].source[0];
-  stretch_margins(gaps, nearest, now, owner);
+  stretch_margins(model, gaps, nearest, now, owner);
   for (std::int32_t k = 0; k < gap_count; ++k) owner[gaps[k]] = nearest_plate[k];
 }
 

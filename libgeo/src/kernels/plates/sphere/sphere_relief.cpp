@@ -4,8 +4,8 @@
 
 #include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/crust/ocean_depth.hpp"
-#include "geo/kernels/plates/sphere/sphere_tectonics.hpp"
 #include "sample_sums.hpp"
+#include "sphere_steps.hpp"
 
 namespace geo {
 namespace {
@@ -17,20 +17,17 @@ constexpr double kFolding = 0.35;
 /// A collision younger than this is not taken for an arc's work.
 constexpr float kYoung_myr = 40.0F;
 
-}  // namespace
-
 /// What the trenches of a step do to the plates above them.
-class SphereTectonics::TrenchUplift {
+class TrenchUplift {
  public:
   explicit TrenchUplift(const SphereTectonics& model)
-      : m_(model), relative_(model.trenches_.size()), lift_(model.trenches_.size()) {
-    const SphereSettings& s = m_.settings_;
-    for (std::size_t k = 0; k < m_.trenches_.size(); ++k) {
-      const TrenchSample& trench = m_.trenches_[k];
-      const int own = m_.state_.crust.plate[trench.sample];
-      relative_[k] =
-          scaled(back(m_.frame_[own], add(m_.rotation_[trench.lower], m_.rotation_[own], -1.0)),
-                 s.radius_km);
+      : m_(model), relative_(model.margins.trenches.size()), lift_(model.margins.trenches.size()) {
+    const SphereSettings& s = m_.settings;
+    for (std::size_t k = 0; k < m_.margins.trenches.size(); ++k) {
+      const TrenchSample& trench = m_.margins.trenches[k];
+      const int own = m_.state.crust.plate[trench.sample];
+      relative_[k] = scaled(
+          back(m_.frame[own], add(m_.rotation[trench.lower], m_.rotation[own], -1.0)), s.radius_km);
       lift_[k] = std::pow(
           uplift_by_elevation(1e-3 * trench.lower_elevation_m, s.law.trench_km, s.law.summit_km),
           s.elevation_weight);
@@ -41,12 +38,12 @@ class SphereTectonics::TrenchUplift {
     Vector3 speed;  // of the plate that subducts below the sample, mm/yr, in the frame of its plate
   };
   [[nodiscard]] Work at(std::int32_t i, std::int32_t k) const {
-    const SphereSettings& s = m_.settings_;
+    const SphereSettings& s = m_.settings;
     const TectonicConstants& law = s.law;
-    Work work{m_.distance_km(i, m_.trenches_[k].sample), 0.0, 0.0,
-              cross(relative_[k], m_.mesh_->samples().position(i))};
+    Work work{m_.distance_km(i, m_.margins.trenches[k].sample), 0.0, 0.0,
+              cross(relative_[k], m_.mesh->samples().position(i))};
     const double reach_km =
-        m_.state_.crust.continental[i] != 0 ? law.subduction_distance_km : s.arc_reach_km;
+        m_.state.crust.continental[i] != 0 ? law.subduction_distance_km : s.arc_reach_km;
     work.f =
         s.driftworld_uplift
             ? std::max(0.0, uplift_by_distance_driftworld(work.d_km, s.uplift_control_km, reach_km))
@@ -63,30 +60,30 @@ class SphereTectonics::TrenchUplift {
 };
 
 /// The sum of what all plates that subduct below one do to it, each by its own nearest trench.
-void SphereTectonics::add_uplifts(const TrenchUplift& uplift) {
-  const std::size_t plates = state_.plates.size();
+std::vector<float> summed_uplift_km(const SphereTectonics& model, const TrenchUplift& uplift) {
+  const std::vector<TrenchSample>& trenches = model.margins.trenches;
+  const std::size_t plates = model.state.plates.size();
   std::vector<std::vector<std::int32_t>> of_pair(plates * plates);
-  for (std::size_t k = 0; k < trenches_.size(); ++k) {
-    const auto upper = static_cast<std::size_t>(state_.crust.plate[trenches_[k].sample]);
-    const auto lower = static_cast<std::size_t>(state_.root(trenches_[k].lower));
+  for (std::size_t k = 0; k < trenches.size(); ++k) {
+    const auto upper = static_cast<std::size_t>(model.state.crust.plate[trenches[k].sample]);
+    const auto lower = static_cast<std::size_t>(model.state.root(trenches[k].lower));
     of_pair[upper * plates + lower].push_back(static_cast<std::int32_t>(k));
   }
-  uplift_km_.assign(state_.crust.plate.size(), 0.0F);
-  const float most = farthest_chord2();
+  std::vector<float> uplift_km(model.state.crust.plate.size(), 0.0F);
+  const float most = subduction_chord2(model.settings);
+  std::vector<TrenchSpot> spots = spots_of_samples(model);
   const auto forget = [&](std::int32_t i) {
-    spots_[i].trench = -1;
-    spots_[i].chord2 = most;
+    spots[i].trench = -1;
+    spots[i].chord2 = most;
   };
-#pragma omp parallel for schedule(static)
-  for (std::int32_t i = 0; i < mesh_->size(); ++i) forget(i);
   const auto raise_plate = [&](std::size_t p) {
     std::vector<std::int32_t> reached;
     for (std::size_t q = 0; q < plates; ++q) {
       reached.clear();
-      spread(static_cast<int>(p), of_pair[p * plates + q], &reached);
+      hand_on_trenches(model, static_cast<int>(p), of_pair[p * plates + q], spots, &reached);
       for (const std::int32_t i : reached) {
-        const double rate_mm_yr = uplift.at(i, spots_[i].trench).rate_mm_yr;
-        uplift_km_[i] += static_cast<float>(rate_mm_yr * settings_.law.step_myr);
+        const double rate_mm_yr = uplift.at(i, spots[i].trench).rate_mm_yr;
+        uplift_km[i] += static_cast<float>(rate_mm_yr * model.settings.law.step_myr);
         forget(i);
       }
     }
@@ -95,20 +92,24 @@ void SphereTectonics::add_uplifts(const TrenchUplift& uplift) {
 #pragma omp parallel for schedule(dynamic, 1)
   for (std::size_t p = 0; p < plates; ++p) errors.guard([&] { raise_plate(p); });
   errors.rethrow();
+  return uplift_km;
 }
 
+}  // namespace
+
 /// Uplift of overriding plates, erosion, damping, accretion, ageing: all that goes on everywhere.
-void SphereTectonics::raise() {
-  const SphereSettings& s = settings_;
+void raise_crust(SphereTectonics& model) {
+  const SphereSettings& s = model.settings;
   const TectonicConstants& law = s.law;
-  SphereCrust& crust = state_.crust;
+  SphereCrust& crust = model.state.crust;
   const auto step_myr = static_cast<float>(law.step_myr);
   const auto share_gone = [&](double time_myr) {
     return time_myr > 0.0 ? -std::expm1(-law.step_myr / time_myr) : 0.0;
   };
   const double decayed = share_gone(s.swell_decay_myr), worn = share_gone(s.island_wear_myr);
-  const TrenchUplift uplift(*this);
-  if (s.add_uplifts) add_uplifts(uplift);
+  const TrenchUplift uplift(model);
+  std::vector<float> summed_km;
+  if (s.add_uplifts) summed_km = summed_uplift_km(model, uplift);
   enum { kRaised, kEroded, kEmerged, kEmergedArea, kAccreted, kSums };
   constexpr std::int32_t kBlock = 4096;
   const std::int32_t n = crust.size(), blocks = (n + kBlock - 1) / kBlock;
@@ -120,10 +121,10 @@ void SphereTectonics::raise() {
       if (crust.plate[i] < 0) continue;
       double z_km = 1e-3 * crust.elevation_m[i], raised_km = 0.0;
       bool wedge = false, is_arc = false;
-      if (const std::int32_t k = trench_of_[i]; k >= 0) {
+      if (const std::int32_t k = model.margins.nearest_trench[i]; k >= 0) {
         const auto work = uplift.at(i, k);
         const double rise_km =
-            s.add_uplifts ? static_cast<double>(uplift_km_[i]) : work.rate_mm_yr * law.step_myr;
+            s.add_uplifts ? static_cast<double>(summed_km[i]) : work.rate_mm_yr * law.step_myr;
         raised_km = std::max(0.0, std::min(rise_km, law.summit_km - z_km));
         wedge = work.d_km < s.accretion_width_km;
         is_arc = work.f > kFolding && raised_km > 0.0;
@@ -187,11 +188,11 @@ void SphereTectonics::raise() {
     }
   }
   for (const auto& sum : sums) {
-    budget_.raised_km3 += sample_km2() * sum[kRaised];
-    budget_.eroded_km3 += sample_km2() * sum[kEroded];
-    budget_.emerged_km3 += sample_km2() * sum[kEmerged];
-    budget_.accreted_km3 += sample_km2() * sum[kAccreted];
-    budget_.emerged_km2 += sample_km2() * sum[kEmergedArea];
+    model.budget.raised_km3 += model.sample_km2() * sum[kRaised];
+    model.budget.eroded_km3 += model.sample_km2() * sum[kEroded];
+    model.budget.emerged_km3 += model.sample_km2() * sum[kEmerged];
+    model.budget.accreted_km3 += model.sample_km2() * sum[kAccreted];
+    model.budget.emerged_km2 += model.sample_km2() * sum[kEmergedArea];
   }
 }
 
