@@ -9,7 +9,6 @@
 namespace geo {
 namespace {
 
-constexpr auto kHimalayan = static_cast<std::int8_t>(OrogenyType::himalayan);
 /// A plate that would keep less than this share of the mean area goes along with its terrane.
 constexpr double kRemnant = 0.05;
 
@@ -50,95 +49,6 @@ double penetration_km(const SphereTectonics& model, std::int32_t sample) {
   return model.settings.radius_km * std::clamp(gone - 0.5 * half, 0.0, way);
 }
 
-/// Mountains of the collided plate around a terrane. The crust that the terrane had pushed below is
-/// consumed and given back as their roots: the profile and the reach are those of 4.2, its height
-/// at most `surge_km`, and its reach drawn in until its volume is what was swallowed.
-void surge(SphereTectonics& model, int upper, std::span<const std::int32_t> terrane,
-           const Vector3& centroid, double area_km2, double speed_mm_yr) {
-  SphereCrust& crust = model.state.crust;
-  const FibonacciSphere& samples = model.mesh->samples();
-  const SphereSettings& s = model.settings;
-  double swallowed_km3 = 0.0;
-  std::vector<std::int32_t> queue, next, reached;
-  std::vector<float> chord2_to(crust.plate.size(), 9.0F);
-  std::vector<std::int32_t> source(crust.plate.size(), -1);
-  for (const std::int32_t i : terrane) {
-    const std::int32_t above = model.margins.partner[i];
-    if (model.margins.hidden[i] == 0 || above < 0 || crust.plate[above] != upper) continue;
-    swallowed_km3 += model.sample_km2() * 1e-3 * crust.thickness_m[i];
-    crust.plate[i] = -1;
-    if (source[above] >= 0) continue;
-    source[above] = above;
-    chord2_to[above] = 0.0F;
-    queue.push_back(above);
-  }
-  const double reach_km = collision_radius_km(speed_mm_yr, area_km2, s.mean_area_km2, s.law);
-  const double half = std::sin(0.5 * std::min(reach_km / s.radius_km, 3.1));
-  const auto most = static_cast<float>(4.0 * half * half);
-  reached = queue;
-  while (!queue.empty()) {
-    next.clear();
-    for (const std::int32_t i : queue) {
-      for (const std::int32_t j : model.mesh->neighbours(i)) {
-        if (crust.plate[j] != upper || crust.continental[j] == 0 || source[j] == source[i])
-          continue;
-        const Vector3 way = add(samples.position(j), samples.position(source[i]), -1.0);
-        const auto chord2 = static_cast<float>(dot(way, way));
-        if (chord2 >= most || chord2 >= chord2_to[j]) continue;
-        if (source[j] < 0) reached.push_back(j);
-        source[j] = source[i];
-        chord2_to[j] = chord2;
-        next.push_back(j);
-      }
-    }
-    queue.swap(next);
-  }
-  const double height_km =
-      std::min(s.surge_km, collision_surge_km(area_km2, 0.0, std::max(reach_km, 1.0), s.law));
-  std::vector<double> far_km;
-  for (const std::int32_t i : reached) far_km.push_back(model.distance_km(i, source[i]));
-  const auto lifted_km = [&](std::size_t k, double radius_km) {
-    const double above = std::max(0.0, s.law.summit_km - 1e-3 * crust.elevation_m[reached[k]]);
-    return std::min(above, height_km * collision_profile(far_km[k], radius_km));
-  };
-  const auto volume_km3 = [&](double radius_km) {
-    double sum = 0.0;
-    for (std::size_t k = 0; k < reached.size(); ++k) sum += lifted_km(k, radius_km);
-    return model.sample_km2() * s.rebound * sum;
-  };
-  double low = 0.0, high = std::max(reach_km, 1.0);
-  if (volume_km3(high) > swallowed_km3) {
-    for (int k = 0; k < 30; ++k) {
-      const double middle = 0.5 * (low + high);
-      (volume_km3(middle) > swallowed_km3 ? high : low) = middle;
-    }
-    high = low;
-  }
-  // What the profile does not take thickens the crust above what was swallowed.
-  const double given_km3 = volume_km3(high);
-  const double rest_km = reached.empty()
-                             ? 0.0
-                             : (swallowed_km3 - given_km3) /
-                                   (model.sample_km2() * static_cast<double>(reached.size()));
-  const Vector3 q = back(model.frame[upper], centroid);
-  WholeGains gains;
-  for (std::size_t k = 0; k < reached.size(); ++k) {
-    const std::int32_t i = reached[k];
-    const double lifted = lifted_km(k, high);
-    const double thicker_m = 1e3 * (s.rebound * lifted + rest_km);
-    const double raised_m = height_after(crust.elevation_m[i], thicker_m, s.rebound);
-    crust.elevation_m[i] = static_cast<float>(std::min(1e3 * s.law.summit_km, raised_m));
-    gains.put(crust.thickness_m[i], thicker_m);
-    if (lifted < 0.02) continue;
-    crust.orogeny[i] = kHimalayan;
-    crust.orogeny_age_myr[i] = 0.0F;
-    const Vector3 fold = collision_fold(samples.position(i), q);
-    for (int c = 0; c < 3; ++c) crust.fold[i][c] = static_cast<float>(fold[c]);
-  }
-  model.budget.swallowed_km3 += swallowed_km3;
-  if (reached.empty()) model.budget.lost_km3 += swallowed_km3;
-}
-
 /// Slab break, suture and surge: the terrane that holds `sample` comes to its partner's plate.
 void collide(SphereTectonics& model, std::int32_t sample) {
   SphereCrust& crust = model.state.crust;
@@ -153,7 +63,11 @@ void collide(SphereTectonics& model, std::int32_t sample) {
   const Vector3 relative =
       add(driven_rotation(model.state, lower), driven_rotation(model.state, upper), -1.0);
   const double speed_mm_yr = model.settings.radius_km * length(cross(relative, centroid));
-  surge(model, upper, terrane, centroid, area_km2, speed_mm_yr);
+  surge(model, {.upper = upper,
+                .terrane = terrane,
+                .centroid = centroid,
+                .area_km2 = area_km2,
+                .speed_mm_yr = speed_mm_yr});
   model.state.pair(lower, model.state.root(upper)).under_km = 0.0F;
 
   SpherePlate body = model.state.plates[lower];

@@ -95,104 +95,145 @@ std::vector<float> summed_uplift_km(const SphereTectonics& model, const TrenchUp
   return uplift_km;
 }
 
+/// What a step does to crust everywhere: uplift of overriding plates, erosion, damping, accretion,
+/// ageing.
+class CrustStep {
+ public:
+  enum Sum { kRaised, kEroded, kEmerged, kEmergedArea, kAccreted, kSums };
+  using Sums = std::array<double, kSums>;
+
+  explicit CrustStep(SphereTectonics& model)
+      : s_(model.settings),
+        law_(s_.law),
+        crust_(model.state.crust),
+        nearest_trench_(model.margins.nearest_trench),
+        uplift_(model),
+        step_myr_(static_cast<float>(law_.step_myr)),
+        decayed_(share_gone(s_.swell_decay_myr)),
+        worn_(share_gone(s_.island_wear_myr)) {
+    if (s_.add_uplifts) summed_km_ = summed_uplift_km(model, uplift_);
+  }
+
+  void pass_over(std::int32_t i, Sums& sum) {
+    if (crust_.plate[i] < 0) return;
+    const double z_km = 1e-3 * crust_.elevation_m[i];
+    const Overriding above = above_trench(i, z_km);
+    const double after_km = crust_.continental[i] != 0
+                                ? continent_after(i, z_km, above.raised_km, sum)
+                                : floor_after(i, z_km, above, sum);
+    crust_.elevation_m[i] = static_cast<float>(1e3 * after_km);
+  }
+
+ private:
+  /// What lies near a trench of its plate.
+  struct Overriding {
+    double raised_km = 0.0;
+    bool is_wedge = false, is_arc = false;
+  };
+
+  [[nodiscard]] double share_gone(double time_myr) const {
+    return time_myr > 0.0 ? -std::expm1(-law_.step_myr / time_myr) : 0.0;
+  }
+  [[nodiscard]] Overriding above_trench(std::int32_t i, double z_km) {
+    const std::int32_t k = nearest_trench_[i];
+    if (k < 0) return {};
+    const TrenchUplift::Work work = uplift_.at(i, k);
+    const double rise_km =
+        s_.add_uplifts ? static_cast<double>(summed_km_[i]) : work.rate_mm_yr * law_.step_myr;
+    const double raised_km = std::max(0.0, std::min(rise_km, law_.summit_km - z_km));
+    if (work.f > kFolding) {
+      turn_fold(i, work.speed);
+      const bool collided =
+          crust_.orogeny[i] == kHimalayan && crust_.orogeny_age_myr[i] < kYoung_myr;
+      if (crust_.continental[i] != 0 && z_km + raised_km > 0.0 && !collided) {
+        crust_.orogeny[i] = kAndean;
+        crust_.orogeny_age_myr[i] = -step_myr_;  // 0 when this step has passed
+      }
+    }
+    return {raised_km, work.d_km<s_.accretion_width_km, work.f> kFolding && raised_km > 0.0};
+  }
+  void turn_fold(std::int32_t i, const Vector3& speed) {
+    Vector3 fold{crust_.fold[i][0], crust_.fold[i][1], crust_.fold[i][2]};
+    fold = turned_fold(fold, speed, s_.fold_per_km, law_.step_myr);
+    const double size = std::max(1.0, length(fold));
+    for (int c = 0; c < 3; ++c) crust_.fold[i][c] = static_cast<float>(fold[c] / size);
+  }
+  /// Height after uplift and erosion, which thicken and thin the crust.
+  double continent_after(std::int32_t i, double z_km, double raised_km, Sums& sum) {
+    const bool wears = !s_.by_rivers && (!s_.wears_land_alone || z_km > 0.0);
+    const double worn_km = wears ? erosion_km(z_km, law_) : 0.0, top_km = z_km + raised_km;
+    const double thicker_km = s_.rebound * (dry_height(top_km) - dry_height(z_km));
+    const double thinner_km = s_.rebound * (dry_height(top_km) - dry_height(top_km + worn_km));
+    sum[kRaised] += 1e-3 * put(crust_.thickness_m[i], 1e3 * thicker_km);
+    sum[kEroded] -= 1e-3 * put(crust_.thickness_m[i], -1e3 * thinner_km);
+    crust_.orogeny_age_myr[i] += step_myr_;
+    return top_km + worn_km;
+  }
+  /// Height after uplift, sinking, wear of islands and accretion; what emerges above a trench
+  /// becomes continental.
+  double floor_after(std::int32_t i, double z_km, const Overriding& above, Sums& sum) {
+    double sunk_km = sunk_at(i, z_km, above.is_arc);
+    if (z_km > 0.0) {
+      const double worn_km = z_km * worn_;
+      sunk_km -= worn_km;
+      crust_.thickness_m[i] -= static_cast<float>(1e3 * worn_km);
+    }
+    z_km += above.raised_km + sunk_km;
+    if ((above.is_wedge || s_.fill_abyss) && z_km < s_.accretion_top_km) {
+      const double piled_km = std::min(s_.accretion_top_km, z_km + accretion_km(law_));
+      sum[kAccreted] += piled_km - z_km;
+      z_km = piled_km;
+    }
+    crust_.age_myr[i] += step_myr_;
+    if (z_km > 0.0 && above.raised_km > 0.0) emerge(i, sum);
+    return z_km;
+  }
+  /// How far floor sinks in the step, less than 0. By age, what volcanoes have laid on it subsides
+  /// with it and what has lifted it from below decays.
+  [[nodiscard]] double sunk_at(std::int32_t i, double z_km, bool is_arc) const {
+    if (!s_.floor_by_age) return damping_km(z_km, law_);
+    const double age = crust_.age_myr[i];
+    const double plain_km = 1e-3 * (-ocean_depth_m(age) + crust_.thickness_m[i]) - s_.oceanic_km;
+    return 1e-3 * (ocean_depth_m(age) - ocean_depth_m(age + law_.step_myr)) -
+           (is_arc ? 0.0 : (z_km - plain_km) * decayed_);
+  }
+  void emerge(std::int32_t i, Sums& sum) {
+    crust_.continental[i] = 1;
+    crust_.orogeny[i] = kAndean;
+    crust_.orogeny_age_myr[i] = 0.0F;
+    crust_.thickness_m[i] = static_cast<float>(1e3 * s_.arc_km);
+    sum[kEmerged] += 1e-3 * static_cast<double>(crust_.thickness_m[i]);
+    sum[kEmergedArea] += 1.0;
+  }
+
+  const SphereSettings& s_;
+  const TectonicConstants& law_;
+  SphereCrust& crust_;
+  const std::vector<std::int32_t>& nearest_trench_;
+  TrenchUplift uplift_;
+  std::vector<float> summed_km_;  // of each sample, where uplifts add up
+  float step_myr_;
+  double decayed_, worn_;  // shares of a swell and of an island that go in a step
+};
+
 }  // namespace
 
-/// Uplift of overriding plates, erosion, damping, accretion, ageing: all that goes on everywhere.
 void raise_crust(SphereTectonics& model) {
-  const SphereSettings& s = model.settings;
-  const TectonicConstants& law = s.law;
-  SphereCrust& crust = model.state.crust;
-  const auto step_myr = static_cast<float>(law.step_myr);
-  const auto share_gone = [&](double time_myr) {
-    return time_myr > 0.0 ? -std::expm1(-law.step_myr / time_myr) : 0.0;
-  };
-  const double decayed = share_gone(s.swell_decay_myr), worn = share_gone(s.island_wear_myr);
-  const TrenchUplift uplift(model);
-  std::vector<float> summed_km;
-  if (s.add_uplifts) summed_km = summed_uplift_km(model, uplift);
-  enum { kRaised, kEroded, kEmerged, kEmergedArea, kAccreted, kSums };
+  CrustStep step(model);
   constexpr std::int32_t kBlock = 4096;
-  const std::int32_t n = crust.size(), blocks = (n + kBlock - 1) / kBlock;
-  std::vector<std::array<double, kSums>> sums(blocks, std::array<double, kSums>{});
+  const std::int32_t n = model.state.crust.size(), blocks = (n + kBlock - 1) / kBlock;
+  std::vector<CrustStep::Sums> sums(blocks, CrustStep::Sums{});
 #pragma omp parallel for schedule(dynamic, 4)
   for (std::int32_t block = 0; block < blocks; ++block) {
-    auto& sum = sums[block];
-    for (std::int32_t i = block * kBlock; i < std::min(n, (block + 1) * kBlock); ++i) {
-      if (crust.plate[i] < 0) continue;
-      double z_km = 1e-3 * crust.elevation_m[i], raised_km = 0.0;
-      bool wedge = false, is_arc = false;
-      if (const std::int32_t k = model.margins.nearest_trench[i]; k >= 0) {
-        const auto work = uplift.at(i, k);
-        const double rise_km =
-            s.add_uplifts ? static_cast<double>(summed_km[i]) : work.rate_mm_yr * law.step_myr;
-        raised_km = std::max(0.0, std::min(rise_km, law.summit_km - z_km));
-        wedge = work.d_km < s.accretion_width_km;
-        is_arc = work.f > kFolding && raised_km > 0.0;
-        if (work.f > kFolding) {
-          Vector3 fold{crust.fold[i][0], crust.fold[i][1], crust.fold[i][2]};
-          fold = turned_fold(fold, work.speed, s.fold_per_km, law.step_myr);
-          const double size = std::max(1.0, length(fold));
-          for (int c = 0; c < 3; ++c) crust.fold[i][c] = static_cast<float>(fold[c] / size);
-          const bool collided =
-              crust.orogeny[i] == kHimalayan && crust.orogeny_age_myr[i] < kYoung_myr;
-          if (crust.continental[i] != 0 && z_km + raised_km > 0.0 && !collided) {
-            crust.orogeny[i] = kAndean;
-            crust.orogeny_age_myr[i] = -step_myr;  // 0 when this step has passed
-          }
-        }
-      }
-      if (crust.continental[i] != 0) {
-        const bool wears = !s.by_rivers && (!s.wears_land_alone || z_km > 0.0);
-        const double worn_km = wears ? erosion_km(z_km, law) : 0.0, top_km = z_km + raised_km;
-        const double thicker_km = s.rebound * (dry_height(top_km) - dry_height(z_km));
-        const double thinner_km = s.rebound * (dry_height(top_km) - dry_height(top_km + worn_km));
-        z_km = top_km + worn_km;
-        sum[kRaised] += 1e-3 * put(crust.thickness_m[i], 1e3 * thicker_km);
-        sum[kEroded] -= 1e-3 * put(crust.thickness_m[i], -1e3 * thinner_km);
-        crust.orogeny_age_myr[i] += step_myr;
-      } else {
-        const double age = crust.age_myr[i];
-        double sunk_km = 0.0;
-        if (s.floor_by_age) {
-          // What volcanoes have laid on floor subsides with it; what has lifted it from below
-          // decays.
-          const double plain_km =
-              1e-3 * (-ocean_depth_m(age) + crust.thickness_m[i]) - s.oceanic_km;
-          sunk_km = 1e-3 * (ocean_depth_m(age) - ocean_depth_m(age + law.step_myr)) -
-                    (is_arc ? 0.0 : (z_km - plain_km) * decayed);
-        } else {
-          sunk_km = damping_km(z_km, law);
-        }
-        if (z_km > 0.0) {
-          const double worn_km = z_km * worn;
-          sunk_km -= worn_km;
-          crust.thickness_m[i] -= static_cast<float>(1e3 * worn_km);
-        }
-        z_km += raised_km + sunk_km;
-        if ((wedge || s.fill_abyss) && z_km < s.accretion_top_km) {
-          const double piled_km = std::min(s.accretion_top_km, z_km + accretion_km(law));
-          sum[kAccreted] += piled_km - z_km;
-          z_km = piled_km;
-        }
-        crust.age_myr[i] += step_myr;
-        if (z_km > 0.0 && raised_km > 0.0) {
-          crust.continental[i] = 1;
-          crust.orogeny[i] = kAndean;
-          crust.orogeny_age_myr[i] = 0.0F;
-          crust.thickness_m[i] = static_cast<float>(1e3 * s.arc_km);
-          sum[kEmerged] += 1e-3 * static_cast<double>(crust.thickness_m[i]);
-          sum[kEmergedArea] += 1.0;
-        }
-      }
-      crust.elevation_m[i] = static_cast<float>(1e3 * z_km);
-    }
+    const std::int32_t end = std::min(n, (block + 1) * kBlock);
+    for (std::int32_t i = block * kBlock; i < end; ++i) step.pass_over(i, sums[block]);
   }
-  for (const auto& sum : sums) {
-    model.budget.raised_km3 += model.sample_km2() * sum[kRaised];
-    model.budget.eroded_km3 += model.sample_km2() * sum[kEroded];
-    model.budget.emerged_km3 += model.sample_km2() * sum[kEmerged];
-    model.budget.accreted_km3 += model.sample_km2() * sum[kAccreted];
-    model.budget.emerged_km2 += model.sample_km2() * sum[kEmergedArea];
+  for (const CrustStep::Sums& sum : sums) {
+    model.budget.raised_km3 += model.sample_km2() * sum[CrustStep::kRaised];
+    model.budget.eroded_km3 += model.sample_km2() * sum[CrustStep::kEroded];
+    model.budget.emerged_km3 += model.sample_km2() * sum[CrustStep::kEmerged];
+    model.budget.accreted_km3 += model.sample_km2() * sum[CrustStep::kAccreted];
+    model.budget.emerged_km2 += model.sample_km2() * sum[CrustStep::kEmergedArea];
   }
 }
 

@@ -55,6 +55,167 @@ Reading read_around(const SphereMesh& mesh, const SphereCrust& crust, const Vect
   return reading;
 }
 
+/// The crust that a resampling makes.
+struct NewCrust {
+  SphereCrust crust;
+  std::vector<std::int16_t> owner;  // of each sample, what moves as one; -1 in gaps
+  std::vector<std::int16_t> body;   // and what has moved as one so far
+};
+
+/// Reads the crust of all plates at the places of the lattice.
+class CrustReader {
+ public:
+  explicit CrustReader(const SphereTectonics& model)
+      : m_(model), before_(model.state.crust), root_(model.state.plates.size()) {
+    const std::int32_t n = m_.mesh->size();
+    now_.crust.resize(n);
+    now_.owner.assign(n, -1);
+    now_.body.assign(n, -1);
+    for (int p = 0; p < std::ssize(root_); ++p) root_[p] = m_.state.root(p);
+  }
+
+  NewCrust read() {
+    const std::int32_t places = m_.partition.coarse().size();
+    ParallelErrors errors;
+#pragma omp parallel for schedule(dynamic, 16)
+    for (std::int32_t g = 0; g < places; ++g) errors.guard([&] { read_around_place(g); });
+    errors.rethrow();
+    return std::move(now_);
+  }
+
+ private:
+  /// Samples of two plates at one place, or -1.
+  struct Stack {
+    std::int32_t top = -1, below = -1;
+  };
+
+  void read_around_place(std::int32_t coarse) {
+    const std::vector<int> candidates = plates_near(coarse);
+    for (const std::int32_t i : m_.partition.samples_at(coarse)) {
+      const Stack found = stack_at(m_.mesh->samples().position(i), candidates);
+      if (found.top < 0) continue;
+      take(i, found.top);
+      const int below = found.below < 0 ? -1 : root_[before_.plate[found.below]];
+      if (below >= 0 && below != now_.owner[i]) add_root(i, found);
+    }
+  }
+  [[nodiscard]] std::vector<int> plates_near(std::int32_t coarse) const {
+    std::vector<int> near;
+    for (int p = 0; p < std::ssize(root_); ++p) {
+      if (!m_.state.plates[p].alive) continue;
+      const Vector3 local = back(m_.frame[p], m_.partition.centre(coarse));
+      if (m_.partition.may_hold(p, local)) near.push_back(p);
+    }
+    return near;
+  }
+  [[nodiscard]] Stack stack_at(const Vector3& place, const std::vector<int>& candidates) const {
+    Stack found;
+    for (const int p : candidates) {
+      const std::int32_t j = m_.mesh->samples().nearest(back(m_.frame[p], place));
+      if (before_.plate[j] != p) continue;
+      if (found.top < 0) {
+        found.top = j;
+      } else if (is_above(p, j, found.top)) {
+        found.below = found.top;
+        found.top = j;
+      } else {
+        found.below = j;
+      }
+    }
+    return found;
+  }
+  /// A body lies below the plate that carries it, as far as both are of one type.
+  [[nodiscard]] bool is_above(int plate, std::int32_t sample, std::int32_t top) const {
+    const bool is_carried = root_[plate] == root_[before_.plate[top]] &&
+                            before_.continental[sample] == before_.continental[top];
+    return is_carried ? root_[plate] == plate : is_on_top(m_, sample, top);
+  }
+  void take(std::int32_t i, std::int32_t top) {
+    const int p = before_.plate[top];
+    const Matrix3& frame = m_.frame[p];
+    const Vector3 local = back(frame, m_.mesh->samples().position(i));
+    const Reading reading = read_around(*m_.mesh, before_, local, top);
+    SphereCrust& now = now_.crust;
+    now_.owner[i] = static_cast<std::int16_t>(root_[p]);
+    now_.body[i] = static_cast<std::int16_t>(p);
+    now.continental[i] = before_.continental[top];
+    now.orogeny[i] = before_.orogeny[top];
+    now.thickness_m[i] = reading(before_.thickness_m);
+    now.elevation_m[i] = reading(before_.elevation_m);
+    now.age_myr[i] = reading(before_.age_myr);
+    now.orogeny_age_myr[i] = reading(before_.orogeny_age_myr);
+    now.ridge[i] = turned(frame, reading(before_.ridge));
+    now.fold[i] = turned(frame, reading(before_.fold));
+  }
+  /// Continental crust that was thrust below another continent stays there, as its root.
+  void add_root(std::int32_t i, const Stack& found) {
+    if (before_.continental[found.below] == 0 || before_.continental[found.top] == 0) return;
+    SphereCrust& now = now_.crust;
+    const double added_m = before_.thickness_m[found.below];
+    now.thickness_m[i] += static_cast<float>(added_m);
+    now.elevation_m[i] = static_cast<float>(
+        std::min(1e3 * m_.settings.law.summit_km,
+                 height_after(now.elevation_m[i], added_m, m_.settings.rebound)));
+    now.orogeny[i] = static_cast<std::int8_t>(OrogenyType::himalayan);
+    now.orogeny_age_myr[i] = 0.0F;
+  }
+
+  const SphereTectonics& m_;
+  const SphereCrust& before_;
+  std::vector<int> root_;  // of each plate
+  NewCrust now_;
+};
+
+/// Area of all samples of which something holds.
+template <class Holds>
+double area_km2(const SphereTectonics& model, Holds&& holds) {
+  return model.sample_km2() *
+         sum_over(model.mesh->size(), [&](std::int32_t i) { return holds(i) ? 1.0 : 0.0; });
+}
+
+double ocean_km2(const SphereTectonics& model) {
+  const SphereCrust& crust = model.state.crust;
+  return area_km2(model,
+                  [&](std::int32_t i) { return crust.plate[i] >= 0 && crust.continental[i] == 0; });
+}
+
+/// What has opened, and what has gone below other plates or been consumed.
+void enter_areas(SphereTectonics& model, const std::vector<std::int16_t>& owner) {
+  const SphereCrust& crust = model.state.crust;
+  const auto gone_km2 = [&](std::int8_t type) {
+    return area_km2(model, [&](std::int32_t i) {
+      return crust.continental[i] == type && (crust.plate[i] < 0 || model.margins.hidden[i] != 0);
+    });
+  };
+  model.budget.created_km2 = area_km2(model, [&](std::int32_t i) { return owner[i] < 0; });
+  model.budget.consumed_km2 = gone_km2(0);
+  model.budget.buried_km2 = gone_km2(1);
+}
+
+/// Continents that have subducted below floor, which happens only where plates are ranked.
+double sunk_below_floor_km3(const SphereTectonics& model) {
+  const SphereCrust& crust = model.state.crust;
+  const SphereMargins& margins = model.margins;
+  return 1e-3 * model.sample_km2() * sum_over(model.mesh->size(), [&](std::int32_t i) {
+           const bool is_below_floor = crust.plate[i] >= 0 && crust.continental[i] != 0 &&
+                                       margins.hidden[i] != 0 &&
+                                       crust.continental[margins.partner[i]] == 0;
+           return is_below_floor ? static_cast<double>(crust.thickness_m[i]) : 0.0;
+         });
+}
+
+/// Plates lie as their samples do, and bodies are part of what carried them.
+void begin_turning_anew(SphereState& state) {
+  for (SpherePlate& plate : state.plates) {
+    plate.turn = {};
+    plate.past.clear();
+    if (plate.carrier >= 0) plate.alive = false;
+    plate.carrier = -1;
+  }
+  state.resampled_myr = state.time_myr;
+  state.past_myr.clear();
+}
+
 /// Detached pieces of plates: small ones join the neighbour they border most, large ones are plates
 /// of their own that go on as they did.
 void tidy_pieces(SphereTectonics& model) {
@@ -105,124 +266,29 @@ void tidy_pieces(SphereTectonics& model) {
 }  // namespace
 
 void resample(SphereTectonics& model) {
+  SphereBudget& budget = model.budget;
   remember_penetration(model);
-  const FibonacciSphere& samples = model.mesh->samples();
-  const std::int32_t n = model.mesh->size();
-  const SphereCrust before = std::move(model.state.crust);
-  model.state.crust = before;  // is_on_top and the partition ask for it while the new one grows
-  SphereCrust now;
-  now.resize(n);
-  std::vector<std::int16_t> owner(n, -1), body(n, -1);  // what moves as one, and what has so far
-  const auto plates = static_cast<int>(model.state.plates.size());
-  std::vector<int> root(plates);
-  for (int p = 0; p < plates; ++p) root[p] = model.state.root(p);
-  const std::int32_t places = model.partition.coarse().size();
-  const auto resample_place = [&](std::int32_t g) {
-    std::vector<int> candidates;
-    for (int p = 0; p < plates; ++p) {
-      if (!model.state.plates[p].alive) continue;
-      if (model.partition.may_hold(p, back(model.frame[p], model.partition.centre(g))))
-        candidates.push_back(p);
-    }
-    for (const std::int32_t i : model.partition.samples_at(g)) {
-      std::int32_t top = -1, below = -1;
-      for (const int p : candidates) {
-        const std::int32_t j = samples.nearest(back(model.frame[p], samples.position(i)));
-        if (before.plate[j] != p) continue;
-        if (top < 0) {
-          top = j;
-          continue;
-        }
-        const int q = before.plate[top];
-        // A body lies below the plate that carries it, as far as both are of one type.
-        const bool carried = root[p] == root[q] && before.continental[j] == before.continental[top];
-        const bool above = carried ? root[p] == p : is_on_top(model, j, top);
-        if (above) std::swap(top, below);
-        (above ? top : below) = j;
-      }
-      if (top < 0) continue;
-      const int p = before.plate[top];
-      const auto reading =
-          read_around(*model.mesh, before, back(model.frame[p], samples.position(i)), top);
-      owner[i] = static_cast<std::int16_t>(root[p]);
-      body[i] = static_cast<std::int16_t>(p);
-      now.continental[i] = before.continental[top];
-      now.orogeny[i] = before.orogeny[top];
-      now.thickness_m[i] = reading(before.thickness_m);
-      now.elevation_m[i] = reading(before.elevation_m);
-      now.age_myr[i] = reading(before.age_myr);
-      now.orogeny_age_myr[i] = reading(before.orogeny_age_myr);
-      now.ridge[i] = turned(model.frame[p], reading(before.ridge));
-      now.fold[i] = turned(model.frame[p], reading(before.fold));
-      if (below < 0 || root[before.plate[below]] == root[p]) continue;
-      // Continental crust that was thrust below another continent stays there, as its root.
-      if (before.continental[below] != 0 && before.continental[top] != 0) {
-        const double added = before.thickness_m[below];
-        now.thickness_m[i] += static_cast<float>(added);
-        now.elevation_m[i] = static_cast<float>(
-            std::min(1e3 * model.settings.law.summit_km,
-                     height_after(now.elevation_m[i], added, model.settings.rebound)));
-        now.orogeny[i] = static_cast<std::int8_t>(OrogenyType::himalayan);
-        now.orogeny_age_myr[i] = 0.0F;
-      }
-    }
-  };
-  ParallelErrors errors;
-#pragma omp parallel for schedule(dynamic, 16)
-  for (std::int32_t g = 0; g < places; ++g) errors.guard([&] { resample_place(g); });
-  errors.rethrow();
-  const auto oceanic = [&](const SphereCrust& crust) {
-    return model.sample_km2() * sum_over(n, [&](std::int32_t i) {
-             return crust.plate[i] >= 0 && crust.continental[i] == 0 ? 1.0 : 0.0;
-           });
-  };
-  const double ocean_before_km2 = oceanic(before);
   measure_volume(model);
-  const double volume_before_km3 = model.budget.continental_km3;
-  model.budget.created_km2 =
-      model.sample_km2() * sum_over(n, [&](std::int32_t i) { return owner[i] < 0 ? 1.0 : 0.0; });
-  // Only where plates are ranked does a continent subduct below floor.
-  const double sunk_km3 =
-      1e-3 * model.sample_km2() * sum_over(n, [&](std::int32_t i) {
-        const bool is_below_floor = before.plate[i] >= 0 && before.continental[i] != 0 &&
-                                    model.margins.hidden[i] != 0 &&
-                                    before.continental[model.margins.partner[i]] == 0;
-        return is_below_floor ? static_cast<double>(before.thickness_m[i]) : 0.0;
-      });
-  const auto gone_km2 = [&](std::int8_t type) {
-    return model.sample_km2() * sum_over(n, [&](std::int32_t i) {
-             return before.continental[i] == type &&
-                            (before.plate[i] < 0 || model.margins.hidden[i] != 0)
-                        ? 1.0
-                        : 0.0;
-           });
-  };
-  model.budget.consumed_km2 = gone_km2(0);
-  model.budget.buried_km2 = gone_km2(1);
-  fill_gaps(model, now, owner, body);
-  model.state.crust = std::move(now);
-  model.state.crust.plate = std::move(owner);
-  for (SpherePlate& plate : model.state.plates) {
-    plate.turn = {};
-    plate.past.clear();
-    if (plate.carrier >= 0) plate.alive = false;
-    plate.carrier = -1;
-  }
-  model.state.resampled_myr = model.state.time_myr;
-  model.state.past_myr.clear();
+  const double volume_before_km3 = budget.continental_km3, ocean_before_km2 = ocean_km2(model);
+  const double sunk_km3 = sunk_below_floor_km3(model);
+  NewCrust now = CrustReader(model).read();
+  enter_areas(model, now.owner);
+  fill_gaps(model, now.crust, now.owner, now.body);
+  model.state.crust = std::move(now.crust);
+  model.state.crust.plate = std::move(now.owner);
+  begin_turning_anew(model.state);
   tidy_pieces(model);
   derive_plates(model);
   forget_margins(model);
-  const double lost_before_km3 = model.budget.lost_km3;
-  model.budget.lost_km3 += sunk_km3;
+  const double lost_before_km3 = budget.lost_km3;
+  budget.lost_km3 += sunk_km3;
   spread_roots(model);
   measure_volume(model);
-  model.budget.resampling_km3 =
-      model.budget.continental_km3 - volume_before_km3 + model.budget.lost_km3 - lost_before_km3;
-  model.budget.ocean_change_km2 = oceanic(model.state.crust) - ocean_before_km2;
-  model.budget.ocean_error_km2 =
-      model.budget.created_km2 - model.budget.consumed_km2 - model.budget.ocean_change_km2;
-  model.budget.resampled = true;
+  budget.resampling_km3 =
+      budget.continental_km3 - volume_before_km3 + budget.lost_km3 - lost_before_km3;
+  budget.ocean_change_km2 = ocean_km2(model) - ocean_before_km2;
+  budget.ocean_error_km2 = budget.created_km2 - budget.consumed_km2 - budget.ocean_change_km2;
+  budget.resampled = true;
 }
 
 }  // namespace geo

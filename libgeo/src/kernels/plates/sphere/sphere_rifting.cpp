@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "geo/core/random.hpp"
 #include "geo/kernels/noise/noise.hpp"
@@ -101,6 +102,50 @@ std::size_t fragment_nearest(const SphereTectonics& model, int body, int plate,
   return nearest;
 }
 
+/// Fragments of a plate that break apart: how many samples each has, with what goes with it.
+struct Fragments {
+  std::vector<std::int32_t> size;
+  std::vector<std::pair<int, std::size_t>>
+      carried;  // bodies of the plate, and the fragment of each
+
+  [[nodiscard]] std::ptrdiff_t largest() const {
+    return std::max_element(size.begin(), size.end()) - size.begin();
+  }
+};
+
+/// No fragments where there are not two with samples. What the plate carries goes with the fragment
+/// that is nearest to it.
+std::optional<Fragments> fragments_of(const SphereTectonics& model, int plate,
+                                      std::span<const std::int8_t> fragment, std::size_t count) {
+  Fragments found{std::vector<std::int32_t>(count, 0), {}};
+  for (const std::int8_t k : fragment) {
+    if (k >= 0) ++found.size[k];
+  }
+  const auto has_samples = [](std::int32_t samples) { return samples > 0; };
+  if (std::count_if(found.size.begin(), found.size.end(), has_samples) < 2) return std::nullopt;
+  for (int p = 0; p < model.partition.plates(); ++p) {
+    if (!model.state.plates[p].alive || model.state.plates[p].carrier != plate) continue;
+    found.carried.emplace_back(p, fragment_nearest(model, p, plate, fragment));
+    found.size[found.carried.back().second] += model.partition.cap(p).samples;
+  }
+  return found;
+}
+
+/// A fragment as a plate: it turns about an axis on top of the motion of the whole. Where rifts
+/// open gradually it moves as the whole did at first.
+SpherePlate plate_from(const SpherePlate& whole, const Vector3& away, double speed_mm_yr,
+                       bool is_gradual, const SphereSettings& s) {
+  SpherePlate part = whole;
+  const Vector3 drift = scaled(whole.axis, whole.speed_rad_myr);
+  const Vector3 rotation = add(drift, scaled(away, speed_mm_yr / s.radius_km));
+  part.speed_rad_myr = std::min(length(rotation), s.law.speed_mm_yr / s.radius_km);
+  if (part.speed_rad_myr > 0.0) part.axis = normalised(rotation);
+  if (is_gradual && !whole.is_held) {
+    part.yielding = add(add(whole.yielding, drift), part.axis, -part.speed_rad_myr);
+  }
+  return part;
+}
+
 }  // namespace
 
 void rift_by_chance(SphereTectonics& model) {
@@ -189,71 +234,47 @@ void rift_plate_along(SphereTectonics& model, int plate, const GreatCircleLine& 
     ++model.budget.rifts;
 }
 
-/// Fragments of a plate become plates, each turned about an axis on top of the old motion. The
-/// largest keeps the plate's number. One that has no samples comes to nothing. False when there are
-/// no two.
+/// The largest fragment keeps the plate's number. One that has no samples comes to nothing.
 bool part_plate(SphereTectonics& model, int plate, std::span<const std::int8_t> fragment,
                 std::span<const Vector3> away, double speed_mm_yr, SphereEvent::Kind kind) {
-  auto& of = model.state.crust.plate;
+  SphereState& state = model.state;
   const auto& cap = model.partition.cap(plate);
   const Vector3 centre = times(model.frame[plate], cap.centre);
   const double area_km2 = model.sample_km2() * cap.samples;
-  const SpherePlate whole = model.state.plates[plate];
-  const Vector3 drift = scaled(whole.axis, whole.speed_rad_myr);
-  std::vector<std::int32_t> size(away.size(), 0);
-  for (const std::int8_t k : fragment) {
-    if (k >= 0) ++size[k];
-  }
-  if (std::count_if(size.begin(), size.end(), [](auto samples) { return samples > 0; }) < 2) {
-    return false;
-  }
-  // What the plate carries goes with the fragment that is nearest to it.
-  std::vector<std::pair<int, std::size_t>> carried;
-  for (int p = 0; p < model.partition.plates(); ++p) {
-    if (!model.state.plates[p].alive || model.state.plates[p].carrier != plate) continue;
-    carried.emplace_back(p, fragment_nearest(model, p, plate, fragment));
-    size[carried.back().second] += model.partition.cap(p).samples;
-  }
-  const auto largest = std::max_element(size.begin(), size.end()) - size.begin();
-  const auto origin = kind == SphereEvent::Kind::rift ? PlateLife::Origin::rift
-                                                      : PlateLife::Origin::subduction_initiation;
+  const SpherePlate whole = state.plates[plate];
+  const auto fragments = fragments_of(model, plate, fragment, away.size());
+  if (!fragments) return false;
+  const bool is_rift = kind == SphereEvent::Kind::rift;
+  const bool is_gradual = is_rift && model.settings.rift_onset_myr > 0.0;
   std::vector<int> numbers;
   for (std::size_t k = 0; k < away.size(); ++k) {
-    if (size[k] == 0) continue;
-    SpherePlate part = whole;
-    if (static_cast<std::ptrdiff_t>(k) != largest) {
-      part.id = model.state.begin_life(origin, whole.id);
-      part.born_myr = model.state.time_myr;
-    }
-    const Vector3 gained = scaled(away[k], speed_mm_yr / model.settings.radius_km);
-    const Vector3 rotation = add(drift, gained);
-    part.speed_rad_myr =
-        std::min(length(rotation), model.settings.law.speed_mm_yr / model.settings.radius_km);
-    if (part.speed_rad_myr > 0.0) part.axis = normalised(rotation);
-    const bool is_gradual = kind == SphereEvent::Kind::rift && model.settings.rift_onset_myr > 0.0;
-    if (is_gradual && !whole.is_held) {  // at first they move as the whole did
-      part.yielding = add(add(whole.yielding, drift), part.axis, -part.speed_rad_myr);
+    if (fragments->size[k] == 0) continue;
+    SpherePlate part = plate_from(whole, away[k], speed_mm_yr, is_gradual, model.settings);
+    if (static_cast<std::ptrdiff_t>(k) != fragments->largest()) {
+      part.id = state.begin_life(
+          is_rift ? PlateLife::Origin::rift : PlateLife::Origin::subduction_initiation, whole.id);
+      part.born_myr = state.time_myr;
     }
     int number = plate;
     if (numbers.empty()) {
-      model.state.plates[plate] = part;
+      state.plates[plate] = part;
     } else {
-      number = model.state.add_plate(part);
+      number = state.add_plate(part);
     }
     for (std::int32_t i = 0; i < model.mesh->size(); ++i) {
-      if (fragment[i] == static_cast<std::int8_t>(k)) of[i] = static_cast<std::int16_t>(number);
-    }
-    if (kind == SphereEvent::Kind::rift) {
-      for (const int other : numbers) {
-        model.state.pair(number, other).parted_myr = static_cast<float>(model.state.time_myr);
+      if (fragment[i] == static_cast<std::int8_t>(k)) {
+        state.crust.plate[i] = static_cast<std::int16_t>(number);
       }
     }
-    for (const auto& [body, nearest] : carried) {
-      if (nearest == k) model.state.plates[body].carrier = static_cast<std::int16_t>(number);
+    for (const int other : numbers) {
+      if (is_rift) state.pair(number, other).parted_myr = static_cast<float>(state.time_myr);
+    }
+    for (const auto& [body, nearest] : fragments->carried) {
+      if (nearest == k) state.plates[body].carrier = static_cast<std::int16_t>(number);
     }
     numbers.push_back(number);
   }
-  model.events.push_back({kind, model.state.time_myr, plate, -1, centre, area_km2});
+  model.events.push_back({kind, state.time_myr, plate, -1, centre, area_km2});
   derive_plates(model);
   return true;
 }

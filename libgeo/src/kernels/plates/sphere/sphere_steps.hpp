@@ -80,6 +80,18 @@ void yield_to_links(SphereTectonics& model, const std::vector<Matrix3>& drag);
 
 /// Needs margins. Continents that have gone far enough below another collide with it.
 void collide_continents(SphereTectonics& model);
+/// A terrane that has come to another plate.
+struct Collision {
+  int upper;                              ///< that plate
+  std::span<const std::int32_t> terrane;  ///< its samples
+  Vector3 centroid;                       ///< unit vector, in the frame of the planet
+  double area_km2, speed_mm_yr;           ///< of the terrane
+};
+/// Mountains of the collided plate around a terrane. The crust that the terrane had pushed below is
+/// consumed and given back as their roots: the profile and the reach are those of 4.2, its height
+/// at most `surge_km`, and its reach drawn in until its volume is what was swallowed. Needs
+/// margins; leaves it to the caller to derive the plates.
+void surge(SphereTectonics& model, const Collision& what);
 /// Needs margins. Pairs of plates keep how far their continents have come below each other.
 void remember_penetration(SphereTectonics& model);
 /// Plates rift, and old margins begin to subduct, by chance.
