@@ -18,7 +18,7 @@ struct Planet {
     settings.rift_per_myr = 0.0;
     model =
         std::make_unique<SphereTectonics>(mesh, settings, start_sphere(mesh, {}, settings, 1), 1);
-    for (int k = 0; k < 16; ++k) model->advance();
+    for (int k = 0; k < 16; ++k) advance(*model);
   }
   FibonacciSphere samples;
   SphereMesh mesh;
@@ -57,8 +57,8 @@ void SphereStep(benchmark::State& state) {
     state.PauseTiming();
     auto model = std::make_unique<SphereTectonics>(from);
     state.ResumeTiming();
-    model->advance();
-    benchmark::DoNotOptimize(model->state().crust.elevation_m.data());
+    advance(*model);
+    benchmark::DoNotOptimize(model->state.crust.elevation_m.data());
     state.PauseTiming();
     model.reset();
     state.ResumeTiming();
@@ -73,8 +73,8 @@ void SphereResampling(benchmark::State& state) {
     state.PauseTiming();
     auto model = std::make_unique<SphereTectonics>(from);
     state.ResumeTiming();
-    model->resample();
-    benchmark::DoNotOptimize(model->state().crust.elevation_m.data());
+    resample(*model);
+    benchmark::DoNotOptimize(model->state.crust.elevation_m.data());
     state.PauseTiming();
     model.reset();
     state.ResumeTiming();
@@ -90,10 +90,10 @@ void SphereRifting(benchmark::State& state) {
   for (auto _ : state) {
     state.PauseTiming();
     auto model = std::make_unique<SphereTectonics>(from);
-    const int plate = std::max(0, model->plate_at(places[0]));
+    const int plate = std::max(0, plate_at(*model, places[0]));
     state.ResumeTiming();
-    model->rift(plate, places, 30.0);
-    benchmark::DoNotOptimize(model->state().crust.plate.data());
+    rift_plate(*model, plate, places, 30.0);
+    benchmark::DoNotOptimize(model->state.crust.plate.data());
     state.PauseTiming();
     model.reset();
     state.ResumeTiming();

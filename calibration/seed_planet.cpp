@@ -38,6 +38,29 @@ SeedPlanet::SeedPlanet(std::span<const Parameter> configuration, std::uint64_t s
   held_.sea.at_shore = sea_in_gap;
 }
 
+CrustInputs SeedPlanet::crust_inputs() const {
+  return {.plate = state_.read(field::plate_id),
+          .boundary_type = state_.read(field::boundary_type),
+          .boundary_strength = state_.read(field::boundary_strength),
+          .age_myr = state_.read(field::crust_age),
+          .heat = state_.read(field::heat_anomaly),
+          .velocity_east = state_.read(field::plate_velocity_east),
+          .velocity_north = state_.read(field::plate_velocity_north)};
+}
+
+std::vector<float> SeedPlanet::find_straits(const ErosionParameters& p,
+                                            const std::vector<float>& before,
+                                            FrozenDrainage::Straits& straits) const {
+  std::vector<float> after = before;
+  straits.clear();
+  if (p.steps > 0 && join_seas(p, grid(), after)) {
+    for (Index c = 0; c < grid().size(); ++c) {
+      if (after[c] != before[c]) straits.emplace_back(c, after[c]);
+    }
+  }
+  return after;
+}
+
 void SeedPlanet::hold_frame(const IsostasyParameters& p, const CrustInputs& in) {
   if (held_.frame && held_.divergent_length_km == p.divergent_length_km &&
       held_.transform_length_km == p.transform_length_km) {

@@ -63,6 +63,23 @@ struct FrozenDrainage {
   std::array<Settling, kSettlings> settlings;
 };
 
+/// What isostasy makes of a planet, with what erosion needs of it.
+template <class V>
+struct Ground {
+  explicit Ground(std::size_t cells)
+      : convergent(cells),
+        divergent(cells),
+        transform(cells),
+        weakness(cells),
+        density(cells),
+        thickening(cells, V(0.0)) {
+    relief.elevation_m.resize(cells);
+    relief.thickness_m.resize(cells);
+  }
+  PlanetSurface<V> relief;
+  std::vector<V> convergent, divergent, transform, weakness, density, thickening;
+};
+
 /// Plates of one seed, and the relief that isostasy and erosion make of them.
 class SeedPlanet {
  public:
@@ -93,6 +110,36 @@ class SeedPlanet {
  private:
   template <class V>
   PlanetSurface<V> evaluate(const Model& model, const ActiveVariables<V>& active, bool routes);
+  [[nodiscard]] CrustInputs crust_inputs() const;
+  /// Stage isostasy: the crust floats, continents settle, the sea fills.
+  template <class V>
+  void float_crust(const Model& model, const ActiveVariables<V>& active, bool routes,
+                   Ground<V>& ground);
+  /// The erodibility of rock, to be held.
+  template <class V>
+  void freeze_rock(const Model& model, const Ground<V>& ground);
+  /// Cells that straits drown in a relief, to be held, and the relief with them.
+  std::vector<float> find_straits(const ErosionParameters& p, const std::vector<float>& before,
+                                  FrozenDrainage::Straits& straits) const;
+  template <class V>
+  [[nodiscard]] std::vector<V> uplift_of(const Model& model, const ActiveVariables<V>& active,
+                                         const Ground<V>& ground) const;
+  /// The steps of stage erosion, along routes that are found or held.
+  template <class V>
+  void wear_down(const ErosionParameters& p, std::span<const V> z, bool routes,
+                 Landscape<V>& landscape);
+  /// Rates and volumes over land and sea.
+  template <class V>
+  void sum_up(const ErosionParameters& p, const ActiveVariables<V>& active,
+              const Landscape<V>& landscape, PlanetSurface<V>& relief) const;
+  template <class V>
+  static std::vector<float> as_floats(std::span<const V> field) {
+    std::vector<float> values(field.size());
+    for (std::size_t c = 0; c < values.size(); ++c) {
+      values[c] = static_cast<float>(value_of(field[c]));
+    }
+    return values;
+  }
   template <class V>
   V sea_level(const Model& model, const ActiveVariables<V>& active, std::span<const V> elevation_m,
               FrozenDrainage::Sea& sea, bool finds);
@@ -132,46 +179,34 @@ V SeedPlanet::sea_level(const Model& model, const ActiveVariables<V>& active,
 }
 
 template <class V>
-PlanetSurface<V> SeedPlanet::evaluate(const Model& model, const ActiveVariables<V>& active,
-                                      bool routes) {
+void SeedPlanet::float_crust(const Model& model, const ActiveVariables<V>& active, bool routes,
+                             Ground<V>& ground) {
   const Grid& grid = this->grid();
   const auto cells = static_cast<std::size_t>(grid.size());
-  const ErosionParameters& p = model.erosion;
-  PlanetSurface<V> relief;
-  relief.elevation_m.resize(cells);
-  relief.thickness_m.resize(cells);
-  std::vector<V> convergent(cells), divergent(cells), transform(cells), weakness(cells),
-      density(cells), thickening(cells, V(0.0));
   std::vector<float> fraction(continental_fraction().begin(), continental_fraction().end());
-  const CrustInputs in{.plate = state_.read(field::plate_id),
-                       .boundary_type = state_.read(field::boundary_type),
-                       .boundary_strength = state_.read(field::boundary_strength),
-                       .age_myr = state_.read(field::crust_age),
-                       .heat = state_.read(field::heat_anomaly),
-                       .velocity_east = state_.read(field::plate_velocity_east),
-                       .velocity_north = state_.read(field::plate_velocity_north)};
+  const CrustInputs in = crust_inputs();
   const Crust<V> crust{.parameters = model.isostasy,
                        .planet = model.planet,
                        .seed = seed_,
                        .grid = grid,
                        .in = in,
                        .fraction = fraction,
-                       .convergent = convergent,
-                       .divergent = divergent,
-                       .transform = transform,
-                       .weakness = weakness,
-                       .thickness_m = relief.thickness_m,
-                       .density = density,
+                       .convergent = ground.convergent,
+                       .divergent = ground.divergent,
+                       .transform = ground.transform,
+                       .weakness = ground.weakness,
+                       .thickness_m = ground.relief.thickness_m,
+                       .density = ground.density,
                        .rock = {},
                        .erodibility = {},
-                       .elevation_m = relief.elevation_m,
-                       .thickening_m_yr = thickening,
-                       .run_myr = growth_of_belts_myr<V>(p, active),
+                       .elevation_m = ground.relief.elevation_m,
+                       .thickening_m_yr = ground.thickening,
+                       .run_myr = growth_of_belts_myr<V>(model.erosion, active),
                        .active = active,
                        .noise = &noise_};
   if (routes) hold_frame(model.isostasy, in);
   float_margins_crust(crust, coarse_, *held_.frame);
-  const std::span<V> z(relief.elevation_m);
+  const std::span<V> z(ground.relief.elevation_m);
   if (routes) held_.settles = settles_continents(model.isostasy, model.planet);
   if (held_.settles) {
     for (FrozenDrainage::Settling& at : held_.settlings) {
@@ -184,87 +219,69 @@ PlanetSurface<V> SeedPlanet::evaluate(const Model& model, const ActiveVariables<
     }
   }
   fill_sea(crust, sea_level<V>(model, active, z, held_.sea, routes));
+}
 
-  const auto as_floats = [&](std::span<const V> field) {
-    std::vector<float> values(cells);
-    for (std::size_t c = 0; c < cells; ++c) values[c] = static_cast<float>(value_of(field[c]));
-    return values;
-  };
-  const auto drown_straits = [&](FrozenDrainage::Straits& straits) {
-    const std::vector<float> before = as_floats(z);
-    std::vector<float> after = before;
-    straits.clear();
-    if (p.steps > 0 && join_seas(p, grid, after)) {
-      for (Index c = 0; c < grid.size(); ++c) {
-        if (after[c] != before[c]) straits.emplace_back(c, after[c]);
-      }
-    }
-    return after;
-  };
-  double sea_share = 0.0;
-  if (routes) {
-    std::vector<float> closing = as_floats(convergent), opening = as_floats(divergent),
-                       shear = as_floats(transform), none;
-    std::vector<std::int8_t> rock(cells);
-    held_.erodibility.assign(cells, 0.0F);
-    classify_rock({.parameters = model.isostasy,
-                   .planet = model.planet,
-                   .seed = seed_,
-                   .grid = grid,
-                   .in = in,
-                   .fraction = fraction,
-                   .convergent = closing,
-                   .divergent = opening,
-                   .transform = shear,
-                   .weakness = none,
-                   .thickness_m = none,
-                   .density = none,
-                   .rock = rock,
-                   .erodibility = held_.erodibility,
-                   .elevation_m = none,
-                   .thickening_m_yr = {}});
-    sea_share = share_of_sea(grid, as_floats(z));
-    const std::vector<float> after = drown_straits(held_.straits);
-    held_.outlets = find_outlets(grid, after);
-    held_.landlocked = landlocked_cells(p, grid, after);
-    held_.drainage.resize((p.steps + p.route_every - 1) / p.route_every);
-  }
-  for (const auto& [cell, height_m] : held_.straits) z[cell] = V(height_m);
-  std::vector<V> uplift(cells, V(0.0));
+template <class V>
+void SeedPlanet::freeze_rock(const Model& model, const Ground<V>& ground) {
+  const std::size_t cells = ground.convergent.size();
+  std::vector<float> fraction(continental_fraction().begin(), continental_fraction().end()),
+      closing = as_floats<V>(ground.convergent), opening = as_floats<V>(ground.divergent),
+      shear = as_floats<V>(ground.transform), none;
+  std::vector<std::int8_t> rock(cells);
+  held_.erodibility.assign(cells, 0.0F);
+  classify_rock({.parameters = model.isostasy,
+                 .planet = model.planet,
+                 .seed = seed_,
+                 .grid = grid(),
+                 .in = crust_inputs(),
+                 .fraction = fraction,
+                 .convergent = closing,
+                 .divergent = opening,
+                 .transform = shear,
+                 .weakness = none,
+                 .thickness_m = none,
+                 .density = none,
+                 .rock = rock,
+                 .erodibility = held_.erodibility,
+                 .elevation_m = none,
+                 .thickening_m_yr = {}});
+}
+
+template <class V>
+std::vector<V> SeedPlanet::uplift_of(const Model& model, const ActiveVariables<V>& active,
+                                     const Ground<V>& ground) const {
+  const ErosionParameters& p = model.erosion;
+  std::vector<V> uplift(ground.convergent.size(), V(0.0));
   if (p.uplift_from == "deformation" || p.uplift_from == "shortening") {
-    add_belt_uplift<V>(p, active, convergent, divergent, transform, model.uplift_factor, uplift);
+    add_belt_uplift<V>(p, active, ground.convergent, ground.divergent, ground.transform,
+                       model.uplift_factor, uplift);
   } else if (p.uplift_from == "boundaries") {
+    const CrustInputs in = crust_inputs();
     add_boundary_uplift<V>(p, active, in.boundary_type, in.boundary_strength, model.uplift_factor,
                            uplift);
   }
-  std::vector<V> erodibility = resolved_erodibility<V>(p, active, grid, held_.erodibility);
-  if (value_of(growth_of_belts_myr<V>(p, active)) > 0.0) {
-    add_thickening_uplift<V>(p, active, grid, thickening, uplift);
-    break_rock<V>(p, active, thickening, erodibility);
-  } else {
-    thickening.clear();
-  }
-  Landscape<V> landscape(p, active, grid, z, uplift, thickening, erodibility, held_.outlets);
-  landscape.set_landlocked(held_.landlocked);
+  return uplift;
+}
+
+template <class V>
+void SeedPlanet::wear_down(const ErosionParameters& p, std::span<const V> z, bool routes,
+                           Landscape<V>& landscape) {
   for (std::int64_t step = 0; step < p.steps; ++step) {
     Drainage& drainage = held_.drainage[step / p.route_every];
     if (step % p.route_every == 0) {
-      if (routes) drain(p, grid, as_floats(z), landscape.outlets(), drainage);
+      if (routes) drain(p, grid(), as_floats<V>(z), landscape.outlets(), drainage);
       landscape.breach(drainage);
     }
     landscape.step(drainage);
   }
   if (p.steps > 0) landscape.dry_filled_seas();
-  if (routes) drown_straits(held_.late_straits);
-  for (const auto& [cell, height_m] : held_.late_straits) z[cell] = V(height_m);
-  inject_noise(p, active, grid, seed_, z);
-  warp(p, active, grid, seed_, z);
-  landscape.relax();
-  if (routes) {
-    held_.late_level_m = p.steps > 0 ? moved_sea_level_m(p, grid, as_floats(z), sea_share) : 0.0F;
-  }
-  for (V& height_m : z) height_m -= V(held_.late_level_m);
+}
 
+template <class V>
+void SeedPlanet::sum_up(const ErosionParameters& p, const ActiveVariables<V>& active,
+                        const Landscape<V>& landscape, PlanetSurface<V>& relief) const {
+  const Grid& grid = this->grid();
+  const std::span<const V> z(relief.elevation_m);
   const auto is_land = [&](Index c) { return held_.outlets[c] == 0; };
   const double land_m2 = area_sum<double>(grid, [&](Index c) { return is_land(c) ? 1.0 : 0.0; });
   if (p.steps > 0 && land_m2 > 0.0) {
@@ -272,7 +289,49 @@ PlanetSurface<V> SeedPlanet::evaluate(const Model& model, const ActiveVariables<
     relief.erosion_rate_m_yr = landscape.rock().eroded / (land_m2 * time_yr);
   }
   relief.water_m3 = area_sum<V>(grid, [&](Index c) { return is_land(c) ? V(0.0) : V(-z[c]); });
-  return relief;
+}
+
+template <class V>
+PlanetSurface<V> SeedPlanet::evaluate(const Model& model, const ActiveVariables<V>& active,
+                                      bool routes) {
+  const Grid& grid = this->grid();
+  const ErosionParameters& p = model.erosion;
+  Ground<V> ground(static_cast<std::size_t>(grid.size()));
+  float_crust<V>(model, active, routes, ground);
+  const std::span<V> z(ground.relief.elevation_m);
+  double sea_share = 0.0;
+  if (routes) {
+    freeze_rock<V>(model, ground);
+    sea_share = share_of_sea(grid, as_floats<V>(z));
+    const std::vector<float> after = find_straits(p, as_floats<V>(z), held_.straits);
+    held_.outlets = find_outlets(grid, after);
+    held_.landlocked = landlocked_cells(p, grid, after);
+    held_.drainage.resize((p.steps + p.route_every - 1) / p.route_every);
+  }
+  for (const auto& [cell, height_m] : held_.straits) z[cell] = V(height_m);
+  std::vector<V> uplift = uplift_of<V>(model, active, ground);
+  std::vector<V> erodibility = resolved_erodibility<V>(p, active, grid, held_.erodibility);
+  if (value_of(growth_of_belts_myr<V>(p, active)) > 0.0) {
+    add_thickening_uplift<V>(p, active, grid, ground.thickening, uplift);
+    break_rock<V>(p, active, ground.thickening, erodibility);
+  } else {
+    ground.thickening.clear();
+  }
+  Landscape<V> landscape(p, active, grid, z, uplift, ground.thickening, erodibility, held_.outlets);
+  landscape.set_landlocked(held_.landlocked);
+  wear_down<V>(p, z, routes, landscape);
+  if (routes) find_straits(p, as_floats<V>(z), held_.late_straits);
+  for (const auto& [cell, height_m] : held_.late_straits) z[cell] = V(height_m);
+  inject_noise(p, active, grid, seed_, z);
+  warp(p, active, grid, seed_, z);
+  landscape.relax();
+  if (routes) {
+    held_.late_level_m =
+        p.steps > 0 ? moved_sea_level_m(p, grid, as_floats<V>(z), sea_share) : 0.0F;
+  }
+  for (V& height_m : z) height_m -= V(held_.late_level_m);
+  sum_up<V>(p, active, landscape, ground.relief);
+  return std::move(ground.relief);
 }
 
 }  // namespace geo::calibration

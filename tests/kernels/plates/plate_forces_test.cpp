@@ -83,22 +83,22 @@ double drag_of_hemisphere_n_m_s() { return 5e14 * std::pow(kRadius_m, 4) * 4.0 *
 TEST(SphereForces, AStraightTrenchFromPoleToPoleTurnsAHemisphereByItsPullTimesTwiceTheRadius) {
   const SampledSphere world(60000);
   SphereTectonics model(world.mesh, by_forces(), hemispheres(world, 100.0), 1);
-  for (int k = 0; k < 3; ++k) model.advance();
-  const auto torques = model.torques();
+  for (int k = 0; k < 3; ++k) advance(model);
+  const auto all = torques(model);
   // Floor of both pushes to the trench and has its ridge in the gap; only plate 1 has a slab.
   // R^2 int F dl along a meridian: F times R^2 times the way from pole to pole, 2. The ends of the
   // trench are known to a sample or two, of 0.014 radians.
   const double lever_m2 = 2.0 * kRadius_m * kRadius_m;
   const double pull = lever_m2 * (slab_pull_n_m(66.0) + ridge_push_n_m(66.0));
   const double push = lever_m2 * ridge_push_n_m(56.0);
-  EXPECT_NEAR(torques[1].driving_n_m[2], pull, 0.02 * pull);
-  EXPECT_NEAR(torques[0].driving_n_m[2], -push, 0.02 * push);
+  EXPECT_NEAR(all[1].driving_n_m[2], pull, 0.02 * pull);
+  EXPECT_NEAR(all[0].driving_n_m[2], -push, 0.02 * push);
   for (const int plate : {0, 1}) {
-    EXPECT_NEAR(torques[plate].driving_n_m[0], 0.0, 0.03 * pull);
-    EXPECT_NEAR(torques[plate].driving_n_m[1], 0.0, 0.03 * pull);
-    EXPECT_NEAR(torques[plate].drag_n_m_s[2][2], drag_of_hemisphere_n_m_s(),
+    EXPECT_NEAR(all[plate].driving_n_m[0], 0.0, 0.03 * pull);
+    EXPECT_NEAR(all[plate].driving_n_m[1], 0.0, 0.03 * pull);
+    EXPECT_NEAR(all[plate].drag_n_m_s[2][2], drag_of_hemisphere_n_m_s(),
                 1e-3 * drag_of_hemisphere_n_m_s());
-    EXPECT_NEAR(torques[plate].drag_n_m_s[0][1], 0.0, 1e-3 * drag_of_hemisphere_n_m_s());
+    EXPECT_NEAR(all[plate].drag_n_m_s[0][1], 0.0, 1e-3 * drag_of_hemisphere_n_m_s());
   }
 }
 
@@ -107,15 +107,15 @@ TEST(SphereForces, ASlabDrawsThePlateAboveToItsTrench) {
   SphereSettings settings = by_forces();
   settings.force.suction_share = 0.1;
   SphereTectonics model(world.mesh, settings, hemispheres(world, 100.0), 1);
-  for (int k = 0; k < 3; ++k) model.advance();
+  for (int k = 0; k < 3; ++k) advance(model);
   for (const bool fresh : {false, true}) {  // before and after new samples along the trench
-    if (fresh) model.resample();
-    const auto torques = model.torques();
+    if (fresh) resample(model);
+    const auto all = torques(model);
     const double lever_m2 = 2.0 * kRadius_m * kRadius_m;
     const double pull = lever_m2 * (slab_pull_n_m(66.0, settings.force) + ridge_push_n_m(66.0));
     const double drawn = lever_m2 * (slab_suction_n_m(66.0, settings.force) + ridge_push_n_m(56.0));
-    EXPECT_NEAR(torques[1].driving_n_m[2], pull, 0.03 * pull);
-    EXPECT_NEAR(torques[0].driving_n_m[2], -drawn, 0.03 * drawn);
+    EXPECT_NEAR(all[1].driving_n_m[2], pull, 0.03 * pull);
+    EXPECT_NEAR(all[0].driving_n_m[2], -drawn, 0.03 * drawn);
   }
 }
 
@@ -125,10 +125,10 @@ TEST(SphereForces, EndAtTheSpeedOfPullOverDrag) {
   settings.force.slab_share = 0.02;
   settings.force.response_myr = 1.0;
   SphereTectonics model(world.mesh, settings, hemispheres(world, 20.0), 1);
-  for (int k = 0; k < 10; ++k) model.advance();
+  for (int k = 0; k < 10; ++k) advance(model);
   const double pull = slab_pull_n_m(80.0, settings.force) + ridge_push_n_m(80.0);
   const double wanted_m_s = 2.0 * std::pow(kRadius_m, 3) * pull / drag_of_hemisphere_n_m_s();
-  const double speed_m_s = 6370.0 * model.rotations()[1][2] * kMmYr;
+  const double speed_m_s = 6370.0 * model.rotation[1][2] * kMmYr;
   EXPECT_GT(wanted_m_s, 15.0 * kMmYr);
   // It grows with the floor's age, by 2 per cent a step, and lags by a part of that.
   EXPECT_NEAR(speed_m_s, wanted_m_s, 0.03 * wanted_m_s);
@@ -140,12 +140,12 @@ TEST(SphereForces, DragAloneBringsPlatesToRest) {
   SphereState state = hemispheres(world, 80.0);
   state.plates[0].axis = {0.0, 0.0, 1.0};  // both turn as one: nothing meets, nothing parts
   SphereTectonics model(world.mesh, settings, std::move(state), 1);
-  model.advance();
-  const double driving = length(model.torques()[1].driving_n_m);
+  advance(model);
+  const double driving = length(torques(model)[1].driving_n_m);
   EXPECT_LT(driving, 1e-9 * 2.0 * kRadius_m * kRadius_m * ridge_push_n_m(60.0));
-  for (int k = 1; k < 20; ++k) model.advance();
+  for (int k = 1; k < 20; ++k) advance(model);
   // e^(-40 / 4) of 40 mm/yr.
-  for (const Vector3& rotation : model.rotations()) {
+  for (const Vector3& rotation : model.rotation) {
     EXPECT_NEAR(6370.0 * length(rotation), 40.0 * std::exp(-10.0), 1e-6);
   }
 }
@@ -157,10 +157,10 @@ TEST(SphereForces, ContinentsDragMore) {
   SphereSettings settings = by_forces();
   settings.force.continental_drag = 3.0;
   const SphereTectonics model(world.mesh, settings, std::move(state), 1);
-  const auto torques = model.torques();
+  const auto all = torques(model);
   for (int c = 0; c < 3; ++c) {
-    EXPECT_NEAR(torques[1].drag_n_m_s[c][c], 3.0 * torques[0].drag_n_m_s[c][c],
-                1e-2 * torques[1].drag_n_m_s[c][c]);
+    EXPECT_NEAR(all[1].drag_n_m_s[c][c], 3.0 * all[0].drag_n_m_s[c][c],
+                1e-2 * all[1].drag_n_m_s[c][c]);
   }
 }
 
@@ -172,13 +172,13 @@ TEST(SphereForces, ASutureResistsBothContinentsAlike) {
   SphereSettings settings = by_forces();
   settings.penetration_km = 5000.0;  // they go on without becoming one
   SphereTectonics model(world.mesh, settings, std::move(state), 1);
-  for (int k = 0; k < 3; ++k) model.advance();
-  const auto torques = model.torques();
+  for (int k = 0; k < 3; ++k) advance(model);
+  const auto all = torques(model);
   const double wanted = 2.0 * kRadius_m * kRadius_m * 5e12;
   // Against their motion, which is eastwards for plate 1.
-  EXPECT_NEAR(torques[1].driving_n_m[2], -wanted, 0.03 * wanted);
+  EXPECT_NEAR(all[1].driving_n_m[2], -wanted, 0.03 * wanted);
   for (int c = 0; c < 3; ++c) {
-    EXPECT_NEAR(torques[0].driving_n_m[c], -torques[1].driving_n_m[c], 1e-9 * wanted);
+    EXPECT_NEAR(all[0].driving_n_m[c], -all[1].driving_n_m[c], 1e-9 * wanted);
   }
 }
 
@@ -198,7 +198,7 @@ TEST(SphereForces, AContinentalMarginIsPushedByTheFloorBesideIt) {
   }
   const SphereTectonics model(world.mesh, by_forces(), std::move(state), 1);
   const double wanted = 2.0 * kRadius_m * kRadius_m * ridge_push_n_m(100.0);
-  EXPECT_NEAR(model.torques()[1].driving_n_m[2], wanted, 0.02 * wanted);
+  EXPECT_NEAR(torques(model)[1].driving_n_m[2], wanted, 0.02 * wanted);
 }
 
 TEST(SphereForces, LeaveNoNetRotation) {
@@ -206,14 +206,14 @@ TEST(SphereForces, LeaveNoNetRotation) {
   SphereSettings settings;
   settings.by_forces = true;
   SphereTectonics model(world.mesh, settings, start_sphere(world.mesh, {}, settings, 3), 3);
-  for (int k = 0; k < 14; ++k) model.advance();
-  model.resample();
-  model.begin_step();
+  for (int k = 0; k < 14; ++k) advance(model);
+  resample(model);
+  begin_step(model);
   Vector3 sum{};
   double speeds = 0.0;
   for (std::int32_t i = 0; i < world.mesh.size(); ++i) {
     const Vector3& r = world.samples.position(i);
-    const Vector3 v = cross(model.rotations()[model.state().crust.plate[i]], r);
+    const Vector3 v = cross(model.rotation[model.state.crust.plate[i]], r);
     sum = add(sum, cross(r, v));
     speeds += length(v);
   }
@@ -232,21 +232,20 @@ TEST(SphereForces, MovePlatesWithSlabsFasterThanContinentsAtTheSpeedsOfTheEarth)
     double with_slab = 0.0, slab_area = 0.0, continents = 0.0, land_area = 0.0, all = 0.0,
            area = 0.0;
     for (int step = 0; step < 60; ++step) {
-      model.advance();
+      advance(model);
       if (step < 20) continue;
-      const std::size_t plates = model.state().plates.size();
+      const std::size_t plates = model.state.plates.size();
       std::vector<double> speed(plates), size(plates), land(plates), slab(plates);
       for (std::int32_t i = 0; i < world.mesh.size(); ++i) {
-        const int own = model.state().crust.plate[i];
+        const int own = model.state.crust.plate[i];
         if (own < 0) continue;
-        const int root = model.state().root(own);
-        const Vector3 at =
-            times(model.state().plates[own].turn.matrix(), world.samples.position(i));
-        speed[root] += 6370.0 * length(cross(model.rotations()[own], at));
+        const int root = model.state.root(own);
+        const Vector3 at = times(model.state.plates[own].turn.matrix(), world.samples.position(i));
+        speed[root] += 6370.0 * length(cross(model.rotation[own], at));
         size[root] += 1.0;
-        land[root] += model.state().crust.continental[i];
+        land[root] += model.state.crust.continental[i];
       }
-      for (const auto& trench : model.trenches()) slab[model.state().root(trench.lower)] += 1.0;
+      for (const auto& trench : model.margins.trenches) slab[model.state.root(trench.lower)] += 1.0;
       for (std::size_t p = 0; p < plates; ++p) {
         if (size[p] == 0.0) continue;
         all += speed[p];
@@ -281,8 +280,8 @@ TEST(SphereForces, GiveTheSameBitsOnAnyNumberOfThreads) {
   for (const int number : {1, 2, 4}) {
     omp_set_num_threads(number);
     SphereTectonics model(world.mesh, settings, start_sphere(world.mesh, {}, settings, 5), 5);
-    for (int k = 0; k < 30; ++k) model.advance();
-    ends.push_back(model.rotations());
+    for (int k = 0; k < 30; ++k) advance(model);
+    ends.push_back(model.rotation);
   }
   omp_set_num_threads(threads);
   EXPECT_EQ(ends[0], ends[1]);

@@ -46,7 +46,7 @@ SphereState land(const SampledSphere& world) {
 }
 
 double oldest_floor_myr(const SphereTectonics& model) {
-  const SphereCrust& crust = model.state().crust;
+  const SphereCrust& crust = model.state.crust;
   double oldest = -1.0;
   for (std::int32_t i = 0; i < crust.size(); ++i) {
     if (crust.plate[i] < 0 || crust.continental[i] != 0) continue;
@@ -59,44 +59,44 @@ double oldest_floor_myr(const SphereTectonics& model) {
 void part_at(SphereTectonics& model, double relative_mm_yr) {
   const double half = 0.5 * std::abs(relative_mm_yr) / kRadius_km;
   const double sign = relative_mm_yr < 0.0 ? -1.0 : 1.0;
-  model.set_motion(0, {0.0, 0.0, -sign}, half);
-  model.set_motion(1, {0.0, 0.0, sign}, half);
+  set_motion(model, 0, {0.0, 0.0, -sign}, half);
+  set_motion(model, 1, {0.0, 0.0, sign}, half);
 }
 
 TEST(SphereFloorAge, NoFloorIsOlderThanTheRiftThatMadeIt) {
   const SampledSphere world(20000);
   SphereTectonics model(world.mesh, settings_of(30), land(world), 1);
-  for (int k = 0; k < 13; ++k) model.advance();
-  const double rifted_myr = model.state().time_myr;
+  for (int k = 0; k < 13; ++k) advance(model);
+  const double rifted_myr = model.state.time_myr;
   const std::vector<Vector3> line{{0.0, std::cos(0.5), -std::sin(0.5)},
                                   {0.0, std::cos(0.5), std::sin(0.5)}};
-  model.rift_along(1, GreatCircleLine(line), 2, 25.0);
+  rift_plate_along(model, 1, GreatCircleLine(line), 2, 25.0);
   int seen = 0;
   for (int k = 0; k < 60; ++k) {
-    model.advance();
+    advance(model);
     // As a frame would show it, 17 steps before it is resampled, and after that.
     SphereTectonics shown = model;
-    shown.finish();
-    ASSERT_LE(oldest_floor_myr(shown), model.state().time_myr - rifted_myr + 1e-4);
-    seen += model.budget().resampled ? 1 : 0;
+    finish(shown);
+    ASSERT_LE(oldest_floor_myr(shown), model.state.time_myr - rifted_myr + 1e-4);
+    seen += model.budget.resampled ? 1 : 0;
   }
   EXPECT_EQ(seen, 2);
   // The oldest lies at the coast.
-  EXPECT_GT(oldest_floor_myr(model), 0.85 * (model.state().time_myr - rifted_myr));
+  EXPECT_GT(oldest_floor_myr(model), 0.85 * (model.state.time_myr - rifted_myr));
 }
 
 TEST(SphereFloorAge, NoFloorIsOlderThanTheTurnOfItsPlates) {
   const SampledSphere world(20000);
   SphereTectonics model(world.mesh, settings_of(40), land(world), 1);
   part_at(model, -60.0);
-  for (int k = 0; k < 12; ++k) model.advance();
+  for (int k = 0; k < 12; ++k) advance(model);
   // They lie 1440 km over each other, and part for longer than it takes to come clear again.
   part_at(model, 120.0);
-  for (int k = 0; k < 18; ++k) model.advance();
-  model.finish();
+  for (int k = 0; k < 18; ++k) advance(model);
+  finish(model);
   // At longitude 0; at 180 they have parted first and meet now.
   double oldest = 0.0;
-  const SphereCrust& crust = model.state().crust;
+  const SphereCrust& crust = model.state.crust;
   for (std::int32_t i = 0; i < world.mesh.size(); ++i) {
     if (crust.continental[i] != 0 || std::abs(longitude_deg(world.samples.position(i))) > 90.0) {
       continue;
@@ -111,13 +111,13 @@ TEST(SphereFloorAge, AgesFollowTheRateAtWhichPlatesHaveParted) {
   const SampledSphere world(40000);
   SphereTectonics model(world.mesh, settings_of(40), land(world), 1);
   part_at(model, 40.0);
-  for (int k = 0; k < 10; ++k) model.advance();
+  for (int k = 0; k < 10; ++k) advance(model);
   part_at(model, 120.0);
-  for (int k = 0; k < 5; ++k) model.advance();
-  model.finish();
+  for (int k = 0; k < 5; ++k) advance(model);
+  finish(model);
   // 800 km in 20 Myr, then 1200 km in 10: on both sides 600 km of the last 10 Myr, then 400 km of
   // 20.
-  const SphereCrust& crust = model.state().crust;
+  const SphereCrust& crust = model.state.crust;
   double sum = 0.0;
   int seen = 0;
   for (std::int32_t i = 0; i < world.mesh.size(); ++i) {
@@ -144,15 +144,15 @@ TEST(SphereFloorAge, OverRunsWithRiftsAllFloorIsYoungerThanTheFirst) {
     SphereTectonics model(world.mesh, settings, land(world), seed);
     double first_myr = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 36; ++k) {
-      model.advance();
-      for (const SphereEvent& event : model.events()) {
+      advance(model);
+      for (const SphereEvent& event : model.events) {
         first_myr = std::min(first_myr, event.time_myr);
       }
       if (k % 4 != 0) continue;
       SphereTectonics shown = model;
-      shown.finish();
-      ASSERT_LE(oldest_floor_myr(shown), std::max(0.0, model.state().time_myr - first_myr) + 1e-4)
-          << "seed " << seed << ", " << model.state().time_myr << " Myr";
+      finish(shown);
+      ASSERT_LE(oldest_floor_myr(shown), std::max(0.0, model.state.time_myr - first_myr) + 1e-4)
+          << "seed " << seed << ", " << model.state.time_myr << " Myr";
     }
     EXPECT_LT(first_myr, 40.0);
     EXPECT_GT(oldest_floor_myr(model), 10.0);

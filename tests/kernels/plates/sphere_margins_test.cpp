@@ -26,10 +26,10 @@ class BrokenContinent : public testing::Test {
 
   explicit BrokenContinent(double necking = 1.0, double thinning = 0.18)
       : world_(120000), model_(world_.mesh, settings(necking, thinning), beginning(), 1) {
-    for (int k = 0; k < 5; ++k) model_.advance();
-    before_ = model_.state().crust;
-    volume_km3_ = model_.budget().continental_km3;
-    model_.resample();
+    for (int k = 0; k < 5; ++k) advance(model_);
+    before_ = model_.state.crust;
+    volume_km3_ = model_.budget.continental_km3;
+    resample(model_);
   }
   static SphereSettings settings(double necking, double thinning) {
     SphereSettings s;
@@ -70,7 +70,7 @@ class BrokenContinent : public testing::Test {
   /// Calls at_sample(i, km seaward of the break) for the continent's crust far from its corners.
   template <class AtSample>
   void along_break(AtSample&& at_sample) const {
-    const SphereCrust& crust = model_.state().crust;
+    const SphereCrust& crust = model_.state.crust;
     const double parted_deg = 500.0 / kKmPerDegree;
     for (std::int32_t i = 0; i < crust.size(); ++i) {
       const Vector3& at = world_.samples.position(i);
@@ -99,15 +99,15 @@ void expect_same_volume(const SphereBudget& budget, double before_km3) {
   EXPECT_DOUBLE_EQ(budget.continental_km3 - before_km3, budget.resampling_km3);
 }
 
-TEST_F(BrokenContinent, KeepsItsVolume) { expect_same_volume(model_.budget(), volume_km3_); }
+TEST_F(BrokenContinent, KeepsItsVolume) { expect_same_volume(model_.budget, volume_km3_); }
 
-TEST_F(NeckedContinent, KeepsItsVolume) { expect_same_volume(model_.budget(), volume_km3_); }
+TEST_F(NeckedContinent, KeepsItsVolume) { expect_same_volume(model_.budget, volume_km3_); }
 
 TEST_F(NeckedContinent, IsThinHalfWayOut) {
   double edge_m = 0.0, middle_m = 0.0;
   int edges = 0, middles = 0;
   along_break([&](std::int32_t i, double off_km) {
-    const double thick_m = model_.state().crust.thickness_m[i];
+    const double thick_m = model_.state.crust.thickness_m[i];
     if (off_km > -60.0 && off_km < 0.0) {
       edge_m += thick_m;
       ++edges;
@@ -128,7 +128,7 @@ TEST_F(NeckedContinent, IsThinHalfWayOut) {
 TEST_F(BrokenContinent, ThinsEvenlyAlongTheBreakAndLessInland) {
   double low = 1e9, high = 0.0, edge = 0.0, inland = 0.0;
   int at_edge = 0, far = 0;
-  const SphereCrust& crust = model_.state().crust;
+  const SphereCrust& crust = model_.state.crust;
   along_break([&](std::int32_t i, double off_km) {
     if (off_km > -100.0 || off_km < -2600.0) return;
     // A plate has turned as a whole: what was here lies where its plate has come from.
@@ -163,9 +163,9 @@ TEST_F(BrokenContinent, SlopesWithoutTeeth) {
   double mean_km = 0.0, mean_m = 0.0;
   along_break([&](std::int32_t i, double off_km) {
     if (off_km < 20.0 || off_km > 100.0) return;
-    points.emplace_back(off_km, model_.state().crust.elevation_m[i]);
+    points.emplace_back(off_km, model_.state.crust.elevation_m[i]);
     mean_km += off_km;
-    mean_m += model_.state().crust.elevation_m[i];
+    mean_m += model_.state.crust.elevation_m[i];
   });
   ASSERT_GT(points.size(), 40U);
   mean_km /= std::ssize(points);

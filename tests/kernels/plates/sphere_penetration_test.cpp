@@ -28,8 +28,8 @@ double way_km(const SphereState& state, int a, int b) {
 
 double fastest_closing_mm_yr(const SphereTectonics& model) {
   double fastest = 0.0;
-  for (const Vector3& a : model.rotations()) {
-    for (const Vector3& b : model.rotations()) {
+  for (const Vector3& a : model.rotation) {
+    for (const Vector3& b : model.rotation) {
       fastest = std::max(fastest, kRadius_km * length(add(a, b, -1.0)));
     }
   }
@@ -54,16 +54,16 @@ TEST(SpherePenetration, NoContinentsCollideSoonerThanTheyCanHaveMet) {
     double fastest_km = 0.0;
     std::size_t told = 0;
     for (int k = 0; k < 10; ++k) {
-      model.begin_step();
+      begin_step(model);
       fastest_km += fastest_closing_mm_yr(model) * settings.law.step_myr;
-      model.advance();
-      for (; told < model.events().size(); ++told, ++collisions) {
-        const SphereEvent& event = model.events()[told];
+      advance(model);
+      for (; told < model.events.size(); ++told, ++collisions) {
+        const SphereEvent& event = model.events[told];
         const std::string where =
             "seed " + std::to_string(seed) + ", " + std::to_string(event.time_myr) +
             " Myr, plates " + std::to_string(event.first) + " and " + std::to_string(event.second);
         EXPECT_GE(fastest_km, settings.penetration_km - kSlack_km) << where;
-        EXPECT_GE(way_km(model.state(), event.first, event.second),
+        EXPECT_GE(way_km(model.state, event.first, event.second),
                   settings.penetration_km - kSlack_km)
             << where;
       }
@@ -108,11 +108,11 @@ TEST(SpherePenetration, ObliqueContinentsCollideWhenTheirClosingHasBroughtThemTh
   constexpr double kSpeed_mm_yr = 80.0;
   for (const double degrees : {0.0, 30.0, 55.0}) {
     SphereTectonics model = oblique(world, degrees, kSpeed_mm_yr);
-    while (model.events().empty() && model.state().time_myr < 40.0) model.advance();
-    ASSERT_EQ(model.events().size(), 1U) << degrees;
+    while (model.events.empty() && model.state.time_myr < 40.0) advance(model);
+    ASSERT_EQ(model.events.size(), 1U) << degrees;
     const double closing_mm_yr = kSpeed_mm_yr * std::cos(degrees * std::numbers::pi / 180.0);
-    EXPECT_GE(model.events()[0].time_myr, (300.0 - 60.0) / closing_mm_yr) << degrees;
-    EXPECT_LE(model.events()[0].time_myr, (300.0 + 2.0 * 120.0) / closing_mm_yr + 2.0) << degrees;
+    EXPECT_GE(model.events[0].time_myr, (300.0 - 60.0) / closing_mm_yr) << degrees;
+    EXPECT_LE(model.events[0].time_myr, (300.0 + 2.0 * 120.0) / closing_mm_yr + 2.0) << degrees;
   }
 }
 
@@ -121,10 +121,10 @@ TEST(SpherePenetration, ContinentsThatGoOnMeetingCollideThoughAllIsReadAnewBetwe
   constexpr double kSpeed_mm_yr = 20.0;
   // Resampled every 10 Myr, in which they come 200 km; 300 km are due after 15.
   SphereTectonics model = oblique(world, 0.0, kSpeed_mm_yr, 5);
-  while (model.events().empty() && model.state().time_myr < 60.0) model.advance();
-  ASSERT_EQ(model.events().size(), 1U);
-  EXPECT_GE(model.events()[0].time_myr, (300.0 - 60.0) / kSpeed_mm_yr);
-  EXPECT_LE(model.events()[0].time_myr, (300.0 + 3.0 * 120.0) / kSpeed_mm_yr + 2.0);
+  while (model.events.empty() && model.state.time_myr < 60.0) advance(model);
+  ASSERT_EQ(model.events.size(), 1U);
+  EXPECT_GE(model.events[0].time_myr, (300.0 - 60.0) / kSpeed_mm_yr);
+  EXPECT_LE(model.events[0].time_myr, (300.0 + 3.0 * 120.0) / kSpeed_mm_yr + 2.0);
 }
 
 }  // namespace

@@ -38,8 +38,8 @@ TEST(Continents, FloatAsTheirCrustHasIt) {
     const std::vector<std::int8_t> first = state.crust.continental;
     const std::vector<float> thick_m = state.crust.thickness_m;
     SphereTectonics model(world.mesh, settings, std::move(state), 5);
-    for (int k = 0; k < 9; ++k) model.advance();
-    const SphereCrust& crust = model.state().crust;
+    for (int k = 0; k < 9; ++k) advance(model);
+    const SphereCrust& crust = model.state.crust;
     int raised = 0, worn = 0, drowned = 0;
     for (std::int32_t i = 0; i < crust.size(); ++i) {
       if (first[i] == 0 || crust.plate[i] < 0 || crust.thickness_m[i] > 70000.0F) continue;
@@ -70,10 +70,10 @@ TEST(Continents, BelowTheSeaFillUpOnlyWhereErosionGoesByHeight) {
       state.crust.thickness_m[i] = 30000.0F;
     }
     SphereTectonics model(world.mesh, settings, std::move(state), 1);
-    for (int k = 0; k < 5; ++k) model.advance();
+    for (int k = 0; k < 5; ++k) advance(model);
     // 10 Myr at 0.02 per Myr, in steps of 2 Myr: 0.96^5.
     const double left = std::pow(0.96, 5);
-    const SphereCrust& crust = model.state().crust;
+    const SphereCrust& crust = model.state.crust;
     for (std::int32_t i = 0; i < crust.size(); ++i) {
       const bool sea = crust.plate[i] == 0;
       const double wanted_m = sea ? (land_alone ? -1000.0 : -1000.0 * left) : 1000.0 * left;

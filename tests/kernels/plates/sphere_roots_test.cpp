@@ -69,25 +69,25 @@ class ThickRoot : public testing::Test {
 
 TEST_F(ThickRoot, SpreadsToAPlateauOfTheSameVolume) {
   SphereTectonics model = with_continent(2000.0, 300.0);
-  const SphereCrust was = model.state().crust;
+  const SphereCrust was = model.state.crust;
   const Sums before = sums(was);
   ASSERT_EQ(before.thickest_m, kRoot_m);
-  model.advance();
-  const Sums after = sums(model.state().crust);
+  advance(model);
+  const Sums after = sums(model.state.crust);
   EXPECT_LE(after.thickest_m, kMost_m + 2.0);
   EXPECT_NEAR(after.thick_m, before.thick_m, 1e-5 * before.thick_m);
   // The surface goes with the root as Airy has it.
-  const SphereCrust& now = model.state().crust;
+  const SphereCrust& now = model.state.crust;
   for (std::int32_t i = 0; i < now.size(); ++i) {
     if (now.continental[i] == 0) continue;
     ASSERT_NEAR(6.6 * (now.elevation_m[i] - was.elevation_m[i]),
                 now.thickness_m[i] - was.thickness_m[i], 1.0);
   }
-  EXPECT_LT(model.budget().lost_km3, 1e-5 * model.budget().continental_km3);
+  EXPECT_LT(model.budget.lost_km3, 1e-5 * model.budget.continental_km3);
   // As much as was above the limit lies round the root: pi R^2 with 45 km over 39 km of room.
   int wide = 0;
   for (std::int32_t i = 0; i < world_.mesh.size(); ++i) {
-    wide += model.state().crust.thickness_m[i] > 1.2 * kWhole_m ? 1 : 0;
+    wide += model.state.crust.thickness_m[i] > 1.2 * kWhole_m ? 1 : 0;
   }
   const double root_km2 = std::numbers::pi * 300.0 * 300.0;
   const double sample_km2 = 4.0 * std::numbers::pi * 6370.0 * 6370.0 / world_.mesh.size();
@@ -96,23 +96,23 @@ TEST_F(ThickRoot, SpreadsToAPlateauOfTheSameVolume) {
 
 TEST_F(ThickRoot, OfASmallIslandLosesWhatFindsNoRoom) {
   SphereTectonics model = with_continent(350.0, 300.0);
-  const Sums before = sums(model.state().crust);
-  model.advance();
-  const Sums after = sums(model.state().crust);
+  const Sums before = sums(model.state.crust);
+  advance(model);
+  const Sums after = sums(model.state.crust);
   EXPECT_LE(after.thickest_m, kMost_m + 2.0);
   EXPECT_NEAR(after.thick_m, kMost_m * after.samples, 1e-3 * after.thick_m);
   const double sample_km2 = 4.0 * std::numbers::pi * 6370.0 * 6370.0 / world_.mesh.size();
-  EXPECT_NEAR(model.budget().lost_km3, 1e-3 * sample_km2 * (before.thick_m - after.thick_m),
-              1e-5 * model.budget().continental_km3);
+  EXPECT_NEAR(model.budget.lost_km3, 1e-3 * sample_km2 * (before.thick_m - after.thick_m),
+              1e-5 * model.budget.continental_km3);
 }
 
 TEST_F(ThickRoot, StaysWhereThereIsNoLimit) {
   SphereTectonics model = with_continent(2000.0, 300.0);
   SphereSettings free = settings();
   free.thickest_km = 0.0;
-  SphereTectonics unlimited(world_.mesh, free, model.state(), 1);
-  unlimited.advance();
-  EXPECT_EQ(sums(unlimited.state().crust).thickest_m, kRoot_m);
+  SphereTectonics unlimited(world_.mesh, free, model.state, 1);
+  advance(unlimited);
+  EXPECT_EQ(sums(unlimited.state.crust).thickest_m, kRoot_m);
 }
 
 }  // namespace

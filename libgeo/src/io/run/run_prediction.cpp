@@ -79,4 +79,22 @@ Prediction predict(const Pipeline& pipeline, int first, int last, double cells,
   return sum;
 }
 
+Prediction predict(const RunConfiguration& run, const RunPlan& plan, double cells,
+                   const MachineSpeed& speed) {
+  const RunSettings& settings = run.settings;
+  const double map_width_px = settings.maps ? static_cast<double>(settings.map_width_px) : 0.0;
+  const double vtk_share = share_of_vtk(static_cast<int>(settings.vtk_compression));
+  const auto predicted = [&](bool vtk) {
+    return predict(run.pipeline, plan.first, plan.last, cells, speed, vtk ? vtk_share : 0.0,
+                   map_width_px);
+  };
+  Prediction sum = predicted(settings.vtk);
+  if (settings.globe) {
+    constexpr double kSurface_bytes = 36.0;  // of a cell: corners and faces
+    sum.disk_bytes += predicted(true).disk_bytes - predicted(false).disk_bytes +
+                      vtk_share * kSurface_bytes * cells * (plan.last - plan.first + 1);
+  }
+  return sum;
+}
+
 }  // namespace geo::io

@@ -1,15 +1,12 @@
-// The half of a run session that computes and writes.
 #include "geo/io/run/run_session.hpp"
-
-#include <fmt/chrono.h>
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
+#include <memory>
 #include <utility>
 
 #include "geo/core/error.hpp"
+#include "geo/io/drawing/map_view.hpp"
 #include "geo/io/files/atomic_file.hpp"
 #include "geo/io/files/background_writer.hpp"
 #include "geo/io/files/build_info.hpp"
@@ -17,6 +14,8 @@
 #include "geo/io/run/island_session.hpp"
 #include "geo/io/run/recorded_file.hpp"
 #include "io/netcdf/frame_files.hpp"
+#include "io/run/run_clearing.hpp"
+#include "io/run/stage_job.hpp"
 #include "io/vtk/globe_files.hpp"
 
 namespace geo::io {
@@ -33,83 +32,36 @@ void tell(const Function& function, Arguments&&... arguments) {
   if (function) function(std::forward<Arguments>(arguments)...);
 }
 
-/// A table as comma-separated values with a line of names.
-std::string text_of(const StepTable& steps) {
-  std::string text = fmt::format("{}\n", fmt::join(steps.columns, ","));
-  for (const auto& row : steps.rows) {
-    for (std::size_t k = 0; k < steps.columns.size(); ++k) {
-      if (k > 0) text += ',';
-      if (k < row.size() && std::isfinite(row[k])) text += fmt::format("{}", row[k]);
-    }
-    text += '\n';
-  }
-  return text;
-}
-
-std::string text_of(const TextTable& table) {
-  std::string text = fmt::format("{}\n", fmt::join(table.columns, ","));
-  for (const auto& row : table.rows) text += fmt::format("{}\n", fmt::join(row, ","));
-  return text;
-}
-
-/// One background job: the files of a stage, then its entry in the manifest.
-struct StageJob {
-  Snapshot snapshot;
-  Provenance provenance;
-  std::filesystem::path netcdf, vti, csv;
-  StepTable steps;
-  std::vector<TextTable> tables;
-  StageRecord record;
-
-  void write(const RunSettings& settings) {
-    write_netcdf(netcdf, snapshot, provenance, static_cast<int>(settings.compression));
-    const auto folder = netcdf.parent_path();
-    record.list(folder, netcdf.filename().string());
-    if (settings.vtk) {
-      write_vti(vti, snapshot, provenance, static_cast<int>(settings.vtk_compression));
-      record.list(folder, vti.filename().string());
-    }
-    if (!steps.rows.empty()) write_table(csv, text_of(steps));
-    for (const TextTable& table : tables) {
-      write_table(csv.parent_path() / fmt::format("{}-{}.csv", csv.stem().string(), table.name),
-                  text_of(table));
-    }
-    for (const auto& [spec, values] : snapshot.fields) {
-      record.fields.push_back(summarise(*spec, *values, *snapshot.grid));
-    }
-  }
-  void write_table(const std::filesystem::path& path, const std::string& text) {
-    write_text_file(path, text);
-    record.list(path.parent_path(), path.filename().string());
-  }
-};
-
 }  // namespace
 
-/// An island that was made by command and has the name of the run's own becomes a further one. Its
-/// files have both names until the manifest knows the new one.
-void RunSession::name_islands_anew() {
-  const std::string_view own = run_.name_of(plan_.first);
-  for (StageRecord& record : manifest_.stages) {
-    if (!record.on_command || record.name != own) continue;
-    record.name = manifest_.free_name(own, 2);
-    const auto digests = std::exchange(record.file_digests, {});
-    for (std::string& file : record.files) {
-      const std::string before = file;
-      const auto extension = std::filesystem::path(before).extension().string();
-      const auto path = folder_.stage_file(numbers_[plan_.first], record.name, extension);
-      file = path.filename().string();
-      if (std::filesystem::exists(folder_.path() / before)) {
-        copy_whole_file(folder_.path() / before, path);
-      }
-      if (const auto known = digests.find(before); known != digests.end()) {
-        record.file_digests[file] = known->second;
-      }
-    }
-  }
+RunSession::RunSession(RunConfiguration run, std::vector<int> numbers, RunRequest request)
+    : run_(run),
+      numbers_(std::move(numbers)),
+      request_(std::move(request)),
+      folder_(request_.folder) {}
+
+void RunSession::prepare() {
+  now_or_given();  // refuses a bad SOURCE_DATE_EPOCH
+  if (!run_.settings.grid_is_automatic()) parse_grid_size(run_.settings.grid);
+  (void)run_.settings.map_view();  // refuses a centre that the projection cannot have
+  plan_ = plan_run(run_, request_.from, request_.to);
+  manifest_ = settle_in_folder(stage_folder(), request_, plan_);
+  inputs_ = read_inputs(
+      run_, plan_, read_complete_stages(stage_folder(), plan_), [this](const Grid& grid) {
+        folder_.check_writable(prediction_on(static_cast<double>(grid.size()), {}).disk_bytes);
+      });
+  run_.pipeline.check(inputs_.state->present(), plan_.first, plan_.last);
+  config_ = resolved_config(run_);
 }
 
-void RunSession::clear_for_this_run() {
+std::vector<std::string_view> RunSession::stages_to_run() const {
+  std::vector<std::string_view> names;
+  for (int at = plan_.first; at <= plan_.last; ++at) names.push_back(run_.name_of(at));
+  return names;
+}
+
+/// From here on the manifest is this run's.
+void RunSession::open_folder() {
   folder_.open();
   const auto& build = build_info();
   manifest_.version = build.version;
@@ -120,76 +72,14 @@ void RunSession::clear_for_this_run() {
   manifest_.seed = static_cast<std::uint64_t>(run_.settings.seed);
   manifest_.threads = request_.threads;
   manifest_.config_digest = digest_of(config_);
-  manifest_.complete = false;
-  manifest_.files.clear();
-  // From here on no stage that is about to be replaced counts as complete.
-  const bool planet_stays = run_.pipeline.stages()[plan_.first]->info().own_grid;
-  if (planet_stays) name_islands_anew();
-  std::erase_if(manifest_.stages, [&](const StageRecord& record) {
-    if (record.on_command) return !planet_stays;
-    const int at = run_.pipeline.find(record.name);
-    return at < plan_.begin || at >= plan_.first;
-  });
-  write_manifest(folder_.manifest(), manifest_);
-  for (int at = 0; at < static_cast<int>(run_.pipeline.stages().size()); ++at) {
-    if (at < plan_.begin || at >= plan_.first) folder_.remove_stage(numbers_[at], run_.name_of(at));
-  }
-  if (!planet_stays) folder_.remove_further_islands();
-  folder_.remove_summaries();
+  clear_for_run(stage_folder(), plan_, manifest_);
   write_text_file(folder_.config(), config_);
-}
-
-Provenance RunSession::provenance_of(int position) const {
-  const auto& build = build_info();
-  return {.title = fmt::format("terrane: {}", run_.name_of(position)),
-          .config_toml = config_,
-          .seed = static_cast<std::uint64_t>(run_.settings.seed),
-          .version = build.version,
-          .history = fmt::format("{:%Y-%m-%dT%H:%M:%SZ} terrane {} ({}): stage {}",
-                                 fmt::gmtime(now_or_given()), build.version, build.commit,
-                                 run_.name_of(position)),
-          .references = references_of(position)};
-}
-
-std::string RunSession::references_of(int position) const {
-  std::vector<std::string_view> sources;
-  for (const Parameter& parameter : run_.parameters) {
-    const std::string prefix = fmt::format("{}.", run_.name_of(position));
-    if (!parameter.name.starts_with(prefix) || parameter.source == "design") continue;
-    if (std::find(sources.begin(), sources.end(), parameter.source) == sources.end()) {
-      sources.push_back(parameter.source);
-    }
-  }
-  std::sort(sources.begin(), sources.end());
-  return fmt::format("docs/references.bib: {}", fmt::join(sources, ", "));
 }
 
 void RunSession::write_stage(BackgroundWriter& writer, FrameFiles& frames, int position,
                              const State& state, const Context& context, double seconds) {
-  auto job = std::make_shared<StageJob>();
-  job->snapshot.stage = run_.name_of(position);
-  job->snapshot.grid = state.shared_grid();
-  const auto& written = run_.stage(position).info().writes;
-  for (const FieldSpec* spec : written) {
-    job->snapshot.fields.emplace_back(spec, state.values(*spec));
-  }
-  const bool makes_months =
-      std::find(written.begin(), written.end(), &field::temperature) != written.end() &&
-      !run_.stage(position).info().own_grid;
-  if (run_.settings.monthly && makes_months) job->snapshot.months = context.monthly_fields;
-  job->provenance = provenance_of(position);
-  job->netcdf = file_of(position, ".nc");
-  job->vti = file_of(position, ".vti");
-  job->csv = file_of(position, ".csv");
-  job->steps = context.steps;
-  job->tables = context.tables;
-  job->record.name = run_.name_of(position);
-  job->record.own_grid = run_.stage(position).info().own_grid;
-  job->record.builder = this_builder();
-  job->record.seconds = time_is_given() ? 0.0 : seconds;
-  job->record.budget = context.budget;
-  job->record.events = context.event_records;
-  job->record.warnings = context.warnings;
+  auto job = std::make_shared<StageJob>(
+      job_of(stage_folder(), position, config_, state, context, seconds));
   writer.submit([this, job, &frames] {
     job->write(run_.settings);
     for (const std::string& name : frames.take_written()) job->record.list(folder_.path(), name);
@@ -225,7 +115,7 @@ void RunSession::keep_for_pictures(int position, const State& state) {
 
 void RunSession::execute(const RunEvents& events) {
   if (plan_.first <= plan_.last) {
-    clear_for_this_run();
+    open_folder();
     compute(events);
   } else {
     folder_.open();
@@ -252,7 +142,8 @@ void RunSession::compute(const RunEvents& events) {
   BackgroundWriter writer;
   int running = plan_.first;
   context.on_frame = [&](Frame frame) {
-    frames.write(writer, run_.name_of(running), std::move(frame), provenance_of(running));
+    frames.write(writer, run_.name_of(running), std::move(frame),
+                 provenance_of(run_, running, config_));
   };
   Clock::time_point start;
   Pipeline::Observer observer;

@@ -97,6 +97,46 @@ BoundaryType classify(const RelativeMotion& motion, double plate_speed_cm_yr) {
   return motion.shear > 0.18 * scale ? BoundaryType::transform : BoundaryType::interior;
 }
 
+namespace {
+
+/// The direction of a boundary over the cells around a point, and how its plates move there.
+void take_motion(const CubedSphere& mesh, std::span<const std::int16_t> plate,
+                 std::span<const std::int32_t> around, std::span<const Vector3> rotation_rad_myr,
+                 double radius_km, BoundaryPoint& point) {
+  const Vector3& here = mesh.position(point.cell);
+  Vector3 towards{};
+  for (const std::int32_t cell : around) {
+    const double side = plate[cell] == point.other ? 1.0 : plate[cell] == point.plate ? -1.0 : 0.0;
+    towards = add(towards, add(mesh.position(cell), here, -1.0), side);
+  }
+  point.towards = normalised(tangent(towards, here));
+  point.motion = relative_motion(velocity_mm_yr(rotation_rad_myr[point.plate], here, radius_km),
+                                 velocity_mm_yr(rotation_rad_myr[point.other], here, radius_km),
+                                 point.towards, here);
+}
+
+/// The mean motion over points of the same two plates around one.
+RelativeMotion mean_motion(const BoundaryPoint& point, std::span<const std::int32_t> around,
+                           std::span<const std::int32_t> point_of,
+                           std::span<const BoundaryPoint> points) {
+  double away = 0.0, shear = 0.0;
+  int count = 0;
+  for (const std::int32_t cell : around) {
+    if (point_of[cell] < 0) continue;
+    const BoundaryPoint& near = points[point_of[cell]];
+    const bool same = (near.plate == point.plate && near.other == point.other) ||
+                      (near.plate == point.other && near.other == point.plate);
+    if (!same) continue;
+    away += near.motion.opening - near.motion.closing;
+    shear += near.motion.shear;
+    ++count;
+  }
+  away /= count;
+  return {std::max(0.0, -away), std::max(0.0, away), shear / count};
+}
+
+}  // namespace
+
 std::vector<BoundaryPoint> find_boundaries(const CubedSphere& mesh,
                                            std::span<const std::int16_t> plate,
                                            std::span<const Vector3> rotation_rad_myr,
@@ -120,42 +160,15 @@ std::vector<BoundaryPoint> find_boundaries(const CubedSphere& mesh,
 #pragma omp for schedule(dynamic, 64)
     for (std::size_t k = 0; k < points.size(); ++k) {
       errors.guard([&] {
-        Surroundings& surroundings = *made;
-        BoundaryPoint& point = points[k];
-        const Vector3& here = mesh.position(point.cell);
-        Vector3 towards{};
-        for (const std::int32_t cell : surroundings.of(point.cell)) {
-          const double side = plate[cell] == point.other   ? 1.0
-                              : plate[cell] == point.plate ? -1.0
-                                                           : 0.0;
-          towards = add(towards, add(mesh.position(cell), here, -1.0), side);
-        }
-        point.towards = normalised(tangent(towards, here));
-        point.motion = relative_motion(
-            velocity_mm_yr(rotation_rad_myr[point.plate], here, radius_km),
-            velocity_mm_yr(rotation_rad_myr[point.other], here, radius_km), point.towards, here);
-        raw[k] = point;
+        take_motion(mesh, plate, made->of(points[k].cell), rotation_rad_myr, radius_km, points[k]);
+        raw[k] = points[k];
       });
     }
 #pragma omp for schedule(dynamic, 64)
     for (std::size_t k = 0; k < points.size(); ++k) {
       errors.guard([&] {
-        Surroundings& surroundings = *made;
         BoundaryPoint& point = points[k];
-        double away = 0.0, shear = 0.0;
-        int count = 0;
-        for (const std::int32_t cell : surroundings.of(point.cell)) {
-          if (point_of[cell] < 0) continue;
-          const BoundaryPoint& near = raw[point_of[cell]];
-          const bool same = (near.plate == point.plate && near.other == point.other) ||
-                            (near.plate == point.other && near.other == point.plate);
-          if (!same) continue;
-          away += near.motion.opening - near.motion.closing;
-          shear += near.motion.shear;
-          ++count;
-        }
-        away /= count;
-        point.motion = {std::max(0.0, -away), std::max(0.0, away), shear / count};
+        point.motion = mean_motion(point, made->of(point.cell), point_of, raw);
         point.type = classify(point.motion, plate_speed_cm_yr);
         point.strength = dominant(point.motion, point.type);
       });

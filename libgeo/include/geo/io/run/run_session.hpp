@@ -1,15 +1,11 @@
 #pragma once
 
-#include <filesystem>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "geo/core/pipeline.hpp"
-#include "geo/io/config/run_settings.hpp"
 #include "geo/io/files/background_writer.hpp"
-#include "geo/io/netcdf/stage_file.hpp"
 #include "geo/io/run/manifest.hpp"
 #include "geo/io/run/run_events.hpp"
 #include "geo/io/run/run_folder.hpp"
@@ -17,26 +13,12 @@
 #include "geo/io/run/run_pictures.hpp"
 #include "geo/io/run/run_plan.hpp"
 #include "geo/io/run/run_prediction.hpp"
+#include "geo/io/run/run_request.hpp"
+#include "geo/io/run/run_resume.hpp"
 
 namespace geo::io {
 
 class FrameFiles;
-
-/// What a command line asks of a run besides its configuration.
-struct RunRequest {
-  std::filesystem::path folder;
-  /// First stage to compute. In a new folder the run starts there, from the DEM itself. With
-  /// `overwrite` on a folder that holds a run, earlier stages keep their files.
-  std::string from;
-  std::string to;                  ///< last stage; empty: as configured
-  bool resume = false;             ///< go on after the last complete stage
-  bool allow_other_build = false;  ///< go on behind stages that another build wrote
-  /// The configuration is the one that the folder holds. A run that reached its own `run.to` is
-  /// then resumed to the last stage there is.
-  bool folders_configuration = false;
-  bool overwrite = false;  ///< replace what the folder holds
-  int threads = 1;
-};
 
 /// One run of a pipeline into a folder: configuration, DEM, stages, files.
 ///
@@ -57,7 +39,9 @@ class RunSession {
     return prediction_on(static_cast<double>(grid().size()), speed);
   }
   /// What it would take on another grid, of so many cells.
-  [[nodiscard]] Prediction prediction_on(double cells, const MachineSpeed& speed) const;
+  [[nodiscard]] Prediction prediction_on(double cells, const MachineSpeed& speed) const {
+    return predict(run_, plan_, cells, speed);
+  }
   /// Names of the stages that are still to be computed.
   [[nodiscard]] std::vector<std::string_view> stages_to_run() const;
   [[nodiscard]] const Grid& grid() const { return inputs_.state->grid(); }
@@ -67,26 +51,14 @@ class RunSession {
   void execute(const RunEvents& events);
 
  private:
-  void look_at_folder();
-  void take_open_settings(const std::string& before);
-  void go_on_from(const std::string& before);
-  void keep_earlier_stages(const std::string& before, int old_begin);
-  [[nodiscard]] std::optional<State> load_complete_stages() const;
-  [[nodiscard]] int count_complete_stages() const;
-  [[nodiscard]] bool is_complete(int position) const;
-  [[nodiscard]] std::string resolved_config() const;
-  [[nodiscard]] std::filesystem::path file_of(int position, std::string_view extension) const;
-
-  void name_islands_anew();
-  void clear_for_this_run();
+  [[nodiscard]] StageFolder stage_folder() const { return {folder_, run_, numbers_}; }
+  void open_folder();
   void compute(const RunEvents& events);
   void write_stage(BackgroundWriter& writer, FrameFiles& frames, int position, const State& state,
                    const Context& context, double seconds);
   void keep_for_pictures(int position, const State& state);
   void write_summaries(const RunEvents& events);
   void write_collections();
-  [[nodiscard]] Provenance provenance_of(int position) const;
-  [[nodiscard]] std::string references_of(int position) const;
 
   RunConfiguration run_;
   std::vector<int> numbers_;

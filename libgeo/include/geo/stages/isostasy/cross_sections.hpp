@@ -12,6 +12,30 @@
 
 namespace geo {
 
+// How sections vary along a boundary and beside it: design, chosen beside the Earth's relief for
+// belts that wind and swell.
+
+/// How much a deviation of the noise along a boundary makes it stronger or weaker, and the bounds
+/// of that for shortening (a share) and for the strength of a section, which ends nowhere in a cut.
+inline constexpr double kAlongBoundary = 0.35;
+inline constexpr double kLeastClosing = 0.2, kMostClosing = 2.0;
+inline constexpr double kLeastStrength = 0.05, kMostStrength = 1.3;
+/// How far a deviation of the noise shifts a section across its boundary, km, and the distances
+/// between which that begins: trenches stay where plates meet.
+inline constexpr double kShift_km = 55.0, kStraight_km = 40.0, kShifted_km = 200.0;
+/// Farther than this from a boundary no section reaches, and its noise is not read.
+inline constexpr double kSections_km = 2500.0;
+/// Plateaus by a log-normal of the noise: its deviation, half its square (the logarithm of its
+/// mean, so that swells have the mean 0), and about the deviation of what comes of it, by which it
+/// is divided.
+inline constexpr double kSkew = 0.6, kLogMean = 0.18, kSkewed = 0.8;
+/// Deviations of the noise between which old belts pass from worn down to whole, and how near to 0
+/// the noise is along their sutures: narrow lines.
+inline constexpr double kWornDown = -0.4, kWhole = 1.2, kSuture = 0.16;
+/// Over which arcs and trenches are smoothed, in the length for shortening, and plateaus: narrow
+/// features less, broad ones more.
+inline constexpr double kArcSmoothing = 0.7, kTrenchSmoothing = 0.6, kBeltSmoothing = 2.0;
+
 /// How convergence shortens crust.
 template <class V>
 struct Shortening {
@@ -31,7 +55,8 @@ Arithmetic<V> shortening_km_myr(const ConvergentMargins& margins, Index cell, do
   const ShorteningDensity density =
       collides ? himalayan_shortening(across, strength) : andean_shortening(across, strength);
   const double closing_km_myr =
-      margins.closing_mm_yr[cell] * std::clamp(1.0 + 0.35 * along, 0.2, 2.0);
+      margins.closing_mm_yr[cell] *
+      std::clamp(1.0 + kAlongBoundary * along, kLeastClosing, kMostClosing);
   return (collides ? s.collision : s.subduction) * s.crust_km *
          (closing_km_myr * (density.sheet + s.front * (density.wedge - density.sheet)));
 }
@@ -41,8 +66,11 @@ template <class V>
 void cut_section(const ConvergentMargins& margins, Index cell, double along, double shift,
                  const Arithmetic<V>& trenches, const Shortening<V>& shortening, Tectonics<V>& t) {
   const double straight_km = margins.across_km[cell];
-  const double across = straight_km + 55.0 * shift * smooth_step(40, 200, std::abs(straight_km));
-  const double strength = std::clamp(margins.strength[cell] * (1.0 + 0.35 * along), 0.05, 1.3);
+  const double across =
+      straight_km +
+      kShift_km * shift * smooth_step(kStraight_km, kShifted_km, std::abs(straight_km));
+  const double strength = std::clamp(margins.strength[cell] * (1.0 + kAlongBoundary * along),
+                                     kLeastStrength, kMostStrength);
   switch (margins.kind[cell]) {
     case Convergence::oceans:
       t.arc[cell] = V(island_arc(across, strength));
@@ -133,15 +161,15 @@ void cut_sections(const Crust<V>& crust, const CoarseGrid& coarse, const Tectoni
           t.ocean_swell[cell] = static_cast<float>(floors[i]);
           t.thickness_noise_km[cell] = V(thickness_noise_km * noises[i]);
           // Plateaus stand further above the middle of continents than basins lie below it.
-          const double up = std::exp(0.6 * swells[i]) - std::exp(0.18);
-          t.swell_m[cell] = V(swell_m * up / 0.8);
-          const double age = smooth_step(-0.4, 1.2, worns[i]);
-          t.relict[cell] = static_cast<float>(age * bell(sutures[i], 0.0, 0.16));
+          const double up = std::exp(kSkew * swells[i]) - std::exp(kLogMean);
+          t.swell_m[cell] = V(swell_m * up / kSkewed);
+          const double age = smooth_step(kWornDown, kWhole, worns[i]);
+          t.relict[cell] = static_cast<float>(age * bell(sutures[i], 0.0, kSuture));
         }
         const auto far_km = [&](int i) {
           return std::abs(frame.margins.across_km[grid.cell(i, j)]);
         };
-        const auto is_near = [&](int i) { return far_km(i) <= 2500.0F; };
+        const auto is_near = [&](int i) { return far_km(i) <= kSections_km; };
         row.choose(j, is_near);
         for (auto* line : {&alongs, &shifts}) line->read(row);
         for (int i = 0; i < grid.nx(); ++i) {
@@ -154,10 +182,10 @@ void cut_sections(const Crust<V>& crust, const CoarseGrid& coarse, const Tectoni
   }
   errors.rethrow();
   const Arithmetic<V> smoothing_km = crust.active(p.deformation_smoothing_km);
-  soften_far_edges<V>(grid, frame.margins, 2e3 * smoothing_km, t.thickening);
+  soften_far_edges<V>(grid, frame.margins, 1e3 * kBeltSmoothing * smoothing_km, t.thickening);
   blur(grid, t.shortening_km_myr, 1e3 * smoothing_km);
-  blur(grid, t.arc, 0.7e3 * smoothing_km);
-  blur(grid, t.trench_m, 0.6e3 * smoothing_km);
+  blur(grid, t.arc, 1e3 * kArcSmoothing * smoothing_km);
+  blur(grid, t.trench_m, 1e3 * kTrenchSmoothing * smoothing_km);
   t.convergent = t.thickening;
   for (Index cell = 0; cell < grid.size(); ++cell) t.convergent[cell] += t.arc[cell];
 }

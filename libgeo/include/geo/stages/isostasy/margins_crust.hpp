@@ -89,9 +89,61 @@ class Columns {
   }
 
  private:
+  // Where no source is named, values are design, chosen beside the Earth's relief.
+
+  /// Oldest sea floor but for a few remnants [muller2008].
   static constexpr double kOldestFloor_myr = 200.0;
-  static bool is_rough(double share, double island) { return share > 0.0 || island > 0.02; }
-  static bool is_folded(double belt, double relict) { return belt > 0.01 || relict > 0.02; }
+  /// Shares of a column's continent between which its floor passes into the oldest there is.
+  static constexpr double kFloor = 0.3, kStretched = 0.5;
+  /// Bounds of the thickness of crust, km, somewhat beyond those of the Earth's [laske2013].
+  static constexpr double kThinnest_km = 3.0, kThickest_km = 80.0;
+
+  /// Strength of arcs, belts and old belts below which their noise would not show, and is not read.
+  static constexpr double kFaintArc = 0.02, kFaintBelt = 0.01, kFaintRelict = 0.02;
+  static bool is_rough(double share, double island) { return share > 0.0 || island > kFaintArc; }
+  static bool is_folded(double belt, double relict) {
+    return belt > kFaintBelt || relict > kFaintRelict;
+  }
+
+  /// Share by which ranges and basins within a belt, and within the relict of one, vary its
+  /// thickening for each deviation of their noise.
+  static constexpr double kRanges = 0.16, kRelictRanges = 0.3;
+  /// How much rougher land is in a belt of full strength, and in the relict of one.
+  static constexpr double kBeltRoughness = 3.0, kRelictRoughness = 1.5;
+  /// What a belt of full strength lacks in lithosphere, over the thickness of a cold one: belts are
+  /// warm.
+  static constexpr double kWarmBelt = 0.12;
+  /// Share of isostasy.rift_km by which crust about a rift of full strength is thinner.
+  static constexpr double kYoungRift = 0.35;
+  /// The valley of a continental rift of full strength: its depth, and the distance from its axis
+  /// in which that falls off; its shoulders, which rise by the load that is taken away
+  /// [weissel1989]: their height, distance from the axis and breadth.
+  static constexpr double kValley_m = 1500.0, kValley_km = 38.0;
+  static constexpr double kShoulder_m = 900.0, kShoulderAway_km = 95.0, kShoulder_km = 55.0;
+
+  /// Share of swells that continents show where plates have made their height, some of it for the
+  /// same reason.
+  static constexpr double kMadeSwell = 0.6;
+  /// Share of the height over warm mantle that thick lithosphere lets through below a continent,
+  /// and the share that floor loses as it passes into one.
+  static constexpr double kHotLand = 0.6, kHotLost = 0.3;
+  /// About the mean of that height, over its largest: taken off floor, whose mean depth by age so
+  /// stays.
+  static constexpr double kMeanHeat = 0.25;
+
+  /// Height of an island arc of full strength above its floor, and how much of it is in single
+  /// volcanoes, m.
+  static constexpr double kArc_m = 2600.0, kVolcanoes_m = 1500.0;
+  /// Share of a trench's depth that a continent beside it feels.
+  static constexpr double kTrenchOnLand = 0.5;
+  /// Depth from which on a trench is as empty of sediment as any, and the share that it lacks: what
+  /// comes there goes down with the plate.
+  static constexpr double kEmptyTrench_m = 1500.0, kTrenchLacks = 0.6;
+  /// Thickness of sediment under which abyssal hills are half as high.
+  static constexpr double kBurying_m = 700.0;
+  /// Deviations of the noise from which on a seamount stands, so that they are few, and above that
+  /// the most that one counts.
+  static constexpr double kSeamount = 1.9, kHighestSeamount = 1.5;
 
   struct Continent {
     Number thickness_km, elevation_m;
@@ -151,16 +203,16 @@ class Columns {
     if (share < 1.0) {
       floor_m =
           sea_floor_m(i, along, floor_age_myr(crust_.in.age_myr[cell], share), island, rough) +
-          hot * (1.0 - 0.3 * share) - 0.25 * p_.heat_m;
+          hot * (1.0 - kHotLost * share) - kMeanHeat * p_.heat_m;
     }
     crust_.thickness_m[cell] =
         V(1e3 * limited(Number(p_.oceanic_km + (land.thickness_km - p_.oceanic_km) * share +
                                p_.arc_km * island * (1.0 - share)),
-                        3.0, 80.0));
+                        kThinnest_km, kThickest_km));
     crust_.density[cell] =
         V(density_.oceanic_crust + (density_.continental_crust - density_.oceanic_crust) * share);
     Number trench_m(0.0);
-    if (share > 0.0) trench_m = Number(row.trench_m[i]) * 0.5 * share;
+    if (share > 0.0) trench_m = Number(row.trench_m[i]) * kTrenchOnLand * share;
     crust_.elevation_m[cell] =
         V(floor_m + (land.elevation_m - floor_m) * share + trench_m + Number(row.flexure_m[i]));
   }
@@ -177,22 +229,25 @@ class Columns {
     const Tectonics<V>& row = along.from_afar;
     const Number tilt_m =
         p_.margin_tilt_m * exp(-static_cast<double>(along.inland_km[i]) / p_.margin_tilt_km);
-    const Number relief_m =
-        p_.land_roughness_m * (1.0 + 3.0 * at.belt + 1.5 * row.relict[i]) * at.rough;
-    const Number on_land_m = 0.6 * Number(row.swell_m[i]) - tilt_m + relief_m + 0.6 * at.hot;
+    const Number relief_m = p_.land_roughness_m *
+                            (1.0 + kBeltRoughness * at.belt + kRelictRoughness * row.relict[i]) *
+                            at.rough;
+    const Number on_land_m =
+        kMadeSwell * Number(row.swell_m[i]) - tilt_m + relief_m + kHotLand * at.hot;
     Number at_sea_m(0.0);
     if (at.share < 1.0) {
-      at_sea_m = floor_cover_m(i, along, crust_.in.age_myr[cell]) + at.hot - 0.25 * p_.heat_m;
+      at_sea_m = floor_cover_m(i, along, crust_.in.age_myr[cell]) + at.hot - kMeanHeat * p_.heat_m;
     }
     crust_.density[cell] = V(density_.oceanic_crust +
                              (density_.continental_crust - density_.oceanic_crust) * at.share);
     // Roots of cratons that their lithosphere weighs down: they do not show at the surface.
     const Number root_m =
         1e3 * p_.craton_compensation * Number(row.thickness_noise_km[i]) * at.share;
-    crust_.thickness_m[cell] = limited(V(crust_.thickness_m[cell] + V(root_m)), 3000.0, 80000.0);
+    crust_.thickness_m[cell] =
+        limited(V(crust_.thickness_m[cell] + V(root_m)), 1e3 * kThinnest_km, 1e3 * kThickest_km);
     crust_.elevation_m[cell] =
         V(static_cast<double>(crust_.in.made_elevation_m[cell]) + on_land_m * at.share +
-          at_sea_m * (1.0 - at.share) + Number(row.trench_m[i]) * (1.0 - 0.5 * at.share));
+          at_sea_m * (1.0 - at.share) + Number(row.trench_m[i]) * (1.0 - kTrenchOnLand * at.share));
   }
 
   [[nodiscard]] Continent continent(int i, const Row& along, const Number& belt,
@@ -204,22 +259,23 @@ class Columns {
     const double relict = row.relict[i];
     const double fabric = is_folded(value_of(belt), relict) ? along.ranges[i] : 0.0;
     const Number thickness_km = p_.continental_km + noise_km +
-                                p_.collision_km * (belt * (1.0 + 0.16 * fabric)) -
+                                p_.collision_km * (belt * (1.0 + kRanges * fabric)) -
                                 to_come_km(p_.collision_km * belt, added_km_myr, crust_.run_myr) +
-                                p_.relict_km * (relict * (1.0 + 0.3 * fabric)) +
+                                p_.relict_km * (relict * (1.0 + kRelictRanges * fabric)) +
                                 p_.transpression_km * Number(row.transform[i]) -
-                                p_.rift_km * 0.35 * Number(row.divergent[i]);
+                                p_.rift_km * kYoungRift * Number(row.divergent[i]);
     // Thick cratons have thick, heavy roots; belts are warm.
     const Number lithosphere =
-        p_.lithosphere + p_.craton_compensation * craton_slope_ * noise_km - 0.12 * belt;
-    const Number valley_m =
-        Number(row.divergent[i]) *
-        (-1500.0 * bell(along.rift_km[i], 0.0, 38.0) + 900.0 * bell(along.rift_km[i], 95.0, 55.0));
-    const Number relief_m = p_.land_roughness_m * (1.0 + 3.0 * belt + 1.5 * relict);
+        p_.lithosphere + p_.craton_compensation * craton_slope_ * noise_km - kWarmBelt * belt;
+    const Number valley_m = Number(row.divergent[i]) *
+                            (-kValley_m * bell(along.rift_km[i], 0.0, kValley_km) +
+                             kShoulder_m * bell(along.rift_km[i], kShoulderAway_km, kShoulder_km));
+    const Number relief_m =
+        p_.land_roughness_m * (1.0 + kBeltRoughness * belt + kRelictRoughness * relict);
     const Number elevation_m =
         balanced(
             datum_.dry_elevation_m(1e3 * thickness_km, density_.continental_crust, lithosphere)) +
-        Number(row.swell_m[i]) + valley_m + relief_m * rough + hot * 0.6 -
+        Number(row.swell_m[i]) + valley_m + relief_m * rough + hot * kHotLand -
         p_.margin_tilt_m * exp(-static_cast<double>(along.inland_km[i]) / p_.margin_tilt_km);
     return {thickness_km, elevation_m};
   }
@@ -227,29 +283,30 @@ class Columns {
   /// Age of the floor that a column's oceanic part is: towards continents, whose own age is that of
   /// another event, as old as any floor gets. They were stretched before the first floor was made.
   static double floor_age_myr(double crust_age_myr, double share) {
-    if (share >= 0.5) return kOldestFloor_myr;
+    if (share >= kStretched) return kOldestFloor_myr;
     const double age_myr = std::min(crust_age_myr, kOldestFloor_myr);
-    return age_myr + smooth_step(0.3, 0.5, share) * (kOldestFloor_myr - age_myr);
+    return age_myr + smooth_step(kFloor, kStretched, share) * (kOldestFloor_myr - age_myr);
   }
   /// Floor as deep as it is old, under its sediment, with hills, seamounts, arcs and trenches.
   [[nodiscard]] Number sea_floor_m(int i, const Row& along, double age_myr, const Number& island,
                                    double rough) const {
     const Tectonics<V>& row = along.from_afar;
     return -ocean_depth_m(age_myr) + floor_cover_m(i, along, age_myr) +
-           island * (2600.0 + 1500.0 * rough) + Number(row.trench_m[i]);
+           island * (kArc_m + kVolcanoes_m * rough) + Number(row.trench_m[i]);
   }
   /// Sediment, swells, hills and seamounts on a floor.
   [[nodiscard]] Number floor_cover_m(int i, const Row& along, double crust_age_myr) const {
     const Tectonics<V>& row = along.from_afar;
     const double age_myr = std::min(crust_age_myr, kOldestFloor_myr);
-    const Number in_trench = limited(Number(-Number(row.trench_m[i]) / 1500.0), 0.0, 1.0);
-    const Number sediment_m =
-        deep_sediment_m(p_.sediment, age_myr, along.offshore_km[i]) * (1.0 - 0.6 * in_trench);
-    const Number buried = 1.0 / (1.0 + sediment_m / 700.0);
-    const double mount = std::max(0.0, along.mounts[i] - 1.9);
+    const Number in_trench = limited(Number(-Number(row.trench_m[i]) / kEmptyTrench_m), 0.0, 1.0);
+    const Number sediment_m = deep_sediment_m(p_.sediment, age_myr, along.offshore_km[i]) *
+                              (1.0 - kTrenchLacks * in_trench);
+    const Number buried = 1.0 / (1.0 + sediment_m / kBurying_m);
+    const double mount = std::max(0.0, along.mounts[i] - kSeamount);
     return datum_.rise_per_sediment() * sediment_m +
            p_.ocean_swell_m * static_cast<double>(row.ocean_swell[i]) +
-           p_.seafloor_roughness_m * buried * along.hills[i] + p_.seamount_m * std::min(1.5, mount);
+           p_.seafloor_roughness_m * buried * along.hills[i] +
+           p_.seamount_m * std::min(kHighestSeamount, mount);
   }
 
   /// A dry column under the sea, whose water loads it unless the compensation is dry.

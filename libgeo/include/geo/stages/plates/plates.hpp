@@ -8,8 +8,8 @@
 #include "geo/kernels/noise/great_circles.hpp"
 #include "geo/kernels/plates/growth/continents.hpp"
 #include "geo/kernels/plates/growth/plate_growth.hpp"
+#include "geo/kernels/plates/sphere/sphere_settings.hpp"
 #include "geo/kernels/plates/sphere/sphere_start.hpp"
-#include "geo/kernels/plates/sphere/sphere_tectonics.hpp"
 #include "geo/stages/plates/raster_parameters.hpp"
 
 namespace geo {

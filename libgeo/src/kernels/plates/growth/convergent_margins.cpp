@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "geo/core/array_sizes.hpp"
 #include "geo/core/field.hpp"
@@ -128,6 +129,105 @@ ShorteningDensity himalayan_shortening(double across_km, double strength) {
   return density(section, 0.5 * (inner + outer) + 25.0, across_km - 40.0);
 }
 
+namespace {
+
+/// What is known of plates on a grid.
+struct PlateFields {
+  std::span<const std::int16_t> plate;
+  std::span<const float> continental_fraction, age_myr, east_mm_yr, north_mm_yr;
+};
+
+/// The cells about one, of which a window of constant size holds about as many along as across.
+class Window {
+ public:
+  Window(const Grid& grid, Index centre, double reach_m)
+      : grid_(grid),
+        column_(grid.column(centre)),
+        row_(grid.row(centre)),
+        rows_(std::max(1, static_cast<int>(reach_m / grid.spacing_north_m(grid.ny() / 2)))),
+        columns_(
+            std::clamp(static_cast<int>(reach_m / grid.spacing_east_m(row_)), 1, grid.nx() / 4)),
+        stride_(std::max(1, columns_ / (2 * rows_))) {}
+
+  /// Hands a cell on with the square of how far it is from the middle.
+  template <class Visit>
+  void each(Visit&& visit) const {
+    for (int dj = -rows_; dj <= rows_; ++dj) {
+      const int j = row_ + dj;
+      if (j < 0 || j >= grid_.ny()) continue;
+      for (int di = -columns_; di <= columns_; di += stride_) {
+        const Index there = grid_.cell((column_ + di + grid_.nx()) % grid_.nx(), j);
+        visit(there, di * di / (stride_ * stride_) + dj * dj);
+      }
+    }
+  }
+
+ private:
+  const Grid& grid_;
+  int column_, row_, rows_, columns_, stride_;
+};
+
+/// The plates on both sides of a boundary at a cell of the first one, as means over a window; none
+/// where no other plate is in it.
+std::optional<std::array<Side, 2>> sides_at(const Grid& grid, const PlateFields& fields, Index cell,
+                                            double reach_m) {
+  const Window window(grid, cell, reach_m);
+  std::array<Side, 2> sides;
+  sides[0].plate = fields.plate[cell];
+  sides[0].nearest = cell;
+  int nearest = 1 << 20;
+  window.each([&](Index there, int far) {
+    if (fields.plate[there] == sides[0].plate || far >= nearest) return;
+    nearest = far;
+    sides[1].plate = fields.plate[there];
+    sides[1].nearest = there;
+  });
+  if (sides[1].plate < 0) return std::nullopt;
+  window.each([&](Index there, int) {
+    for (Side& s : sides) {
+      if (fields.plate[there] != s.plate) continue;
+      s.fraction += fields.continental_fraction[there];
+      s.speed += std::hypot(fields.east_mm_yr[there], fields.north_mm_yr[there]);
+      s.centre = add(s.centre, grid.unit_vector(grid.column(there), grid.row(there)), 1.0);
+      ++s.cells;
+      if (fields.continental_fraction[there] >= 0.5F) continue;  // of another age
+      s.floor_myr += fields.age_myr[there];
+      ++s.floor_cells;
+    }
+  });
+  for (Side& s : sides) {
+    s.fraction /= s.cells;
+    s.floor_myr /= std::max(1, s.floor_cells);
+    s.speed /= s.cells;
+    s.centre = add({}, s.centre, 1.0 / s.cells);
+  }
+  return sides;
+}
+
+/// What happens where two plates converge, and to which of them.
+struct Subduction {
+  Convergence kind;
+  std::int16_t down;
+};
+
+/// Floor goes below a continent, of two floors the older, of two continents the faster.
+Subduction subduction_of(const std::array<Side, 2>& sides) {
+  constexpr double kContinental = 0.45;
+  const auto& [first, second] = sides;
+  const auto subducts = [&](bool is_first, Convergence kind) {
+    return Subduction{kind, is_first ? first.plate : second.plate};
+  };
+  const auto decides = [&](double left, double right) {
+    return left < right || (left == right && first.plate < second.plate);
+  };
+  const bool a = first.fraction > kContinental, b = second.fraction > kContinental;
+  if (a != b) return subducts(b, Convergence::ocean_continent);
+  if (a) return subducts(decides(second.speed, first.speed), Convergence::continents);
+  return subducts(decides(second.floor_myr, first.floor_myr), Convergence::oceans);
+}
+
+}  // namespace
+
 ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int16_t> plate,
                                      std::span<const std::int8_t> boundary_type,
                                      std::span<const float> boundary_strength,
@@ -147,75 +247,17 @@ ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int1
   constexpr double kWindow_m = 220e3, kWidest_rad = 0.35, kHandicap_m = 150e3;
   // On small planets a window of that width holds all plates.
   const double window_m = std::min(kWindow_m, kWidest_rad * grid.figure().radius_m);
+  const PlateFields fields{plate, continental_fraction, age_myr, east_mm_yr, north_mm_yr};
   Sources sources(grid);
-  std::vector<std::int16_t> down;
-  std::vector<Convergence> kind;
+  std::vector<Subduction> subductions;
   std::vector<float> closing;
   for (Index cell = 0; cell < grid.size(); ++cell) {
     if (boundary_type[cell] != kConvergent || !touches_another_plate(grid, plate, cell)) continue;
-    // Means of both plates over a window of constant size.
-    const int column = grid.column(cell), row = grid.row(cell);
-    const int rows = std::max(1, static_cast<int>(window_m / grid.spacing_north_m(grid.ny() / 2)));
-    const int columns =
-        std::clamp(static_cast<int>(window_m / grid.spacing_east_m(row)), 1, grid.nx() / 4);
-    const int stride = std::max(1, columns / (2 * rows));
-    std::array<Side, 2> side;
-    side[0].plate = plate[cell];
-    side[0].nearest = cell;
-    int nearest = 1 << 20;
-    for (int pass = 0; pass < 2; ++pass) {
-      for (int dj = -rows; dj <= rows; ++dj) {
-        const int j = row + dj;
-        if (j < 0 || j >= grid.ny()) continue;
-        for (int di = -columns; di <= columns; di += stride) {
-          const Index there = grid.cell((column + di + grid.nx()) % grid.nx(), j);
-          const int far = di * di / (stride * stride) + dj * dj;
-          if (pass == 0 && plate[there] != side[0].plate && far < nearest) {
-            nearest = far;
-            side[1].plate = plate[there];
-            side[1].nearest = there;
-          }
-          if (pass == 0) continue;
-          for (Side& s : side) {
-            if (plate[there] != s.plate) continue;
-            s.fraction += continental_fraction[there];
-            s.speed += std::hypot(east_mm_yr[there], north_mm_yr[there]);
-            s.centre = add(s.centre, grid.unit_vector(grid.column(there), j), 1.0);
-            ++s.cells;
-            if (continental_fraction[there] >= 0.5F) continue;  // of another age
-            s.floor_myr += age_myr[there];
-            ++s.floor_cells;
-          }
-        }
-      }
-      if (side[1].plate < 0) break;
-    }
-    if (side[1].plate < 0) continue;
-    for (Side& s : side) {
-      s.fraction /= s.cells;
-      s.floor_myr /= std::max(1, s.floor_cells);
-      s.speed /= s.cells;
-      s.centre = add({}, s.centre, 1.0 / s.cells);
-    }
-    constexpr double kContinental = 0.45;
-    const bool a = side[0].fraction > kContinental, b = side[1].fraction > kContinental;
-    const auto decides = [&](double left, double right) {
-      return left < right || (left == right && side[0].plate < side[1].plate);
-    };
-    bool first_subducts;
-    if (a != b) {
-      first_subducts = b;
-      kind.push_back(Convergence::ocean_continent);
-    } else if (a) {
-      first_subducts = decides(side[1].speed, side[0].speed);
-      kind.push_back(Convergence::continents);
-    } else {
-      first_subducts = decides(side[1].floor_myr, side[0].floor_myr);
-      kind.push_back(Convergence::oceans);
-    }
-    down.push_back(side[first_subducts ? 0 : 1].plate);
-    closing.push_back(
-        static_cast<float>(closing_speed(grid, side[0], side[1], east_mm_yr, north_mm_yr)));
+    const auto sides = sides_at(grid, fields, cell, window_m);
+    if (!sides) continue;
+    subductions.push_back(subduction_of(*sides));
+    closing.push_back(static_cast<float>(
+        closing_speed(grid, sides->front(), sides->back(), east_mm_yr, north_mm_yr)));
     sources.add(grid, cell, kHandicap_m * (1.0 - boundary_strength[cell]));
   }
   sources.propagate(grid);
@@ -228,10 +270,10 @@ ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int1
 #pragma omp parallel for schedule(static)
   for (Index cell = 0; cell < grid.size(); ++cell) {
     const std::int32_t source = sources.nearest[cell];
-    const double side = plate[cell] == down[source] ? -1.0 : 1.0;
+    const double side = plate[cell] == subductions[source].down ? -1.0 : 1.0;
     margins.across_km[cell] = static_cast<float>(side * sources.distance_km(grid, cell));
     margins.strength[cell] = boundary_strength[sources.cell[source]];
-    margins.kind[cell] = kind[source];
+    margins.kind[cell] = subductions[source].kind;
     margins.closing_mm_yr[cell] = closing[source];
   }
   return margins;

@@ -4,12 +4,13 @@
 
 #include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/crust/ocean_depth.hpp"
-#include "geo/kernels/plates/sphere/sphere_tectonics.hpp"
+#include "sphere_steps.hpp"
 
 namespace geo {
+namespace {
 
 /// How plates have moved since the last resampling, and so when what lies open now has opened.
-class SphereTectonics::GapHistory {
+class GapHistory {
  public:
   explicit GapHistory(const SphereState& state) : time_myr_(state.past_myr) {
     time_myr_.push_back(state.time_myr);
@@ -64,32 +65,35 @@ class SphereTectonics::GapHistory {
   std::vector<std::vector<Matrix3>> frames_;  // of each plate at each of the times
 };
 
-/// New floor where no plate is: each place hears of the nearest sample of the two nearest plates;
-/// the ridge runs half way between them.
-void SphereTectonics::fill_gaps(SphereCrust& now, std::vector<std::int16_t>& owner,
-                                std::span<const std::int16_t> body) {
-  const FibonacciSphere& samples = mesh_->samples();
-  const SphereSettings& s = settings_;
-  const std::int32_t n = mesh_->size();
+/// Places where no plate is, and the nearest sample of the two nearest plates to each.
+class Gaps {
+ public:
+  Gaps(const SphereMesh& mesh, const std::vector<std::int16_t>& owner)
+      : mesh_(mesh), owner_(owner), number_(mesh.size(), -1) {
+    for (std::int32_t i = 0; i < mesh.size(); ++i) {
+      if (owner[i] >= 0) continue;
+      number_[i] = static_cast<std::int32_t>(places_.size());
+      places_.push_back(i);
+    }
+    sides_.resize(places_.size());
+    hear_from(shores());
+  }
   struct Sides {
     std::array<std::int32_t, 2> source{-1, -1};
     std::array<float, 2> chord2{9.0F, 9.0F};
   };
-  std::vector<std::int32_t> number(n, -1), gaps, queue, next;
-  for (std::int32_t i = 0; i < n; ++i) {
-    if (owner[i] >= 0) continue;
-    number[i] = static_cast<std::int32_t>(gaps.size());
-    gaps.push_back(i);
-  }
-  std::vector<Sides> sides(gaps.size());
+  [[nodiscard]] const std::vector<std::int32_t>& places() const { return places_; }
+  [[nodiscard]] const std::vector<Sides>& sides() const { return sides_; }
+
+ private:
   /// True when the place did not know of a source as near of that plate.
-  const auto offer = [&](std::int32_t i, std::int32_t source) {
-    Sides& at = sides[number[i]];
-    const Vector3 way = add(samples.position(i), samples.position(source), -1.0);
+  bool offer(std::int32_t i, std::int32_t source) {
+    Sides& at = sides_[number_[i]];
+    const Vector3 way = add(mesh_.samples().position(i), mesh_.samples().position(source), -1.0);
     const auto chord2 = static_cast<float>(dot(way, way));
     int slot = -1;
     for (int k = 0; k < 2; ++k) {
-      if (at.source[k] >= 0 && owner[at.source[k]] == owner[source]) slot = k;
+      if (at.source[k] >= 0 && owner_[at.source[k]] == owner_[source]) slot = k;
     }
     if (slot < 0) slot = at.source[0] < 0 ? 0 : 1;
     if (chord2 >= at.chord2[slot]) return false;
@@ -100,71 +104,92 @@ void SphereTectonics::fill_gaps(SphereCrust& now, std::vector<std::int16_t>& own
       std::swap(at.chord2[0], at.chord2[1]);
     }
     return true;
-  };
-  for (const std::int32_t i : gaps) {
-    bool reached = false;
-    for (const std::int32_t j : mesh_->neighbours(i)) {
-      if (owner[j] >= 0) reached = offer(i, j) || reached;
-    }
-    if (reached) queue.push_back(i);
   }
-  while (!queue.empty()) {
-    next.clear();
-    for (const std::int32_t i : queue) {
-      for (const std::int32_t j : mesh_->neighbours(i)) {
-        if (owner[j] >= 0) continue;
-        bool reached = false;
-        for (const std::int32_t source : sides[number[i]].source) {
-          if (source >= 0) reached = offer(j, source) || reached;
-        }
-        if (reached) next.push_back(j);
+  /// Places beside a plate, which know of it.
+  [[nodiscard]] std::vector<std::int32_t> shores() {
+    std::vector<std::int32_t> found;
+    for (const std::int32_t i : places_) {
+      bool reached = false;
+      for (const std::int32_t j : mesh_.neighbours(i)) {
+        if (owner_[j] >= 0) reached = offer(i, j) || reached;
       }
+      if (reached) found.push_back(i);
     }
-    queue.swap(next);
+    return found;
   }
-  const GapHistory history(state_);
-  const auto gap_count = static_cast<std::int32_t>(gaps.size());
-  std::vector<std::int16_t> nearest_plate(gaps.size());
+  /// Places tell their neighbours what they know, until nobody hears news.
+  void hear_from(std::vector<std::int32_t> queue) {
+    std::vector<std::int32_t> next;
+    while (!queue.empty()) {
+      next.clear();
+      for (const std::int32_t i : queue) {
+        for (const std::int32_t j : mesh_.neighbours(i)) {
+          if (owner_[j] >= 0) continue;
+          bool reached = false;
+          for (const std::int32_t source : sides_[number_[i]].source) {
+            if (source >= 0) reached = offer(j, source) || reached;
+          }
+          if (reached) next.push_back(j);
+        }
+      }
+      queue.swap(next);
+    }
+  }
+
+  const SphereMesh& mesh_;
+  const std::vector<std::int16_t>& owner_;
+  std::vector<std::int32_t> number_, places_;  // of a place by its sample, and the other way round
+  std::vector<Sides> sides_;                   // of each place
+};
+
+/// New floor at a place between its sides: the ridge runs half way between them.
+void lay_floor(const SphereTectonics& model, const GapHistory& history, std::int32_t i,
+               const Gaps::Sides& sides, std::span<const std::int16_t> body, SphereCrust& now) {
+  const FibonacciSphere& samples = model.mesh->samples();
+  const SphereSettings& s = model.settings;
+  const auto [first, second] = sides.source;
+  const double near_km = model.distance_km(i, first);
+  const double far_km = second >= 0 ? model.distance_km(i, second) : near_km;
+  const double ridge_km = 0.5 * (far_km - near_km);
+  const double share = ridge_share(ridge_km, near_km);
+  const double mean_km =
+      1e-3 *
+      (now.elevation_m[first] * far_km +
+       (second >= 0 ? now.elevation_m[second] : now.elevation_m[first]) * near_km) /
+      std::max(1e-9, near_km + far_km);
+  const double profile_km = ridge_profile_km(ridge_km, s.ridge_falloff * s.radius_km, s.law);
+  const double age_myr =
+      second >= 0 ? history.age_myr(samples.position(i),
+                                    add(samples.position(second), samples.position(first), -1.0),
+                                    body[first], body[second], share)
+                  : 0.0;
+  now.age_myr[i] = static_cast<float>(age_myr);
+  now.elevation_m[i] = static_cast<float>(
+      s.floor_by_age ? -ocean_depth_m(age_myr) : 1e3 * new_floor_km(share, mean_km, profile_km));
+  now.thickness_m[i] = static_cast<float>(1e3 * s.oceanic_km);
+  if (second < 0) return;
+  const Vector3 from_ridge = add(samples.position(first), samples.position(second), -1.0);
+  const Vector3 ridge = normalised(cross(from_ridge, samples.position(i)));
+  for (int c = 0; c < 3; ++c) now.ridge[i][c] = static_cast<float>(ridge[c]);
+}
+
+}  // namespace
+
+void fill_gaps(SphereTectonics& model, SphereCrust& now, std::vector<std::int16_t>& owner,
+               std::span<const std::int16_t> body) {
+  const Gaps gaps(*model.mesh, owner);
+  const GapHistory history(model.state);
+  const auto count = static_cast<std::int32_t>(gaps.places().size());
   ParallelErrors errors;
 #pragma omp parallel for schedule(static)
-  for (std::int32_t k = 0; k < gap_count; ++k) {
-    errors.guard([&] {
-      const std::int32_t i = gaps[k];
-      const auto [first, second] = sides[k].source;
-      const double near_km = distance_km(i, first);
-      const double far_km = second >= 0 ? distance_km(i, second) : near_km;
-      const double ridge_km = 0.5 * (far_km - near_km);
-      const double share = ridge_share(ridge_km, near_km);
-      const double mean_km =
-          1e-3 *
-          (now.elevation_m[first] * far_km +
-           (second >= 0 ? now.elevation_m[second] : now.elevation_m[first]) * near_km) /
-          std::max(1e-9, near_km + far_km);
-      const double profile_km = ridge_profile_km(ridge_km, s.ridge_falloff * s.radius_km, s.law);
-      nearest_plate[k] = owner[first];
-      const double age_myr =
-          second >= 0
-              ? history.age_myr(samples.position(i),
-                                add(samples.position(second), samples.position(first), -1.0),
-                                body[first], body[second], share)
-              : 0.0;
-      now.age_myr[i] = static_cast<float>(age_myr);
-      now.elevation_m[i] =
-          static_cast<float>(s.floor_by_age ? -ocean_depth_m(age_myr)
-                                            : 1e3 * new_floor_km(share, mean_km, profile_km));
-      now.thickness_m[i] = static_cast<float>(1e3 * s.oceanic_km);
-      if (second < 0) return;
-      const Vector3& p = samples.position(i);
-      const Vector3 from_ridge = add(samples.position(first), samples.position(second), -1.0);
-      const Vector3 ridge = normalised(cross(from_ridge, p));
-      for (int c = 0; c < 3; ++c) now.ridge[i][c] = static_cast<float>(ridge[c]);
-    });
+  for (std::int32_t k = 0; k < count; ++k) {
+    errors.guard([&] { lay_floor(model, history, gaps.places()[k], gaps.sides()[k], body, now); });
   }
   errors.rethrow();
-  std::vector<std::int32_t> nearest(gaps.size());
-  for (std::int32_t k = 0; k < gap_count; ++k) nearest[k] = sides[k].source[0];
-  stretch_margins(gaps, nearest, now, owner);
-  for (std::int32_t k = 0; k < gap_count; ++k) owner[gaps[k]] = nearest_plate[k];
+  std::vector<std::int32_t> nearest(count);
+  for (std::int32_t k = 0; k < count; ++k) nearest[k] = gaps.sides()[k].source[0];
+  stretch_margins(model, gaps.places(), nearest, now, owner);
+  for (std::int32_t k = 0; k < count; ++k) owner[gaps.places()[k]] = owner[nearest[k]];
 }
 
 }  // namespace geo

@@ -3,8 +3,8 @@
 #include <numbers>
 
 #include "geo/core/random.hpp"
-#include "geo/kernels/plates/sphere/sphere_tectonics.hpp"
 #include "sphere_flood.hpp"
+#include "sphere_steps.hpp"
 
 namespace geo {
 namespace {
@@ -28,29 +28,16 @@ std::pair<Vector3, Vector3> across(const Vector3& at) {
   return {first, cross(at, first)};
 }
 
-}  // namespace
-
-/// The melt of a plume on the sea floor goes to one volcano until its plate has carried that away
-/// or it is as large as volcanoes get; the next one stands where the plume is then: a chain of
-/// islands and seamounts, the older the farther.
-void SphereTectonics::erupt() {
-  for (SpherePlume& plume : state_.plumes) {
-    const int plate = plume.growth_mm_yr > 0.0 ? plate_at(plume.place) : -1;
-    if (plate < 0) {
-      plume.volcano = {};
-      continue;
-    }
-    for (const auto& [volcano, volume_km3] : eruptions(plume, rotation_[plate])) {
-      grow_volcano(plate, volcano, volume_km3);
-    }
-  }
-}
+struct Eruption {
+  Vector3 place;
+  double volume_km3;
+};
 
 /// Where a plume's melt of a step comes out and how much of it, as the plate lies after the step.
-std::vector<SphereTectonics::Eruption> SphereTectonics::eruptions(SpherePlume& plume,
-                                                                  const Vector3& rotation) const {
-  const SphereSettings& s = settings_;
-  const RandomStream random(seed_, "plates.volcanoes");
+std::vector<Eruption> eruptions(const SphereTectonics& model, SpherePlume& plume,
+                                const Vector3& rotation) {
+  const SphereSettings& s = model.settings;
+  const RandomStream random(model.seed, "plates.volcanoes");
   const double step_myr = s.law.step_myr;
   const double way_km = s.radius_km * length(cross(rotation, plume.place)) * step_myr;
   const int parts = std::clamp(static_cast<int>(std::ceil(way_km / kPart_km)), 1, kMostParts);
@@ -90,31 +77,32 @@ std::vector<SphereTectonics::Eruption> SphereTectonics::eruptions(SpherePlume& p
 
 /// Lays a volume of lava on the ocean floor of a plate about a place, as a cone and its apron. What
 /// a summit that is high enough has no room for goes to the apron.
-void SphereTectonics::grow_volcano(int plate, const Vector3& place, double volume_km3) {
-  SphereCrust& crust = state_.crust;
+void grow_volcano(SphereTectonics& model, int plate, const Vector3& place, double volume_km3) {
+  SphereCrust& crust = model.state.crust;
   // A cone that samples can show.
-  const double cone_km =
-      std::max(settings_.volcano_km, 0.8 * settings_.radius_km * mesh_->samples().spacing());
-  const auto top_m = static_cast<float>(1e3 * settings_.plume_top_km);
+  const double cone_km = std::max(model.settings.volcano_km,
+                                  0.8 * model.settings.radius_km * model.mesh->samples().spacing());
+  const auto top_m = static_cast<float>(1e3 * model.settings.plume_top_km);
   struct Slope {
     std::int32_t sample;
     double cone, apron;
   };
   std::vector<Slope> slopes;
   std::vector<std::uint8_t> seen(crust.plate.size());
-  for (std::size_t p = 0; p < state_.plates.size(); ++p) {
-    if (!state_.plates[p].alive || state_.root(static_cast<int>(p)) != plate) continue;
-    const Vector3 here = back(frame_[p], place);
+  for (std::size_t p = 0; p < model.state.plates.size(); ++p) {
+    if (!model.state.plates[p].alive || model.state.root(static_cast<int>(p)) != plate) continue;
+    const Vector3 here = back(model.frame[p], place);
     const auto far_off = [&](std::int32_t i) {
-      return settings_.radius_km * angle_between(mesh_->samples().position(i), here) / cone_km;
+      return model.settings.radius_km * angle_between(model.mesh->samples().position(i), here) /
+             cone_km;
     };
     std::fill(seen.begin(), seen.end(), 0);
     for (const std::int32_t i :
-         flooded_from(*mesh_, mesh_->samples().nearest(here), seen,
+         flooded_from(*model.mesh, model.mesh->samples().nearest(here), seen,
                       [&](std::int32_t j) { return far_off(j) <= kReach * kApronWidth; })) {
       const double far = far_off(i);
       if (crust.plate[i] != static_cast<std::int16_t>(p) || crust.continental[i] != 0 ||
-          hidden_[i] != 0 || crust.elevation_m[i] >= top_m) {
+          model.margins.hidden[i] != 0 || crust.elevation_m[i] >= top_m) {
         continue;
       }
       slopes.push_back({i, far > kReach ? 0.0 : std::exp2(-far * far),
@@ -127,14 +115,14 @@ void SphereTectonics::grow_volcano(int plate, const Vector3& place, double volum
     aprons += slope.apron;
   }
   if (aprons <= 0.0) return;
-  const double height_m = 1e3 * volume_km3 / sample_km2();
+  const double height_m = 1e3 * volume_km3 / model.sample_km2();
   double left_m = cones > 0.0 ? 0.0 : (1.0 - kApron) * height_m;
   const auto pile = [&](std::int32_t i, double grown_m) {
     const double room_m = std::max(0.0, static_cast<double>(top_m) - crust.elevation_m[i]);
     const double piled_m = std::min(room_m, grown_m);
     crust.elevation_m[i] += static_cast<float>(piled_m);
     crust.thickness_m[i] += static_cast<float>(piled_m);
-    budget_.erupted_km3 += 1e-3 * sample_km2() * piled_m;
+    model.budget.erupted_km3 += 1e-3 * model.sample_km2() * piled_m;
     return grown_m - piled_m;
   };
   if (cones > 0.0) {
@@ -144,6 +132,24 @@ void SphereTectonics::grow_volcano(int plate, const Vector3& place, double volum
   }
   for (const Slope& slope : slopes) {
     pile(slope.sample, (kApron * height_m + left_m) * slope.apron / aprons);
+  }
+}
+
+}  // namespace
+
+/// The melt of a plume on the sea floor goes to one volcano until its plate has carried that away
+/// or it is as large as volcanoes get; the next one stands where the plume is then: a chain of
+/// islands and seamounts, the older the farther.
+void erupt(SphereTectonics& model) {
+  for (SpherePlume& plume : model.state.plumes) {
+    const int plate = plume.growth_mm_yr > 0.0 ? plate_at(model, plume.place) : -1;
+    if (plate < 0) {
+      plume.volcano = {};
+      continue;
+    }
+    for (const auto& [volcano, volume_km3] : eruptions(model, plume, model.rotation[plate])) {
+      grow_volcano(model, plate, volcano, volume_km3);
+    }
   }
 }
 

@@ -4,7 +4,7 @@
 
 #include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/plates/sphere/sphere_boundaries.hpp"
-#include "geo/kernels/plates/sphere/sphere_tectonics.hpp"
+#include "sphere_steps.hpp"
 
 namespace geo {
 namespace {
@@ -278,15 +278,15 @@ class PassiveMargins {
 /// stretched. What it takes flows from inland, whose crust thins towards the break, so that the
 /// volume of the continent stays; where that does not suffice, the margin thins sooner. All
 /// that a margin takes from the crust beside it are means along the break.
-void SphereTectonics::stretch_margins(std::span<const std::int32_t> gaps,
-                                      std::span<const std::int32_t> nearest, SphereCrust& now,
-                                      std::span<const std::int16_t> owner) {
-  if (settings_.margin_km <= 0.0 || settings_.margin_thinning <= 0.0) return;
-  PassiveMargins margins(*mesh_, settings_, now, owner);
+void stretch_margins(SphereTectonics& model, std::span<const std::int32_t> gaps,
+                     std::span<const std::int32_t> nearest, SphereCrust& now,
+                     std::span<const std::int16_t> owner) {
+  if (model.settings.margin_km <= 0.0 || model.settings.margin_thinning <= 0.0) return;
+  PassiveMargins margins(*model.mesh, model.settings, now, owner);
   margins.find(gaps, nearest);
   if (margins.empty()) return;
   margins.thin_inland();
-  budget_.stretched_km2 += sample_km2() * static_cast<double>(margins.lay());
+  model.budget.stretched_km2 += model.sample_km2() * static_cast<double>(margins.lay());
 }
 
 }  // namespace geo

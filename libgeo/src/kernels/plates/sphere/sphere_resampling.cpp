@@ -4,9 +4,9 @@
 
 #include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/crust/ocean_depth.hpp"
-#include "geo/kernels/plates/sphere/sphere_tectonics.hpp"
 #include "sample_sums.hpp"
 #include "sphere_flood.hpp"
+#include "sphere_steps.hpp"
 
 namespace geo {
 namespace {
@@ -55,144 +55,184 @@ Reading read_around(const SphereMesh& mesh, const SphereCrust& crust, const Vect
   return reading;
 }
 
-}  // namespace
+/// The crust that a resampling makes.
+struct NewCrust {
+  SphereCrust crust;
+  std::vector<std::int16_t> owner;  // of each sample, what moves as one; -1 in gaps
+  std::vector<std::int16_t> body;   // and what has moved as one so far
+};
 
-void SphereTectonics::resample() {
-  remember_penetration();
-  const FibonacciSphere& samples = mesh_->samples();
-  const std::int32_t n = mesh_->size();
-  const SphereCrust before = std::move(state_.crust);
-  state_.crust = before;  // is_on_top and the partition ask for it while the new one grows
-  SphereCrust now;
-  now.resize(n);
-  std::vector<std::int16_t> owner(n, -1), body(n, -1);  // what moves as one, and what has so far
-  const auto plates = static_cast<int>(state_.plates.size());
-  std::vector<int> root(plates);
-  for (int p = 0; p < plates; ++p) root[p] = state_.root(p);
-  const std::int32_t places = partition_.coarse().size();
-  const auto resample_place = [&](std::int32_t g) {
-    std::vector<int> candidates;
-    for (int p = 0; p < plates; ++p) {
-      if (!state_.plates[p].alive) continue;
-      if (partition_.may_hold(p, back(frame_[p], partition_.centre(g)))) candidates.push_back(p);
-    }
-    for (const std::int32_t i : partition_.samples_at(g)) {
-      std::int32_t top = -1, below = -1;
-      for (const int p : candidates) {
-        const std::int32_t j = samples.nearest(back(frame_[p], samples.position(i)));
-        if (before.plate[j] != p) continue;
-        if (top < 0) {
-          top = j;
-          continue;
-        }
-        const int q = before.plate[top];
-        // A body lies below the plate that carries it, as far as both are of one type.
-        const bool carried = root[p] == root[q] && before.continental[j] == before.continental[top];
-        const bool above = carried ? root[p] == p : is_on_top(j, top);
-        if (above) std::swap(top, below);
-        (above ? top : below) = j;
-      }
-      if (top < 0) continue;
-      const int p = before.plate[top];
-      const auto reading = read_around(*mesh_, before, back(frame_[p], samples.position(i)), top);
-      owner[i] = static_cast<std::int16_t>(root[p]);
-      body[i] = static_cast<std::int16_t>(p);
-      now.continental[i] = before.continental[top];
-      now.orogeny[i] = before.orogeny[top];
-      now.thickness_m[i] = reading(before.thickness_m);
-      now.elevation_m[i] = reading(before.elevation_m);
-      now.age_myr[i] = reading(before.age_myr);
-      now.orogeny_age_myr[i] = reading(before.orogeny_age_myr);
-      now.ridge[i] = turned(frame_[p], reading(before.ridge));
-      now.fold[i] = turned(frame_[p], reading(before.fold));
-      if (below < 0 || root[before.plate[below]] == root[p]) continue;
-      // Continental crust that was thrust below another continent stays there, as its root.
-      if (before.continental[below] != 0 && before.continental[top] != 0) {
-        const double added = before.thickness_m[below];
-        now.thickness_m[i] += static_cast<float>(added);
-        now.elevation_m[i] = static_cast<float>(
-            std::min(1e3 * settings_.law.summit_km,
-                     height_after(now.elevation_m[i], added, settings_.rebound)));
-        now.orogeny[i] = static_cast<std::int8_t>(OrogenyType::himalayan);
-        now.orogeny_age_myr[i] = 0.0F;
-      }
-    }
-  };
-  ParallelErrors errors;
+/// Reads the crust of all plates at the places of the lattice.
+class CrustReader {
+ public:
+  explicit CrustReader(const SphereTectonics& model)
+      : m_(model), before_(model.state.crust), root_(model.state.plates.size()) {
+    const std::int32_t n = m_.mesh->size();
+    now_.crust.resize(n);
+    now_.owner.assign(n, -1);
+    now_.body.assign(n, -1);
+    for (int p = 0; p < std::ssize(root_); ++p) root_[p] = m_.state.root(p);
+  }
+
+  NewCrust read() {
+    const std::int32_t places = m_.partition.coarse().size();
+    ParallelErrors errors;
 #pragma omp parallel for schedule(dynamic, 16)
-  for (std::int32_t g = 0; g < places; ++g) errors.guard([&] { resample_place(g); });
-  errors.rethrow();
-  const auto oceanic = [&](const SphereCrust& crust) {
-    return sample_km2() * sum_over(n, [&](std::int32_t i) {
-             return crust.plate[i] >= 0 && crust.continental[i] == 0 ? 1.0 : 0.0;
-           });
+    for (std::int32_t g = 0; g < places; ++g) errors.guard([&] { read_around_place(g); });
+    errors.rethrow();
+    return std::move(now_);
+  }
+
+ private:
+  /// Samples of two plates at one place, or -1.
+  struct Stack {
+    std::int32_t top = -1, below = -1;
   };
-  const double ocean_before_km2 = oceanic(before);
-  measure_volume();
-  const double volume_before_km3 = budget_.continental_km3;
-  budget_.created_km2 =
-      sample_km2() * sum_over(n, [&](std::int32_t i) { return owner[i] < 0 ? 1.0 : 0.0; });
-  // Only where plates are ranked does a continent subduct below floor.
-  const double sunk_km3 =
-      1e-3 * sample_km2() * sum_over(n, [&](std::int32_t i) {
-        const bool is_below_floor = before.plate[i] >= 0 && before.continental[i] != 0 &&
-                                    hidden_[i] != 0 && before.continental[partner_[i]] == 0;
-        return is_below_floor ? static_cast<double>(before.thickness_m[i]) : 0.0;
-      });
+
+  void read_around_place(std::int32_t coarse) {
+    const std::vector<int> candidates = plates_near(coarse);
+    for (const std::int32_t i : m_.partition.samples_at(coarse)) {
+      const Stack found = stack_at(m_.mesh->samples().position(i), candidates);
+      if (found.top < 0) continue;
+      take(i, found.top);
+      const int below = found.below < 0 ? -1 : root_[before_.plate[found.below]];
+      if (below >= 0 && below != now_.owner[i]) add_root(i, found);
+    }
+  }
+  [[nodiscard]] std::vector<int> plates_near(std::int32_t coarse) const {
+    std::vector<int> near;
+    for (int p = 0; p < std::ssize(root_); ++p) {
+      if (!m_.state.plates[p].alive) continue;
+      const Vector3 local = back(m_.frame[p], m_.partition.centre(coarse));
+      if (m_.partition.may_hold(p, local)) near.push_back(p);
+    }
+    return near;
+  }
+  [[nodiscard]] Stack stack_at(const Vector3& place, const std::vector<int>& candidates) const {
+    Stack found;
+    for (const int p : candidates) {
+      const std::int32_t j = m_.mesh->samples().nearest(back(m_.frame[p], place));
+      if (before_.plate[j] != p) continue;
+      if (found.top < 0) {
+        found.top = j;
+      } else if (is_above(p, j, found.top)) {
+        found.below = found.top;
+        found.top = j;
+      } else {
+        found.below = j;
+      }
+    }
+    return found;
+  }
+  /// A body lies below the plate that carries it, as far as both are of one type.
+  [[nodiscard]] bool is_above(int plate, std::int32_t sample, std::int32_t top) const {
+    const bool is_carried = root_[plate] == root_[before_.plate[top]] &&
+                            before_.continental[sample] == before_.continental[top];
+    return is_carried ? root_[plate] == plate : is_on_top(m_, sample, top);
+  }
+  void take(std::int32_t i, std::int32_t top) {
+    const int p = before_.plate[top];
+    const Matrix3& frame = m_.frame[p];
+    const Vector3 local = back(frame, m_.mesh->samples().position(i));
+    const Reading reading = read_around(*m_.mesh, before_, local, top);
+    SphereCrust& now = now_.crust;
+    now_.owner[i] = static_cast<std::int16_t>(root_[p]);
+    now_.body[i] = static_cast<std::int16_t>(p);
+    now.continental[i] = before_.continental[top];
+    now.orogeny[i] = before_.orogeny[top];
+    now.thickness_m[i] = reading(before_.thickness_m);
+    now.elevation_m[i] = reading(before_.elevation_m);
+    now.age_myr[i] = reading(before_.age_myr);
+    now.orogeny_age_myr[i] = reading(before_.orogeny_age_myr);
+    now.ridge[i] = turned(frame, reading(before_.ridge));
+    now.fold[i] = turned(frame, reading(before_.fold));
+  }
+  /// Continental crust that was thrust below another continent stays there, as its root.
+  void add_root(std::int32_t i, const Stack& found) {
+    if (before_.continental[found.below] == 0 || before_.continental[found.top] == 0) return;
+    SphereCrust& now = now_.crust;
+    const double added_m = before_.thickness_m[found.below];
+    now.thickness_m[i] += static_cast<float>(added_m);
+    now.elevation_m[i] = static_cast<float>(
+        std::min(1e3 * m_.settings.law.summit_km,
+                 height_after(now.elevation_m[i], added_m, m_.settings.rebound)));
+    now.orogeny[i] = static_cast<std::int8_t>(OrogenyType::himalayan);
+    now.orogeny_age_myr[i] = 0.0F;
+  }
+
+  const SphereTectonics& m_;
+  const SphereCrust& before_;
+  std::vector<int> root_;  // of each plate
+  NewCrust now_;
+};
+
+/// Area of all samples of which something holds.
+template <class Holds>
+double area_km2(const SphereTectonics& model, Holds&& holds) {
+  return model.sample_km2() *
+         sum_over(model.mesh->size(), [&](std::int32_t i) { return holds(i) ? 1.0 : 0.0; });
+}
+
+double ocean_km2(const SphereTectonics& model) {
+  const SphereCrust& crust = model.state.crust;
+  return area_km2(model,
+                  [&](std::int32_t i) { return crust.plate[i] >= 0 && crust.continental[i] == 0; });
+}
+
+/// What has opened, and what has gone below other plates or been consumed.
+void enter_areas(SphereTectonics& model, const std::vector<std::int16_t>& owner) {
+  const SphereCrust& crust = model.state.crust;
   const auto gone_km2 = [&](std::int8_t type) {
-    return sample_km2() * sum_over(n, [&](std::int32_t i) {
-             return before.continental[i] == type && (before.plate[i] < 0 || hidden_[i] != 0) ? 1.0
-                                                                                              : 0.0;
-           });
+    return area_km2(model, [&](std::int32_t i) {
+      return crust.continental[i] == type && (crust.plate[i] < 0 || model.margins.hidden[i] != 0);
+    });
   };
-  budget_.consumed_km2 = gone_km2(0);
-  budget_.buried_km2 = gone_km2(1);
-  fill_gaps(now, owner, body);
-  state_.crust = std::move(now);
-  state_.crust.plate = std::move(owner);
-  for (SpherePlate& plate : state_.plates) {
+  model.budget.created_km2 = area_km2(model, [&](std::int32_t i) { return owner[i] < 0; });
+  model.budget.consumed_km2 = gone_km2(0);
+  model.budget.buried_km2 = gone_km2(1);
+}
+
+/// Continents that have subducted below floor, which happens only where plates are ranked.
+double sunk_below_floor_km3(const SphereTectonics& model) {
+  const SphereCrust& crust = model.state.crust;
+  const SphereMargins& margins = model.margins;
+  return 1e-3 * model.sample_km2() * sum_over(model.mesh->size(), [&](std::int32_t i) {
+           const bool is_below_floor = crust.plate[i] >= 0 && crust.continental[i] != 0 &&
+                                       margins.hidden[i] != 0 &&
+                                       crust.continental[margins.partner[i]] == 0;
+           return is_below_floor ? static_cast<double>(crust.thickness_m[i]) : 0.0;
+         });
+}
+
+/// Plates lie as their samples do, and bodies are part of what carried them.
+void begin_turning_anew(SphereState& state) {
+  for (SpherePlate& plate : state.plates) {
     plate.turn = {};
     plate.past.clear();
     if (plate.carrier >= 0) plate.alive = false;
     plate.carrier = -1;
   }
-  state_.resampled_myr = state_.time_myr;
-  state_.past_myr.clear();
-  tidy_pieces();
-  repartition();
-  std::fill(partner_.begin(), partner_.end(), -1);
-  std::fill(hidden_.begin(), hidden_.end(), 0);
-  std::fill(trench_of_.begin(), trench_of_.end(), -1);
-  trenches_.clear();
-  contacts_.clear();
-  const double lost_before_km3 = budget_.lost_km3;
-  budget_.lost_km3 += sunk_km3;
-  spread_roots();
-  measure_volume();
-  budget_.resampling_km3 =
-      budget_.continental_km3 - volume_before_km3 + budget_.lost_km3 - lost_before_km3;
-  budget_.ocean_change_km2 = oceanic(state_.crust) - ocean_before_km2;
-  budget_.ocean_error_km2 = budget_.created_km2 - budget_.consumed_km2 - budget_.ocean_change_km2;
-  budget_.resampled = true;
+  state.resampled_myr = state.time_myr;
+  state.past_myr.clear();
 }
 
 /// Detached pieces of plates: small ones join the neighbour they border most, large ones are plates
 /// of their own that go on as they did.
-void SphereTectonics::tidy_pieces() {
-  auto& plate = state_.crust.plate;
+void tidy_pieces(SphereTectonics& model) {
+  auto& plate = model.state.crust.plate;
   std::vector<std::uint8_t> seen(plate.size(), 0);
   std::vector<std::vector<std::int32_t>> pieces;
-  std::vector<std::int32_t> largest(state_.plates.size(), -1);
-  for (std::int32_t i = 0; i < mesh_->size(); ++i) {
+  std::vector<std::int32_t> largest(model.state.plates.size(), -1);
+  for (std::int32_t i = 0; i < model.mesh->size(); ++i) {
     if (seen[i] != 0) continue;
     const auto own = plate[i];
     pieces.push_back(
-        flooded_from(*mesh_, i, seen, [&](std::int32_t j) { return plate[j] == own; }));
+        flooded_from(*model.mesh, i, seen, [&](std::int32_t j) { return plate[j] == own; }));
     std::int32_t& best = largest[own];
     if (best >= 0 && pieces[best].size() >= pieces.back().size()) continue;
     best = static_cast<std::int32_t>(pieces.size()) - 1;
   }
-  const double small = settings_.smallest_piece_km2 / sample_km2();
+  const double small = model.settings.smallest_piece_km2 / model.sample_km2();
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     const std::vector<std::int32_t>& piece = pieces[k];
     const auto own = plate[piece.front()];
@@ -200,26 +240,55 @@ void SphereTectonics::tidy_pieces() {
     const bool keeps = largest[own] == static_cast<std::int32_t>(k);
     if (keeps && (size > small || pieces.size() < 3)) continue;
     if (size > small) {
-      SpherePlate copy = state_.plates[own];
-      copy.id = state_.begin_life(PlateLife::Origin::piece, copy.id);
-      copy.born_myr = state_.time_myr;
-      const int fresh = state_.add_plate(copy);
+      SpherePlate copy = model.state.plates[own];
+      copy.id = model.state.begin_life(PlateLife::Origin::piece, copy.id);
+      copy.born_myr = model.state.time_myr;
+      const int fresh = model.state.add_plate(copy);
       for (const std::int32_t i : piece) plate[i] = static_cast<std::int16_t>(fresh);
       continue;
     }
-    std::vector<std::int32_t> border(state_.plates.size(), 0);
+    std::vector<std::int32_t> border(model.state.plates.size(), 0);
     for (const std::int32_t i : piece) {
-      for (const std::int32_t j : mesh_->neighbours(i)) {
+      for (const std::int32_t j : model.mesh->neighbours(i)) {
         if (plate[j] != own) ++border[plate[j]];
       }
     }
     const auto best = std::max_element(border.begin(), border.end());
     if (*best == 0) continue;
     if (keeps) {
-      state_.end_life(state_.plates[own].id, state_.plates[best - border.begin()].id);
+      model.state.end_life(model.state.plates[own].id,
+                           model.state.plates[best - border.begin()].id);
     }
     for (const std::int32_t i : piece) plate[i] = static_cast<std::int16_t>(best - border.begin());
   }
+}
+
+}  // namespace
+
+void resample(SphereTectonics& model) {
+  SphereBudget& budget = model.budget;
+  remember_penetration(model);
+  measure_volume(model);
+  const double volume_before_km3 = budget.continental_km3, ocean_before_km2 = ocean_km2(model);
+  const double sunk_km3 = sunk_below_floor_km3(model);
+  NewCrust now = CrustReader(model).read();
+  enter_areas(model, now.owner);
+  fill_gaps(model, now.crust, now.owner, now.body);
+  model.state.crust = std::move(now.crust);
+  model.state.crust.plate = std::move(now.owner);
+  begin_turning_anew(model.state);
+  tidy_pieces(model);
+  derive_plates(model);
+  forget_margins(model);
+  const double lost_before_km3 = budget.lost_km3;
+  budget.lost_km3 += sunk_km3;
+  spread_roots(model);
+  measure_volume(model);
+  budget.resampling_km3 =
+      budget.continental_km3 - volume_before_km3 + budget.lost_km3 - lost_before_km3;
+  budget.ocean_change_km2 = ocean_km2(model) - ocean_before_km2;
+  budget.ocean_error_km2 = budget.created_km2 - budget.consumed_km2 - budget.ocean_change_km2;
+  budget.resampled = true;
 }
 
 }  // namespace geo

@@ -3,7 +3,7 @@
 #include <numbers>
 #include <vector>
 
-#include "geo/kernels/plates/sphere/sphere_tectonics.hpp"
+#include "sphere_steps.hpp"
 
 namespace geo {
 namespace {
@@ -66,44 +66,26 @@ class LinkedPlates {
   Eigen::VectorXd torque_;
 };
 
-}  // namespace
-
-/// The sum of 1 - r r^T over a plate's samples. As each covers some ground, also a plate of one
-/// resists a spin about itself: by s / 2 pi about the middle of a disc of s steradians.
-Matrix3 SphereTectonics::drag_below(int plate) const {
-  const auto& cap = partition_.cap(plate);
-  Matrix3 drag = carried(frame_[plate], cap.inertia);
-  const double spin = cap.samples * mesh_->samples().area_sr() / (2.0 * std::numbers::pi);
-  for (int c = 0; c < 3; ++c) drag[c][c] += spin;
-  return drag;
-}
-
-/// What holds each plate back with all that it carries.
-std::vector<Matrix3> SphereTectonics::drag_below() const {
-  std::vector<Matrix3> drag(state_.plates.size(), Matrix3{});
-  for (std::size_t p = 0; p < drag.size(); ++p) {
-    if (!state_.plates[p].alive) continue;
-    const Matrix3 own = drag_below(static_cast<int>(p));
-    Matrix3& sum = drag[state_.root(static_cast<int>(p))];
-    for (int c = 0; c < 3; ++c) sum[c] = add(sum[c], own[c]);
-  }
-  return drag;
-}
+/// What holds two plates together: a drag on how they move beside each other, in units of that
+/// below one sample.
+struct Link {
+  int first, second;
+  Matrix3 drag;
+};
 
 /// Lithosphere that has begun to part is whole at first: fragments leave each other at a share
 /// s = t / onset of what drives them apart. A drag of (1 - s) / s (A^-1 + B^-1)^-1 between plates
 /// that A and B hold back does that to any motion.
-std::vector<SphereTectonics::Link> SphereTectonics::links_of_rifts(
-    const std::vector<Matrix3>& drag) const {
+std::vector<Link> links_of_rifts(const SphereTectonics& model, const std::vector<Matrix3>& drag) {
   std::vector<Link> links;
   for (int a = 0; a < std::ssize(drag); ++a) {
     for (int b = a + 1; b < std::ssize(drag); ++b) {
-      const int first = state_.root(a), second = state_.root(b);
-      if (!state_.plates[a].alive || !state_.plates[b].alive || first == second) continue;
+      const int first = model.state.root(a), second = model.state.root(b);
+      if (!model.state.plates[a].alive || !model.state.plates[b].alive || first == second) continue;
       const double since_myr =
-          state_.time_myr + settings_.law.step_myr - state_.pair(a, b).parted_myr;
-      if (since_myr >= settings_.rift_onset_myr) continue;
-      const double share = since_myr / settings_.rift_onset_myr;
+          model.state.time_myr + model.settings.law.step_myr - model.state.pair(a, b).parted_myr;
+      if (since_myr >= model.settings.rift_onset_myr) continue;
+      const double share = since_myr / model.settings.rift_onset_myr;
       const Eigen::Matrix3d below = eigen(drag[first]), beside = eigen(drag[second]);
       const Eigen::Matrix3d both = below * (below + beside).inverse() * beside;
       Matrix3 rub;
@@ -120,21 +102,23 @@ std::vector<SphereTectonics::Link> SphereTectonics::links_of_rifts(
 
 /// Continents of which one is thrust below the other rub: k times the drag of the mantle, as far as
 /// they overlap.
-std::vector<SphereTectonics::Link> SphereTectonics::links_of_continents() const {
-  const SphereCrust& crust = state_.crust;
-  const std::size_t plates = state_.plates.size();
+std::vector<Link> links_of_continents(const SphereTectonics& model) {
+  const SphereCrust& crust = model.state.crust;
+  const std::size_t plates = model.state.plates.size();
   std::vector<Matrix3> overlap(plates * plates, Matrix3{});
   std::vector<std::uint8_t> rubs(plates * plates, 0);
-  for (const std::int32_t i : contacts_) {
-    const std::int32_t above = partner_[i];
-    if (hidden_[i] == 0 || crust.continental[i] == 0 || crust.continental[above] == 0) continue;
-    const int lower = state_.root(crust.plate[i]), upper = state_.root(crust.plate[above]);
-    const Vector3 r = times(frame_[crust.plate[i]], mesh_->samples().position(i));
+  for (const std::int32_t i : model.margins.contacts) {
+    const std::int32_t above = model.margins.partner[i];
+    if (model.margins.hidden[i] == 0 || crust.continental[i] == 0 || crust.continental[above] == 0)
+      continue;
+    const int lower = model.state.root(crust.plate[i]),
+              upper = model.state.root(crust.plate[above]);
+    const Vector3 r = times(model.frame[crust.plate[i]], model.mesh->samples().position(i));
     const std::size_t at = std::min(lower, upper) * plates + std::max(lower, upper);
     rubs[at] = 1;
     for (int c = 0; c < 3; ++c) {
       for (int d = 0; d < 3; ++d) {
-        overlap[at][c][d] += settings_.suture_drag * ((c == d ? 1.0 : 0.0) - r[c] * r[d]);
+        overlap[at][c][d] += model.settings.suture_drag * ((c == d ? 1.0 : 0.0) - r[c] * r[d]);
       }
     }
   }
@@ -147,30 +131,54 @@ std::vector<SphereTectonics::Link> SphereTectonics::links_of_continents() const 
   return links;
 }
 
+}  // namespace
+
+/// The sum of 1 - r r^T over a plate's samples. As each covers some ground, also a plate of one
+/// resists a spin about itself: by s / 2 pi about the middle of a disc of s steradians.
+Matrix3 drag_below(const SphereTectonics& model, int plate) {
+  const auto& cap = model.partition.cap(plate);
+  Matrix3 drag = carried(model.frame[plate], cap.inertia);
+  const double spin = cap.samples * model.mesh->samples().area_sr() / (2.0 * std::numbers::pi);
+  for (int c = 0; c < 3; ++c) drag[c][c] += spin;
+  return drag;
+}
+
+/// What holds each plate back with all that it carries.
+std::vector<Matrix3> drag_below(const SphereTectonics& model) {
+  std::vector<Matrix3> drag(model.state.plates.size(), Matrix3{});
+  for (std::size_t p = 0; p < drag.size(); ++p) {
+    if (!model.state.plates[p].alive) continue;
+    const Matrix3 own = drag_below(model, static_cast<int>(p));
+    Matrix3& sum = drag[model.state.root(static_cast<int>(p))];
+    for (int c = 0; c < 3; ++c) sum[c] = add(sum[c], own[c]);
+  }
+  return drag;
+}
+
 /// Plates that are linked yield. On each the drag of the mantle on what it moves beside the motion
 /// that drives it and that of its links on how it moves beside other plates come to nothing.
-void SphereTectonics::yield(const std::vector<Matrix3>& drag) {
-  for (SpherePlate& plate : state_.plates) plate.yielding = {};
-  set_frames();
+void yield_to_links(SphereTectonics& model, const std::vector<Matrix3>& drag) {
+  for (SpherePlate& plate : model.state.plates) plate.yielding = {};
+  derive_motion(model);
   std::vector<Link> links;
-  if (settings_.rift_onset_myr > 0.0) links = links_of_rifts(drag);
-  if (settings_.suture_drag > 0.0) {
-    const std::vector<Link> more = links_of_continents();
+  if (model.settings.rift_onset_myr > 0.0) links = links_of_rifts(model, drag);
+  if (model.settings.suture_drag > 0.0) {
+    const std::vector<Link> more = links_of_continents(model);
     links.insert(links.end(), more.begin(), more.end());
   }
-  std::vector<std::uint8_t> yields(state_.plates.size(), 0);
+  std::vector<std::uint8_t> yields(model.state.plates.size(), 0);
   for (const Link& link : links) {
-    for (const int p : {link.first, link.second}) yields[p] = state_.plates[p].is_held ? 0 : 1;
+    for (const int p : {link.first, link.second}) yields[p] = model.state.plates[p].is_held ? 0 : 1;
   }
   LinkedPlates linked(yields);
   for (int p = 0; p < std::ssize(drag); ++p) linked.hold_back(p, eigen(drag[p]));
   for (const Link& link : links) {
     linked.link(link.first, link.second, eigen(link.drag),
-                eigen(add(rotation_[link.second], rotation_[link.first], -1.0)));
+                eigen(add(model.rotation[link.second], model.rotation[link.first], -1.0)));
   }
   const std::vector<Vector3> changes = linked.balance();
-  for (std::size_t p = 0; p < changes.size(); ++p) state_.plates[p].yielding = changes[p];
-  set_frames();
+  for (std::size_t p = 0; p < changes.size(); ++p) model.state.plates[p].yielding = changes[p];
+  derive_motion(model);
 }
 
 }  // namespace geo

@@ -1,100 +1,23 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "geo/core/random.hpp"
+#include "geo/kernels/noise/noise.hpp"
 #include "geo/kernels/plates/great_circle_line.hpp"
-#include "geo/kernels/plates/sphere/sphere_tectonics.hpp"
+#include "sphere_steps.hpp"
 
 namespace geo {
+namespace {
 
-int SphereTectonics::largest_plate() const {
+int largest_plate(const SphereTectonics& model) {
   int largest = 0;
-  for (int p = 1; p < partition_.plates(); ++p) {
-    if (state_.plates[p].carrier >= 0) continue;
-    if (partition_.cap(p).samples > partition_.cap(largest).samples) largest = p;
+  for (int p = 1; p < model.partition.plates(); ++p) {
+    if (model.state.plates[p].carrier >= 0) continue;
+    if (model.partition.cap(p).samples > model.partition.cap(largest).samples) largest = p;
   }
   return largest;
-}
-
-void SphereTectonics::rift_by_chance() {
-  const RandomStream random(seed_, "plates.rifts");
-  const auto step = static_cast<std::uint64_t>(state_.steps) << 10U;
-  const auto plates = static_cast<int>(state_.plates.size());
-  const int largest = settings_.rift_largest ? largest_plate() : -1;
-  for (int p = 0; p < plates; ++p) {
-    if (!state_.plates[p].alive || state_.plates[p].carrier >= 0) continue;
-    if (settings_.rift_largest && p != largest) continue;
-    const auto& cap = partition_.cap(p);
-    const double ratio = sample_km2() * cap.samples / settings_.mean_area_km2;
-    if (ratio < settings_.rift_smallest) continue;
-    // Continents break more easily than the floor of oceans.
-    const double weight =
-        settings_.rift_largest ? 1.0 : 0.2 + 0.8 * cap.continental / std::max(1, cap.samples);
-    const std::uint64_t index = step + static_cast<std::uint64_t>(p);
-    const double chance =
-        rift_probability(settings_.rift_per_myr * settings_.law.step_myr, weight, ratio);
-    if (random.uniform(index) >= chance) continue;
-    const double draw = random.uniform(index, 1);
-    const int fragments = settings_.rift_largest || draw < 0.6 ? 2 : draw < 0.9 ? 3 : 4;
-    // Places drawn on the sphere until enough lie on the plate.
-    std::vector<Vector3> places;
-    for (std::uint64_t k = 0; k < 4000 && std::ssize(places) < fragments; ++k) {
-      const Vector3 at = random.direction((index << 12U) + k);
-      if (state_.crust.plate[mesh_->samples().nearest(back(frame_[p], at))] == p) {
-        places.push_back(at);
-      }
-    }
-    if (std::ssize(places) < 2) continue;
-    rift(p, places, settings_.rift_speed_mm_yr * random.uniform(index, 2, 0.6, 1.4));
-  }
-}
-
-void SphereTectonics::rift(int plate, std::span<const Vector3> places, double speed_mm_yr) {
-  const FibonacciSphere& samples = mesh_->samples();
-  const auto& of = state_.crust.plate;
-  std::vector<Vector3> local;
-  for (const Vector3& place : places) local.push_back(back(frame_[plate], place));
-  const double most = 2.2 * settings_.rift_warp_km / settings_.radius_km;
-  constexpr double kWavelength_km = 1500.0;
-  std::vector<std::int8_t> fragment(of.size(), -1);
-#pragma omp parallel for schedule(static)
-  for (std::int32_t i = 0; i < mesh_->size(); ++i) {
-    if (of[i] != plate) continue;
-    Vector3 at = samples.position(i);
-    const Vector3 straight = at;
-    for (int c = 0; c < 3; ++c) {
-      const Vector3 shifted{straight[0] + 3.1 * c, straight[1] - 1.7 * c, straight[2] + 0.9 * c};
-      at[c] += most * warp_.fbm(shifted, settings_.radius_km / kWavelength_km, 5);
-    }
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < local.size(); ++k) {
-      const double far = length(add(at, local[k], -1.0));
-      if (far < least) {
-        least = far;
-        fragment[i] = static_cast<std::int8_t>(k);
-      }
-    }
-  }
-  Vector3 middle{};
-  for (const Vector3& place : places) middle = add(middle, place);
-  const auto away = across_fractures(plate, fragment, static_cast<int>(places.size()), middle);
-  if (part(plate, fragment, away, speed_mm_yr, SphereEvent::Kind::rift)) ++budget_.rifts;
-}
-
-void SphereTectonics::rift_along(int plate, const GreatCircleLine& line, int fragments,
-                                 double speed_mm_yr) {
-  const std::int32_t n = mesh_->size();
-  std::vector<std::int8_t> fragment(n, -1);
-#pragma omp parallel for schedule(static)
-  for (std::int32_t i = 0; i < n; ++i) {
-    if (state_.crust.plate[i] != plate) continue;
-    const Vector3 at = times(frame_[plate], mesh_->samples().position(i));
-    const bool is_left = line.is_left(at), is_cut = line.is_beyond_middle(at);
-    fragment[i] = is_left ? (is_cut && fragments > 3 ? 3 : 0) : (is_cut && fragments > 2 ? 2 : 1);
-  }
-  const auto away = across_fractures(plate, fragment, fragments, line.middle());
-  if (part(plate, fragment, away, speed_mm_yr, SphereEvent::Kind::rift)) ++budget_.rifts;
 }
 
 /// Axes about which fragments leave each other. A rotation w opens the area w . int r x n dl along
@@ -103,19 +26,19 @@ void SphereTectonics::rift_along(int plate, const GreatCircleLine& line, int fra
 /// fractures, which opens most. Where they go against each other, on both sides of a strip, its
 /// axis is shorter than 1. A fracture that goes all round has no chord, and opens no more than it
 /// closes: it opens about its place that is nearest to `about`.
-std::vector<Vector3> SphereTectonics::across_fractures(int plate,
-                                                       std::span<const std::int8_t> fragment,
-                                                       int fragments, const Vector3& about) const {
-  const FibonacciSphere& samples = mesh_->samples();
+std::vector<Vector3> across_fractures(const SphereTectonics& model, int plate,
+                                      std::span<const std::int8_t> fragment, int fragments,
+                                      const Vector3& about) {
+  const FibonacciSphere& samples = model.mesh->samples();
   struct Edge {
     Vector3 at;
     std::size_t pair;
     Vector3 along;
   };
   std::vector<Edge> edges;
-  for (std::int32_t i = 0; i < mesh_->size(); ++i) {
+  for (std::int32_t i = 0; i < model.mesh->size(); ++i) {
     if (fragment[i] < 0) continue;
-    const auto star = mesh_->neighbours(i);
+    const auto star = model.mesh->neighbours(i);
     for (std::size_t s = 0; s < star.size(); ++s) {
       const int own = fragment[i], other = fragment[star[s]];
       if (other < 0 || other == own) continue;
@@ -127,7 +50,7 @@ std::vector<Vector3> SphereTectonics::across_fractures(int plate,
                        scaled(add(right, left, -1.0), 1.0 / 3.0)});
     }
   }
-  const Vector3 wanted = back(frame_[plate], about);
+  const Vector3 wanted = back(model.frame[plate], about);
   Vector3 middle{};
   double most = -2.0;
   std::vector<Vector3> chord(static_cast<std::size_t>(fragments) * fragments, Vector3{});
@@ -157,20 +80,21 @@ std::vector<Vector3> SphereTectonics::across_fractures(int plate,
       whole += length(one);
     }
     const double size = std::max(length(sum), kAgainst * whole);
-    axes.push_back(size > 0.0 ? times(frame_[plate], scaled(sum, 1.0 / size)) : Vector3{});
+    axes.push_back(size > 0.0 ? times(model.frame[plate], scaled(sum, 1.0 / size)) : Vector3{});
   }
   return axes;
 }
 
 /// Of the fragments of a plate the one that is nearest to the middle of a body that it carries.
-std::size_t SphereTectonics::fragment_nearest(int body, int plate,
-                                              std::span<const std::int8_t> fragment) const {
-  const Vector3 middle = back(frame_[plate], times(frame_[body], partition_.cap(body).centre));
+std::size_t fragment_nearest(const SphereTectonics& model, int body, int plate,
+                             std::span<const std::int8_t> fragment) {
+  const Vector3 middle =
+      back(model.frame[plate], times(model.frame[body], model.partition.cap(body).centre));
   double most = -2.0;
   std::size_t nearest = 0;
-  for (std::int32_t i = 0; i < mesh_->size(); ++i) {
+  for (std::int32_t i = 0; i < model.mesh->size(); ++i) {
     if (fragment[i] < 0) continue;
-    const double near = dot(mesh_->samples().position(i), middle);
+    const double near = dot(model.mesh->samples().position(i), middle);
     if (near <= most) continue;
     most = near;
     nearest = static_cast<std::size_t>(fragment[i]);
@@ -178,73 +102,180 @@ std::size_t SphereTectonics::fragment_nearest(int body, int plate,
   return nearest;
 }
 
-/// Fragments of a plate become plates, each turned about an axis on top of the old motion. The
-/// largest keeps the plate's number. One that has no samples comes to nothing. False when there are
-/// no two.
-bool SphereTectonics::part(int plate, std::span<const std::int8_t> fragment,
-                           std::span<const Vector3> away, double speed_mm_yr,
-                           SphereEvent::Kind kind) {
-  auto& of = state_.crust.plate;
-  const auto& cap = partition_.cap(plate);
-  const Vector3 centre = times(frame_[plate], cap.centre);
-  const double area_km2 = sample_km2() * cap.samples;
-  const SpherePlate whole = state_.plates[plate];
-  const Vector3 drift = scaled(whole.axis, whole.speed_rad_myr);
-  std::vector<std::int32_t> size(away.size(), 0);
+/// Fragments of a plate that break apart: how many samples each has, with what goes with it.
+struct Fragments {
+  std::vector<std::int32_t> size;
+  std::vector<std::pair<int, std::size_t>>
+      carried;  // bodies of the plate, and the fragment of each
+
+  [[nodiscard]] std::ptrdiff_t largest() const {
+    return std::max_element(size.begin(), size.end()) - size.begin();
+  }
+};
+
+/// No fragments where there are not two with samples. What the plate carries goes with the fragment
+/// that is nearest to it.
+std::optional<Fragments> fragments_of(const SphereTectonics& model, int plate,
+                                      std::span<const std::int8_t> fragment, std::size_t count) {
+  Fragments found{std::vector<std::int32_t>(count, 0), {}};
   for (const std::int8_t k : fragment) {
-    if (k >= 0) ++size[k];
+    if (k >= 0) ++found.size[k];
   }
-  if (std::count_if(size.begin(), size.end(), [](auto samples) { return samples > 0; }) < 2) {
-    return false;
+  const auto has_samples = [](std::int32_t samples) { return samples > 0; };
+  if (std::count_if(found.size.begin(), found.size.end(), has_samples) < 2) return std::nullopt;
+  for (int p = 0; p < model.partition.plates(); ++p) {
+    if (!model.state.plates[p].alive || model.state.plates[p].carrier != plate) continue;
+    found.carried.emplace_back(p, fragment_nearest(model, p, plate, fragment));
+    found.size[found.carried.back().second] += model.partition.cap(p).samples;
   }
-  // What the plate carries goes with the fragment that is nearest to it.
-  std::vector<std::pair<int, std::size_t>> carried;
-  for (int p = 0; p < partition_.plates(); ++p) {
-    if (!state_.plates[p].alive || state_.plates[p].carrier != plate) continue;
-    carried.emplace_back(p, fragment_nearest(p, plate, fragment));
-    size[carried.back().second] += partition_.cap(p).samples;
+  return found;
+}
+
+/// A fragment as a plate: it turns about an axis on top of the motion of the whole. Where rifts
+/// open gradually it moves as the whole did at first.
+SpherePlate plate_from(const SpherePlate& whole, const Vector3& away, double speed_mm_yr,
+                       bool is_gradual, const SphereSettings& s) {
+  SpherePlate part = whole;
+  const Vector3 drift = scaled(whole.axis, whole.speed_rad_myr);
+  const Vector3 rotation = add(drift, scaled(away, speed_mm_yr / s.radius_km));
+  part.speed_rad_myr = std::min(length(rotation), s.law.speed_mm_yr / s.radius_km);
+  if (part.speed_rad_myr > 0.0) part.axis = normalised(rotation);
+  if (is_gradual && !whole.is_held) {
+    part.yielding = add(add(whole.yielding, drift), part.axis, -part.speed_rad_myr);
   }
-  const auto largest = std::max_element(size.begin(), size.end()) - size.begin();
-  const auto origin = kind == SphereEvent::Kind::rift ? PlateLife::Origin::rift
-                                                      : PlateLife::Origin::subduction_initiation;
+  return part;
+}
+
+}  // namespace
+
+void rift_by_chance(SphereTectonics& model) {
+  const RandomStream random(model.seed, "plates.rifts");
+  const auto step = static_cast<std::uint64_t>(model.state.steps) << 10U;
+  const auto plates = static_cast<int>(model.state.plates.size());
+  const int largest = model.settings.rift_largest ? largest_plate(model) : -1;
+  for (int p = 0; p < plates; ++p) {
+    if (!model.state.plates[p].alive || model.state.plates[p].carrier >= 0) continue;
+    if (model.settings.rift_largest && p != largest) continue;
+    const auto& cap = model.partition.cap(p);
+    const double ratio = model.sample_km2() * cap.samples / model.settings.mean_area_km2;
+    if (ratio < model.settings.rift_smallest) continue;
+    // Continents break more easily than the floor of oceans.
+    const double weight =
+        model.settings.rift_largest ? 1.0 : 0.2 + 0.8 * cap.continental / std::max(1, cap.samples);
+    const std::uint64_t index = step + static_cast<std::uint64_t>(p);
+    const double chance =
+        rift_probability(model.settings.rift_per_myr * model.settings.law.step_myr, weight, ratio);
+    if (random.uniform(index) >= chance) continue;
+    const double draw = random.uniform(index, 1);
+    const int fragments = model.settings.rift_largest || draw < 0.6 ? 2 : draw < 0.9 ? 3 : 4;
+    // Places drawn on the sphere until enough lie on the plate.
+    std::vector<Vector3> places;
+    for (std::uint64_t k = 0; k < 4000 && std::ssize(places) < fragments; ++k) {
+      const Vector3 at = random.direction((index << 12U) + k);
+      if (model.state.crust.plate[model.mesh->samples().nearest(back(model.frame[p], at))] == p) {
+        places.push_back(at);
+      }
+    }
+    if (std::ssize(places) < 2) continue;
+    rift_plate(model, p, places,
+               model.settings.rift_speed_mm_yr * random.uniform(index, 2, 0.6, 1.4));
+  }
+}
+
+void rift_plate(SphereTectonics& model, int plate, std::span<const Vector3> places,
+                double speed_mm_yr) {
+  const FibonacciSphere& samples = model.mesh->samples();
+  const auto& of = model.state.crust.plate;
+  std::vector<Vector3> local;
+  for (const Vector3& place : places) local.push_back(back(model.frame[plate], place));
+  const double most = 2.2 * model.settings.rift_warp_km / model.settings.radius_km;
+  const Noise warp(model.seed, "plates.rift_warp");
+  constexpr double kWavelength_km = 1500.0;
+  std::vector<std::int8_t> fragment(of.size(), -1);
+#pragma omp parallel for schedule(static)
+  for (std::int32_t i = 0; i < model.mesh->size(); ++i) {
+    if (of[i] != plate) continue;
+    Vector3 at = samples.position(i);
+    const Vector3 straight = at;
+    for (int c = 0; c < 3; ++c) {
+      const Vector3 shifted{straight[0] + 3.1 * c, straight[1] - 1.7 * c, straight[2] + 0.9 * c};
+      at[c] += most * warp.fbm(shifted, model.settings.radius_km / kWavelength_km, 5);
+    }
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < local.size(); ++k) {
+      const double far = length(add(at, local[k], -1.0));
+      if (far < least) {
+        least = far;
+        fragment[i] = static_cast<std::int8_t>(k);
+      }
+    }
+  }
+  Vector3 middle{};
+  for (const Vector3& place : places) middle = add(middle, place);
+  const auto away =
+      across_fractures(model, plate, fragment, static_cast<int>(places.size()), middle);
+  if (part_plate(model, plate, fragment, away, speed_mm_yr, SphereEvent::Kind::rift))
+    ++model.budget.rifts;
+}
+
+void rift_plate_along(SphereTectonics& model, int plate, const GreatCircleLine& line, int fragments,
+                      double speed_mm_yr) {
+  const std::int32_t n = model.mesh->size();
+  std::vector<std::int8_t> fragment(n, -1);
+#pragma omp parallel for schedule(static)
+  for (std::int32_t i = 0; i < n; ++i) {
+    if (model.state.crust.plate[i] != plate) continue;
+    const Vector3 at = times(model.frame[plate], model.mesh->samples().position(i));
+    const bool is_left = line.is_left(at), is_cut = line.is_beyond_middle(at);
+    fragment[i] = is_left ? (is_cut && fragments > 3 ? 3 : 0) : (is_cut && fragments > 2 ? 2 : 1);
+  }
+  const auto away = across_fractures(model, plate, fragment, fragments, line.middle());
+  if (part_plate(model, plate, fragment, away, speed_mm_yr, SphereEvent::Kind::rift))
+    ++model.budget.rifts;
+}
+
+/// The largest fragment keeps the plate's number. One that has no samples comes to nothing.
+bool part_plate(SphereTectonics& model, int plate, std::span<const std::int8_t> fragment,
+                std::span<const Vector3> away, double speed_mm_yr, SphereEvent::Kind kind) {
+  SphereState& state = model.state;
+  const auto& cap = model.partition.cap(plate);
+  const Vector3 centre = times(model.frame[plate], cap.centre);
+  const double area_km2 = model.sample_km2() * cap.samples;
+  const SpherePlate whole = state.plates[plate];
+  const auto fragments = fragments_of(model, plate, fragment, away.size());
+  if (!fragments) return false;
+  const bool is_rift = kind == SphereEvent::Kind::rift;
+  const bool is_gradual = is_rift && model.settings.rift_onset_myr > 0.0;
   std::vector<int> numbers;
   for (std::size_t k = 0; k < away.size(); ++k) {
-    if (size[k] == 0) continue;
-    SpherePlate part = whole;
-    if (static_cast<std::ptrdiff_t>(k) != largest) {
-      part.id = state_.begin_life(origin, whole.id);
-      part.born_myr = state_.time_myr;
-    }
-    const Vector3 gained = scaled(away[k], speed_mm_yr / settings_.radius_km);
-    const Vector3 rotation = add(drift, gained);
-    part.speed_rad_myr =
-        std::min(length(rotation), settings_.law.speed_mm_yr / settings_.radius_km);
-    if (part.speed_rad_myr > 0.0) part.axis = normalised(rotation);
-    const bool is_gradual = kind == SphereEvent::Kind::rift && settings_.rift_onset_myr > 0.0;
-    if (is_gradual && !whole.is_held) {  // at first they move as the whole did
-      part.yielding = add(add(whole.yielding, drift), part.axis, -part.speed_rad_myr);
+    if (fragments->size[k] == 0) continue;
+    SpherePlate part = plate_from(whole, away[k], speed_mm_yr, is_gradual, model.settings);
+    if (static_cast<std::ptrdiff_t>(k) != fragments->largest()) {
+      part.id = state.begin_life(
+          is_rift ? PlateLife::Origin::rift : PlateLife::Origin::subduction_initiation, whole.id);
+      part.born_myr = state.time_myr;
     }
     int number = plate;
     if (numbers.empty()) {
-      state_.plates[plate] = part;
+      state.plates[plate] = part;
     } else {
-      number = state_.add_plate(part);
+      number = state.add_plate(part);
     }
-    for (std::int32_t i = 0; i < mesh_->size(); ++i) {
-      if (fragment[i] == static_cast<std::int8_t>(k)) of[i] = static_cast<std::int16_t>(number);
-    }
-    if (kind == SphereEvent::Kind::rift) {
-      for (const int other : numbers) {
-        state_.pair(number, other).parted_myr = static_cast<float>(state_.time_myr);
+    for (std::int32_t i = 0; i < model.mesh->size(); ++i) {
+      if (fragment[i] == static_cast<std::int8_t>(k)) {
+        state.crust.plate[i] = static_cast<std::int16_t>(number);
       }
     }
-    for (const auto& [body, nearest] : carried) {
-      if (nearest == k) state_.plates[body].carrier = static_cast<std::int16_t>(number);
+    for (const int other : numbers) {
+      if (is_rift) state.pair(number, other).parted_myr = static_cast<float>(state.time_myr);
+    }
+    for (const auto& [body, nearest] : fragments->carried) {
+      if (nearest == k) state.plates[body].carrier = static_cast<std::int16_t>(number);
     }
     numbers.push_back(number);
   }
-  events_.push_back({kind, state_.time_myr, plate, -1, centre, area_km2});
-  repartition();
+  model.events.push_back({kind, state.time_myr, plate, -1, centre, area_km2});
+  derive_plates(model);
   return true;
 }
 

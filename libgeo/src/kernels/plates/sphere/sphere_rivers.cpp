@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "geo/core/parallel_errors.hpp"
-#include "geo/kernels/plates/sphere/sphere_tectonics.hpp"
 #include "geo/kernels/water/surface_rivers.hpp"
 #include "sample_sums.hpp"
+#include "sphere_steps.hpp"
 
 namespace geo {
 namespace {
@@ -17,20 +17,18 @@ struct Crossing {
   auto operator<=>(const Crossing&) const = default;
 };
 
-}  // namespace
-
 /// The surface as it lies after a step: samples that are not below another plate. Within a plate
 /// neighbours are those of the lattice; across its edge, what lies where the lattice would go on.
-class SphereTectonics::MovingSurface {
+class MovingSurface {
  public:
-  explicit MovingSurface(const SphereTectonics& model) : m_(model), crust_(model.state_.crust) {
-    const std::int32_t n = m_.mesh_->size();
+  explicit MovingSurface(const SphereTectonics& model) : m_(model), crust_(model.state.crust) {
+    const std::int32_t n = m_.mesh->size();
     graph_.area_m2 = 1e6 * m_.sample_km2();
     graph_.is_there.resize(n);
     graph_.is_open.assign(n, 0);
 #pragma omp parallel for schedule(static)
     for (std::int32_t i = 0; i < n; ++i) {
-      graph_.is_there[i] = crust_.plate[i] >= 0 && m_.hidden_[i] == 0 ? 1 : 0;
+      graph_.is_there[i] = crust_.plate[i] >= 0 && m_.margins.hidden[i] == 0 ? 1 : 0;
     }
     find_crossings();
     connect();
@@ -42,22 +40,22 @@ class SphereTectonics::MovingSurface {
     return graph_.is_there[j] != 0 && crust_.plate[j] == crust_.plate[i];
   }
   [[nodiscard]] float way_m(const Vector3& a, const Vector3& b) const {
-    return static_cast<float>(1e3 * m_.settings_.radius_km * angle_between(a, b));
+    return static_cast<float>(1e3 * m_.settings.radius_km * angle_between(a, b));
   }
   /// The sample on top at a place of the planet that is of another plate, or -1.
   [[nodiscard]] std::int32_t across(const Vector3& place, int own) const {
-    for (int q = 0; q < m_.partition_.plates(); ++q) {
-      if (q == own || !m_.state_.plates[q].alive) continue;
-      const Vector3 local = back(m_.frame_[q], place);
-      if (!m_.partition_.may_hold(q, local)) continue;
-      const std::int32_t j = m_.mesh_->samples().nearest(local);
+    for (int q = 0; q < m_.partition.plates(); ++q) {
+      if (q == own || !m_.state.plates[q].alive) continue;
+      const Vector3 local = back(m_.frame[q], place);
+      if (!m_.partition.may_hold(q, local)) continue;
+      const std::int32_t j = m_.mesh->samples().nearest(local);
       if (crust_.plate[j] == q && graph_.is_there[j] != 0) return j;
     }
     return -1;
   }
   void find_crossings() {
-    const FibonacciSphere& samples = m_.mesh_->samples();
-    const std::int32_t n = m_.mesh_->size();
+    const FibonacciSphere& samples = m_.mesh->samples();
+    const std::int32_t n = m_.mesh->size();
     constexpr std::int32_t kChunk = 2048;
     std::vector<std::vector<Crossing>> found((n + kChunk - 1) / kChunk);
     const auto search = [&](std::size_t chunk) {
@@ -65,15 +63,15 @@ class SphereTectonics::MovingSurface {
       for (std::int32_t i = from; i < std::min(n, from + kChunk); ++i) {
         if (graph_.is_there[i] == 0) continue;
         const int own = crust_.plate[i];
-        for (const std::int32_t j : m_.mesh_->neighbours(i)) {
+        for (const std::int32_t j : m_.mesh->neighbours(i)) {
           if (is_beside(i, j)) continue;
-          const std::int32_t other = across(times(m_.frame_[own], samples.position(j)), own);
+          const std::int32_t other = across(times(m_.frame[own], samples.position(j)), own);
           if (other < 0) {
             graph_.is_open[i] = 1;
             continue;
           }
-          const float far_m = way_m(times(m_.frame_[own], samples.position(i)),
-                                    times(m_.frame_[crust_.plate[other]], samples.position(other)));
+          const float far_m = way_m(times(m_.frame[own], samples.position(i)),
+                                    times(m_.frame[crust_.plate[other]], samples.position(other)));
           if (far_m <= 0.0F) continue;
           found[chunk].push_back({i, other, far_m});
           found[chunk].push_back({other, i, far_m});
@@ -92,12 +90,12 @@ class SphereTectonics::MovingSurface {
     crossings_.erase(std::unique(crossings_.begin(), crossings_.end(), same), crossings_.end());
   }
   void connect() {
-    const std::int32_t n = m_.mesh_->size();
+    const std::int32_t n = m_.mesh->size();
     graph_.first.assign(static_cast<std::size_t>(n) + 1, 0);
 #pragma omp parallel for schedule(static)
     for (std::int32_t i = 0; i < n; ++i) {
       if (graph_.is_there[i] == 0) continue;
-      for (const std::int32_t j : m_.mesh_->neighbours(i)) graph_.first[i + 1] += is_beside(i, j);
+      for (const std::int32_t j : m_.mesh->neighbours(i)) graph_.first[i + 1] += is_beside(i, j);
     }
     for (const Crossing& way : crossings_) ++graph_.first[way.from + 1];
     for (std::int32_t i = 0; i < n; ++i) graph_.first[i + 1] += graph_.first[i];
@@ -111,8 +109,8 @@ class SphereTectonics::MovingSurface {
         graph_.neighbour[at] = to;
         graph_.distance_m[at++] = far_m;
       };
-      const FibonacciSphere& samples = m_.mesh_->samples();
-      for (const std::int32_t j : m_.mesh_->neighbours(i)) {
+      const FibonacciSphere& samples = m_.mesh->samples();
+      for (const std::int32_t j : m_.mesh->neighbours(i)) {
         if (is_beside(i, j)) add_way(j, way_m(samples.position(i), samples.position(j)));
       }
       auto way = std::lower_bound(crossings_.begin(), crossings_.end(), Crossing{i, -1, 0.0F});
@@ -126,14 +124,16 @@ class SphereTectonics::MovingSurface {
   std::vector<Crossing> crossings_;
 };
 
+}  // namespace
+
 /// Rivers carve what stands above the sea, plates and all as they lie, and lay down what they carry
 /// in lakes, on shelves and on the sea floor.
-void SphereTectonics::run_rivers() {
-  SphereCrust& crust = state_.crust;
-  const MovingSurface surface(*this);
-  RiverLaw law = settings_.rivers;
-  law.dt_yr = 1e6 * settings_.law.step_myr;
-  law.rebound = settings_.rebound;
+void run_rivers(SphereTectonics& model) {
+  SphereCrust& crust = model.state.crust;
+  const MovingSurface surface(model);
+  RiverLaw law = model.settings.rivers;
+  law.dt_yr = 1e6 * model.settings.law.step_myr;
+  law.rebound = model.settings.rebound;
   std::vector<float> rock_m(crust.plate.size());
   const std::vector<float> before_m = crust.elevation_m;
   const SurfaceRivers rivers = route_rivers(surface.graph(), crust.elevation_m);
@@ -148,14 +148,14 @@ void SphereTectonics::run_rivers() {
     }
   }
   const auto volume_km3 = [&](auto&& counts) {
-    return 1e-3 * sample_km2() * sum_over(crust.size(), [&](std::int32_t i) {
+    return 1e-3 * model.sample_km2() * sum_over(crust.size(), [&](std::int32_t i) {
              return counts(i) ? static_cast<double>(rock_m[i]) : 0.0;
            });
   };
-  budget_.eroded_km3 -= volume_km3([&](std::int32_t i) { return rock_m[i] < 0.0F; });
-  budget_.deposited_km3 +=
+  model.budget.eroded_km3 -= volume_km3([&](std::int32_t i) { return rock_m[i] < 0.0F; });
+  model.budget.deposited_km3 +=
       volume_km3([&](std::int32_t i) { return rock_m[i] > 0.0F && crust.continental[i] != 0; });
-  budget_.sea_floor_km3 +=
+  model.budget.sea_floor_km3 +=
       volume_km3([&](std::int32_t i) { return rock_m[i] > 0.0F && crust.continental[i] == 0; });
 }
 

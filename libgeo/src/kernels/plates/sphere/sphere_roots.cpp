@@ -1,7 +1,7 @@
 #include <algorithm>
 
-#include "geo/kernels/plates/sphere/sphere_tectonics.hpp"
 #include "sample_sums.hpp"
+#include "sphere_steps.hpp"
 
 namespace geo {
 namespace {
@@ -18,17 +18,18 @@ constexpr double kLevel_m = 1.0;
 /// into plateaus instead of growing thicker: what is above `thickest_km` diffuses over the
 /// continent, dh/dt = div(D grad max(h - h_c, 0)), so fast that a step sees its end. What finds no
 /// room, because the land is too small, sinks into the mantle and is lost.
-void SphereTectonics::spread_roots() {
-  if (settings_.thickest_km <= 0.0) return;
-  SphereCrust& crust = state_.crust;
+void spread_roots(SphereTectonics& model) {
+  if (model.settings.thickest_km <= 0.0) return;
+  SphereCrust& crust = model.state.crust;
   const std::int32_t n = crust.size();
-  const double most_m = 1e3 * settings_.thickest_km;
+  const double most_m = 1e3 * model.settings.thickest_km;
   std::vector<std::int32_t> reached;  // by what flows, in the order in which it comes
   std::vector<std::int16_t> land_of(n);
   std::vector<std::uint8_t> is_reached(n);
 #pragma omp parallel for schedule(static)
   for (std::int32_t i = 0; i < n; ++i) {
-    const bool holds = crust.plate[i] >= 0 && crust.continental[i] != 0 && hidden_[i] == 0;
+    const bool holds =
+        crust.plate[i] >= 0 && crust.continental[i] != 0 && model.margins.hidden[i] == 0;
     land_of[i] = static_cast<std::int16_t>(holds ? crust.plate[i] : -1);
     is_reached[i] = holds && crust.thickness_m[i] > most_m ? 1 : 0;
   }
@@ -49,7 +50,7 @@ void SphereTectonics::spread_roots() {
       const double from_m = excess_m[i];
       largest_m = std::max(largest_m, from_m);
       if (from_m <= 0.0) continue;
-      for (const std::int32_t j : mesh_->neighbours(i)) {
+      for (const std::int32_t j : model.mesh->neighbours(i)) {
         if (land_of[j] != land_of[i]) continue;
         const double flow_m = kFlow * std::max(0.0, from_m - excess_m[j]);
         change_m[i] -= flow_m;
@@ -69,12 +70,12 @@ void SphereTectonics::spread_roots() {
   WholeGains gains;
   for (const std::int32_t i : reached) {
     gain_m[i] -= excess_m[i];
-    budget_.lost_km3 += 1e-3 * sample_km2() * excess_m[i];
+    model.budget.lost_km3 += 1e-3 * model.sample_km2() * excess_m[i];
     gains.put(crust.thickness_m[i], gain_m[i]);
     crust.elevation_m[i] =
-        static_cast<float>(height_after(crust.elevation_m[i], gain_m[i], settings_.rebound));
+        static_cast<float>(height_after(crust.elevation_m[i], gain_m[i], model.settings.rebound));
   }
-  budget_.lost_km3 += 1e-3 * sample_km2() * gains.left();
+  model.budget.lost_km3 += 1e-3 * model.sample_km2() * gains.left();
 }
 
 }  // namespace geo

@@ -5,9 +5,9 @@
 #include "geo/core/parallel_errors.hpp"
 #include "geo/core/random.hpp"
 #include "geo/kernels/plates/sphere/sphere_boundaries.hpp"
-#include "geo/kernels/plates/sphere/sphere_tectonics.hpp"
 #include "sample_sums.hpp"
 #include "sphere_flood.hpp"
+#include "sphere_steps.hpp"
 
 namespace geo {
 namespace {
@@ -20,19 +20,17 @@ constexpr double kSinking_km2 = 1e6;
 /// subduction begins.
 constexpr double kAlong = 0.75;
 
-}  // namespace
-
 /// Floor beside the continent of its own plate, old enough to subduct: samples in order.
-std::vector<std::int32_t> SphereTectonics::old_margins() const {
-  const SphereCrust& crust = state_.crust;
+std::vector<std::int32_t> old_margins(const SphereTectonics& model) {
+  const SphereCrust& crust = model.state.crust;
   constexpr std::int32_t kChunk = 8192;
   std::vector<std::vector<std::int32_t>> found((crust.size() + kChunk - 1) / kChunk);
   const auto search = [&](std::size_t chunk) {
     const auto from = static_cast<std::int32_t>(chunk) * kChunk;
     for (std::int32_t i = from; i < std::min(crust.size(), from + kChunk); ++i) {
-      if (crust.plate[i] < 0 || crust.continental[i] != 0 || hidden_[i] != 0) continue;
-      if (crust.age_myr[i] < settings_.initiation_age_myr) continue;
-      const auto ring = mesh_->neighbours(i);
+      if (crust.plate[i] < 0 || crust.continental[i] != 0 || model.margins.hidden[i] != 0) continue;
+      if (crust.age_myr[i] < model.settings.initiation_age_myr) continue;
+      const auto ring = model.mesh->neighbours(i);
       const bool is_margin = std::any_of(ring.begin(), ring.end(), [&](std::int32_t j) {
         return crust.plate[j] == crust.plate[i] && crust.continental[j] != 0;
       });
@@ -46,78 +44,86 @@ std::vector<std::int32_t> SphereTectonics::old_margins() const {
   return joined(found);
 }
 
-/// Old floor at a passive margin breaks away from the continent and becomes a plate that subducts
-/// below it: a Poisson process, at a rate for each length of margin whose floor is old enough.
-void SphereTectonics::initiate_subduction_by_chance() {
-  if (settings_.initiation_per_myr <= 0.0) return;
-  const RandomStream random(seed_, "plates.foundering");
-  const auto step = static_cast<std::uint64_t>(state_.steps) << 10U;
-  const auto plates = static_cast<int>(state_.plates.size());
-  std::vector<std::vector<std::int32_t>> of_plate(plates);
-  for (const std::int32_t i : old_margins()) of_plate[state_.crust.plate[i]].push_back(i);
-  const double sample_length = settings_.radius_km * mesh_->samples().spacing() / 1000.0;
-  for (int p = 0; p < plates; ++p) {
-    const SpherePlate& plate = state_.plates[p];
-    if (of_plate[p].empty() || !plate.alive || plate.carrier >= 0 || plate.is_held) continue;
-    const auto count = static_cast<double>(of_plate[p].size());
-    const double expected =
-        settings_.initiation_per_myr * count * sample_length * settings_.law.step_myr;
-    const std::uint64_t index = step + static_cast<std::uint64_t>(p);
-    if (random.uniform(index) >= -std::expm1(-expected)) continue;
-    initiate_subduction(of_plate[p][static_cast<std::size_t>(count * random.uniform(index, 1))]);
-  }
-}
-
 /// Breaks the floor of a plate along the margin about a sample and sends it below the continent:
 /// all that lies nearer to the old part of that margin than to any other. Nothing happens where
 /// that is too small for a plate, or the margin that of an island.
-void SphereTectonics::initiate_subduction(std::int32_t start) {
-  const SphereCrust& crust = state_.crust;
+void initiate_subduction(SphereTectonics& model, std::int32_t start) {
+  const SphereCrust& crust = model.state.crust;
   const std::int16_t plate = crust.plate[start];
-  const std::int32_t n = mesh_->size();
-  const auto is_own = [&](std::int32_t i) { return crust.plate[i] == plate && hidden_[i] == 0; };
+  const std::int32_t n = model.mesh->size();
+  const auto is_own = [&](std::int32_t i) {
+    return crust.plate[i] == plate && model.margins.hidden[i] == 0;
+  };
   std::vector<std::uint8_t> seen(n, 0), is_continent(n, 0), is_margin(n, 0), is_old(n, 0);
   for (std::int32_t i = 0; i < n; ++i) {
     if (seen[i] != 0 || !is_own(i) || crust.continental[i] == 0) continue;
-    const auto land = flooded_from(
-        *mesh_, i, seen, [&](std::int32_t j) { return is_own(j) && crust.continental[j] != 0; });
-    if (sample_km2() * static_cast<double>(land.size()) < kContinent_km2) continue;
+    const auto land = flooded_from(*model.mesh, i, seen, [&](std::int32_t j) {
+      return is_own(j) && crust.continental[j] != 0;
+    });
+    if (model.sample_km2() * static_cast<double>(land.size()) < kContinent_km2) continue;
     for (const std::int32_t j : land) is_continent[j] = 1;
   }
   std::vector<std::int32_t> margin;
   for (std::int32_t i = 0; i < n; ++i) {
     if (!is_own(i) || is_continent[i] != 0) continue;
-    for (const std::int32_t j : mesh_->neighbours(i)) is_margin[i] |= is_continent[j];
+    for (const std::int32_t j : model.mesh->neighbours(i)) is_margin[i] |= is_continent[j];
     if (is_margin[i] != 0) margin.push_back(i);
   }
   if (is_margin[start] == 0) return;
   // Floor along the margin is narrow: samples beside it keep the line together.
-  const double old_myr = kAlong * settings_.initiation_age_myr;
+  const double old_myr = kAlong * model.settings.initiation_age_myr;
   Vector3 shore{}, middle{};
-  for (const std::int32_t i : flooded_from(*mesh_, start, is_old, [&](std::int32_t j) {
+  for (const std::int32_t i : flooded_from(*model.mesh, start, is_old, [&](std::int32_t j) {
          return is_margin[j] != 0 && crust.age_myr[j] >= old_myr;
        })) {
-    shore = add(shore, mesh_->samples().position(i));
+    shore = add(shore, model.mesh->samples().position(i));
   }
-  const auto nearest = nearest_samples(*mesh_, margin, std::numbers::pi);
+  const auto nearest = nearest_samples(*model.mesh, margin, std::numbers::pi);
   std::vector<std::uint8_t> breaks(n, 0);
-  const auto sinking = flooded_from(*mesh_, start, breaks, [&](std::int32_t j) {
+  const auto sinking = flooded_from(*model.mesh, start, breaks, [&](std::int32_t j) {
     return is_own(j) && is_continent[j] == 0 && nearest[j] >= 0 && is_old[margin[nearest[j]]] != 0;
   });
-  const double least_km2 = std::min(kSinking_km2, settings_.smallest_piece_km2);
-  if (sample_km2() * static_cast<double>(sinking.size()) < least_km2) return;
-  for (const std::int32_t i : sinking) middle = add(middle, mesh_->samples().position(i));
+  const double least_km2 = std::min(kSinking_km2, model.settings.smallest_piece_km2);
+  if (model.sample_km2() * static_cast<double>(sinking.size()) < least_km2) return;
+  for (const std::int32_t i : sinking) middle = add(middle, model.mesh->samples().position(i));
   std::vector<std::int8_t> fragment(n, -1);
   for (std::int32_t i = 0; i < n; ++i) {
     if (crust.plate[i] == plate) fragment[i] = static_cast<std::int8_t>(breaks[i]);
   }
-  const Vector3 down = times(frame_[plate], normalised(cross(middle, shore)));
+  const Vector3 down = times(model.frame[plate], normalised(cross(middle, shore)));
   const std::vector<Vector3> turns{Vector3{}, down};
-  const double speed_mm_yr = settings_.initiation_speed_mm_yr;
-  if (!part(plate, fragment, turns, speed_mm_yr, SphereEvent::Kind::subduction_initiation)) return;
-  events_.back().area_km2 = sample_km2() * static_cast<double>(sinking.size());
-  events_.back().place = times(frame_[plate], normalised(shore));
-  ++budget_.subduction_initiations;
+  const double speed_mm_yr = model.settings.initiation_speed_mm_yr;
+  if (!part_plate(model, plate, fragment, turns, speed_mm_yr,
+                  SphereEvent::Kind::subduction_initiation))
+    return;
+  model.events.back().area_km2 = model.sample_km2() * static_cast<double>(sinking.size());
+  model.events.back().place = times(model.frame[plate], normalised(shore));
+  ++model.budget.subduction_initiations;
+}
+
+}  // namespace
+
+/// Old floor at a passive margin breaks away from the continent and becomes a plate that subducts
+/// below it: a Poisson process, at a rate for each length of margin whose floor is old enough.
+void initiate_subduction_by_chance(SphereTectonics& model) {
+  if (model.settings.initiation_per_myr <= 0.0) return;
+  const RandomStream random(model.seed, "plates.foundering");
+  const auto step = static_cast<std::uint64_t>(model.state.steps) << 10U;
+  const auto plates = static_cast<int>(model.state.plates.size());
+  std::vector<std::vector<std::int32_t>> of_plate(plates);
+  for (const std::int32_t i : old_margins(model)) of_plate[model.state.crust.plate[i]].push_back(i);
+  const double sample_length = model.settings.radius_km * model.mesh->samples().spacing() / 1000.0;
+  for (int p = 0; p < plates; ++p) {
+    const SpherePlate& plate = model.state.plates[p];
+    if (of_plate[p].empty() || !plate.alive || plate.carrier >= 0 || plate.is_held) continue;
+    const auto count = static_cast<double>(of_plate[p].size());
+    const double expected =
+        model.settings.initiation_per_myr * count * sample_length * model.settings.law.step_myr;
+    const std::uint64_t index = step + static_cast<std::uint64_t>(p);
+    if (random.uniform(index) >= -std::expm1(-expected)) continue;
+    initiate_subduction(model,
+                        of_plate[p][static_cast<std::size_t>(count * random.uniform(index, 1))]);
+  }
 }
 
 }  // namespace geo

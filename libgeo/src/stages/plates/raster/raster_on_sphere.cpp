@@ -196,7 +196,7 @@ void lay_on_sphere(const PlatesParameters& parameters, const RasterSphere& model
   SphereTectonics planet(mesh, settings, Laying(parameters, model, scale, mesh, context).state(),
                          context.seed);
   // Pieces too small to be plates join their neighbours.
-  planet.finish();
+  finish(planet);
   constexpr double kWhole_m = 22e3;  // its plains are low and their crust thin
   SphereOnGrid(parameters, planet, io, context, kWhole_m).draw(io);
 }

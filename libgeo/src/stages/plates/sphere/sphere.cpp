@@ -94,7 +94,7 @@ class MassBalance {
             "subduction_initiations"};
   }
   static std::vector<double> row(const SphereTectonics& model) {
-    const SphereBudget& b = model.budget();
+    const SphereBudget& b = model.budget;
     std::vector<double> row{b.time_myr,
                             static_cast<double>(b.plates),
                             b.resampled ? 1.0 : 0.0,
@@ -119,8 +119,8 @@ class MassBalance {
                             b.erupted_km3,
                             static_cast<double>(b.subduction_initiations)};
     // By the numbers of plates, which outlast the places where the model keeps them.
-    const SphereState& state = model.state();
-    const std::vector<double> area_km2 = model.plate_areas_km2();
+    const SphereState& state = model.state;
+    const std::vector<double> area_km2 = plate_areas_km2(model);
     const std::size_t before = row.size();
     row.resize(before + state.lives.size(), std::numeric_limits<double>::quiet_NaN());
     for (std::size_t p = 0; p < area_km2.size(); ++p) {
@@ -210,7 +210,7 @@ std::string_view word_for(SphereEvent::Kind kind) {
 void tell(const SphereTectonics& model, const Grid& grid, Context& context) {
   constexpr double kTold_km2 = 2e5;
   auto number = static_cast<int>(context.events.size());
-  for (const SphereEvent& event : model.events()) {
+  for (const SphereEvent& event : model.events) {
     if (event.area_km2 < kTold_km2) continue;
     const Vector3 at = grid.to_axis(event.place);
     context.event_records.push_back(
@@ -227,14 +227,14 @@ void tell(const SphereTectonics& model, const Grid& grid, Context& context) {
 /// Resamples all crust to be seen. Plates that have come apart show one number still: their pieces
 /// are plates once the drift itself resamples the crust.
 void finish_to_be_seen(SphereTectonics& model) {
-  const std::size_t lives = model.state().lives.size();
-  model.finish();
-  for (SpherePlate& plate : model.state().plates) {
+  const std::size_t lives = model.state.lives.size();
+  finish(model);
+  for (SpherePlate& plate : model.state.plates) {
     while (plate.id >= static_cast<std::int64_t>(lives)) {
-      plate.id = model.state().lives[plate.id].parent;
+      plate.id = model.state.lives[plate.id].parent;
     }
   }
-  model.state().lives.resize(lives);
+  model.state.lives.resize(lives);
 }
 
 /// Hands out a frame: the crust as a resampling would show it, and the state as it is.
@@ -242,7 +242,7 @@ void show(const PlatesParameters& parameters, const SphereTectonics& model, cons
           const Grid& grid, const Context& context) {
   SphereTectonics seen = model;
   finish_to_be_seen(seen);
-  Frame frame{State(std::make_shared<const Grid>(grid)), checkpoint_of(model.state())};
+  Frame frame{State(std::make_shared<const Grid>(grid)), checkpoint_of(model.state)};
   StageIo io(frame.fields, info);
   SphereOnGrid(parameters, seen, io, context).draw(io);
   context.on_frame(std::move(frame));
@@ -263,8 +263,8 @@ void drift(const PlatesParameters& parameters, const StageInfo& info, StageIo& i
   SphereTectonics model(mesh, settings, beginning(parameters, mesh, settings, io, context),
                         context.seed);
   if (context.checkpoint == nullptr && !context.plates.empty()) {
-    if (settings.no_net_rotation) model.subtract_net_rotation();
-    if (settings.hold_motions) model.hold_motions();
+    if (settings.no_net_rotation) subtract_net_rotation(model);
+    if (settings.hold_motions) hold_motions(model);
   }
   MassBalance balance;
   SphereHistory history(io.grid());
@@ -277,15 +277,15 @@ void drift(const PlatesParameters& parameters, const StageInfo& info, StageIo& i
     const double time_myr = static_cast<double>(step_count) * settings.law.step_myr;
     return std::floor(time_myr / parameters.frames_myr + 1e-9);
   };
-  for (auto k = model.state().steps; k < steps; ++k) {
-    const double from_myr = model.state().time_myr;
+  for (auto k = model.state.steps; k < steps; ++k) {
+    const double from_myr = model.state.time_myr;
     if (shows && k == 0) show(parameters, model, info, io.grid(), context);
     context.advance(0.9 * static_cast<double>(k) / static_cast<double>(steps));
-    model.begin_step();
+    begin_step(model);
     strike_plates(io.grid(), from_myr, from_myr + settings.law.step_myr, model, context);
     history.enter(model);
-    model.advance();
-    balance.enter(model.budget());
+    advance(model);
+    balance.enter(model.budget);
     context.steps.rows.push_back(MassBalance::row(model));
     if (shows && frames_due(k + 1) > frames_due(k)) {
       show(parameters, model, info, io.grid(), context);
@@ -293,11 +293,11 @@ void drift(const PlatesParameters& parameters, const StageInfo& info, StageIo& i
   }
   context.advance(0.9);
   finish_to_be_seen(model);
-  balance.enter(model.budget());
+  balance.enter(model.budget);
   name_plates(context.steps);
-  context.tables.push_back(SphereHistory::lives(model.state()));
-  context.tables.push_back(history.rotations(model.state()));
-  warn_of_later_events(model.state().time_myr, context);
+  context.tables.push_back(SphereHistory::lives(model.state));
+  context.tables.push_back(history.rotations(model.state));
+  warn_of_later_events(model.state.time_myr, context);
   balance.close(context.budget);
   tell(model, io.grid(), context);
   SphereOnGrid(parameters, model, io, context).draw(io);

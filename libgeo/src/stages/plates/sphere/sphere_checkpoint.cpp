@@ -138,13 +138,7 @@ void get_past(const Checkpoint& from, SphereState& state) {
   }
 }
 
-}  // namespace
-
-Checkpoint checkpoint_of(const SphereState& state) {
-  Checkpoint out;
-  out.time_myr = state.time_myr;
-  const SphereCrust& crust = state.crust;
-  auto& to = out.arrays;
+void put_crust(const SphereCrust& crust, Arrays& to) {
   to["plate"] = crust.plate;
   to["continental"] = crust.continental;
   to["orogeny"] = crust.orogeny;
@@ -154,6 +148,30 @@ Checkpoint checkpoint_of(const SphereState& state) {
   to["orogeny_age_myr"] = crust.orogeny_age_myr;
   to["ridge"] = flat(crust.ridge);
   to["fold"] = flat(crust.fold);
+}
+
+SphereCrust get_crust(const Checkpoint& from) {
+  SphereCrust crust;
+  crust.plate = from.get<std::int16_t>("plate");
+  crust.continental = from.get<std::int8_t>("continental");
+  crust.orogeny = from.get<std::int8_t>("orogeny");
+  crust.thickness_m = from.get<float>("thickness_m");
+  crust.elevation_m = from.get<float>("elevation_m");
+  crust.age_myr = from.get<float>("age_myr");
+  crust.orogeny_age_myr = from.get<float>("orogeny_age_myr");
+  crust.ridge = directions(from.get<float>("ridge"));
+  crust.fold = directions(from.get<float>("fold"));
+  const std::size_t samples = crust.plate.size();
+  for (const std::size_t size :
+       {crust.continental.size(), crust.orogeny.size(), crust.thickness_m.size(),
+        crust.elevation_m.size(), crust.age_myr.size(), crust.orogeny_age_myr.size(),
+        crust.ridge.size(), crust.fold.size()}) {
+    if (size != samples) refuse();
+  }
+  return crust;
+}
+
+void put_plates(const SphereState& state, Arrays& to) {
   std::vector<double> numbers, yielding;
   std::vector<std::int8_t> alive, held;
   std::vector<std::int16_t> carrier;
@@ -171,6 +189,34 @@ Checkpoint checkpoint_of(const SphereState& state) {
   to["plate_alive"] = alive;
   to["plate_held"] = held;
   to["plate_carrier"] = carrier;
+}
+
+std::vector<SpherePlate> get_plates(const Checkpoint& from) {
+  const auto& numbers = from.get<double>("plate_numbers");
+  const auto& alive = from.get<std::int8_t>("plate_alive");
+  const auto& carrier = from.get<std::int16_t>("plate_carrier");
+  const std::size_t plates = alive.size();
+  bool fits = numbers.size() == kNumbers * plates && carrier.size() == plates;
+  for (std::size_t p = 0; fits && p < plates; ++p) {
+    fits = carrier[p] >= -1 && carrier[p] < static_cast<std::int16_t>(plates);
+  }
+  if (!fits || !carriers_end(carrier)) refuse();
+  std::vector<SpherePlate> found;
+  for (std::size_t p = 0; p < plates; ++p) {
+    const double* at = numbers.data() + kNumbers * p;
+    SpherePlate plate;
+    plate.turn = {at[0], {at[1], at[2], at[3]}};
+    plate.axis = {at[4], at[5], at[6]};
+    plate.speed_rad_myr = at[7];
+    plate.born_myr = at[8];
+    plate.alive = alive[p] != 0;
+    plate.carrier = carrier[p];
+    found.push_back(plate);
+  }
+  return found;
+}
+
+void put_pairs(const SphereState& state, Arrays& to) {
   std::vector<std::int8_t> ocean, continent;
   std::vector<float> contact, parted, under;
   for (const PlatePair& pair : state.pairs) {
@@ -185,80 +231,23 @@ Checkpoint checkpoint_of(const SphereState& state) {
   to["pair_last_contact_myr"] = contact;
   to["pair_parted_myr"] = parted;
   to["pair_under_km"] = under;
-  std::vector<double> plumes;
-  for (const SpherePlume& plume : state.plumes) {
-    plumes.insert(plumes.end(),
-                  {plume.place[0], plume.place[1], plume.place[2], plume.growth_mm_yr});
-  }
-  to["plumes"] = plumes;
-  std::vector<double> volcanoes;
-  for (const SpherePlume& plume : state.plumes) {
-    volcanoes.insert(volcanoes.end(),
-                     {static_cast<double>(plume.number), static_cast<double>(plume.volcanoes),
-                      plume.volcano[0], plume.volcano[1], plume.volcano[2], plume.volcano_km3});
-  }
-  to["volcanoes"] = volcanoes;
-  put_lives(state, to);
-  put_past(state, to);
-  const Vector3& kept = state.kept_rotation_rad_myr;
-  to["kept_rotation_rad_myr"] = std::vector<double>{kept[0], kept[1], kept[2]};
-  to["clock"] =
-      std::vector<double>{state.time_myr, static_cast<double>(state.steps), state.resampled_myr};
-  return out;
 }
 
-SphereState state_of(const Checkpoint& from) {
-  check_numbers(from);
-  SphereState state;
-  SphereCrust& crust = state.crust;
-  crust.plate = from.get<std::int16_t>("plate");
-  crust.continental = from.get<std::int8_t>("continental");
-  crust.orogeny = from.get<std::int8_t>("orogeny");
-  crust.thickness_m = from.get<float>("thickness_m");
-  crust.elevation_m = from.get<float>("elevation_m");
-  crust.age_myr = from.get<float>("age_myr");
-  crust.orogeny_age_myr = from.get<float>("orogeny_age_myr");
-  crust.ridge = directions(from.get<float>("ridge"));
-  crust.fold = directions(from.get<float>("fold"));
-  const auto& numbers = from.get<double>("plate_numbers");
-  const auto& alive = from.get<std::int8_t>("plate_alive");
-  const auto& carrier = from.get<std::int16_t>("plate_carrier");
+std::vector<PlatePair> get_pairs(const Checkpoint& from, std::size_t plates) {
   const auto& ocean = from.get<std::int8_t>("pair_ocean_top");
   const auto& continent = from.get<std::int8_t>("pair_continent_top");
   const auto& contact = from.get<float>("pair_last_contact_myr");
-  const auto& clock = from.get<double>("clock");
-  const std::size_t n = crust.plate.size(), plates = alive.size();
-  bool fits = numbers.size() == kNumbers * plates && carrier.size() == plates &&
-              ocean.size() == plates * plates && continent.size() == plates * plates &&
-              contact.size() == plates * plates && clock.size() == 3;
-  for (const std::size_t size :
-       {crust.continental.size(), crust.orogeny.size(), crust.thickness_m.size(),
-        crust.elevation_m.size(), crust.age_myr.size(), crust.orogeny_age_myr.size(),
-        crust.ridge.size(), crust.fold.size()}) {
-    fits = fits && size == n;
-  }
-  for (std::size_t i = 0; fits && i < n; ++i) {
-    fits = crust.plate[i] >= -1 && crust.plate[i] < static_cast<std::int16_t>(plates);
-  }
-  for (std::size_t p = 0; fits && p < plates; ++p) {
-    fits = carrier[p] >= -1 && carrier[p] < static_cast<std::int16_t>(plates);
-  }
-  if (!fits || !carriers_end(carrier)) refuse();
-  for (std::size_t p = 0; p < plates; ++p) {
-    const double* at = numbers.data() + kNumbers * p;
-    SpherePlate plate;
-    plate.turn = {at[0], {at[1], at[2], at[3]}};
-    plate.axis = {at[4], at[5], at[6]};
-    plate.speed_rad_myr = at[7];
-    plate.born_myr = at[8];
-    plate.alive = alive[p] != 0;
-    plate.carrier = carrier[p];
-    state.plates.push_back(plate);
-  }
-  for (std::size_t k = 0; k < ocean.size(); ++k) {
-    state.pairs.push_back({ocean[k], continent[k], contact[k]});
-  }
-  // Frames of older versions have none of these.
+  const std::size_t count = plates * plates;
+  if (ocean.size() != count || continent.size() != count || contact.size() != count) refuse();
+  std::vector<PlatePair> pairs;
+  for (std::size_t k = 0; k < count; ++k) pairs.push_back({ocean[k], continent[k], contact[k]});
+  return pairs;
+}
+
+/// Motions that are held, that yield, and how far continents have gone under: frames of older
+/// versions have none of these.
+void get_later_additions(const Checkpoint& from, SphereState& state) {
+  const std::size_t plates = state.plates.size();
   if (from.arrays.contains("plate_held")) {
     const auto& held = from.get<std::int8_t>("plate_held");
     const auto& kept = from.get<double>("kept_rotation_rad_myr");
@@ -281,6 +270,22 @@ SphereState state_of(const Checkpoint& from) {
     if (under.size() != state.pairs.size()) refuse();
     for (std::size_t k = 0; k < under.size(); ++k) state.pairs[k].under_km = under[k];
   }
+}
+
+void put_plumes(const SphereState& state, Arrays& to) {
+  std::vector<double> plumes, volcanoes;
+  for (const SpherePlume& plume : state.plumes) {
+    plumes.insert(plumes.end(),
+                  {plume.place[0], plume.place[1], plume.place[2], plume.growth_mm_yr});
+    volcanoes.insert(volcanoes.end(),
+                     {static_cast<double>(plume.number), static_cast<double>(plume.volcanoes),
+                      plume.volcano[0], plume.volcano[1], plume.volcano[2], plume.volcano_km3});
+  }
+  to["plumes"] = plumes;
+  to["volcanoes"] = volcanoes;
+}
+
+void get_plumes(const Checkpoint& from, SphereState& state) {
   if (from.arrays.contains("plumes")) {
     const auto& plumes = from.get<double>("plumes");
     if (plumes.size() % 4 != 0) refuse();
@@ -290,21 +295,54 @@ SphereState state_of(const Checkpoint& from) {
                               .number = static_cast<std::int64_t>(k / 4)});
     }
   }
-  if (from.arrays.contains("volcanoes")) {
-    const auto& volcanoes = from.get<double>("volcanoes");
-    if (volcanoes.size() != kVolcanoNumbers * state.plumes.size()) refuse();
-    for (std::size_t k = 0; k < state.plumes.size(); ++k) {
-      const double* at = volcanoes.data() + kVolcanoNumbers * k;
-      SpherePlume& plume = state.plumes[k];
-      plume.number = static_cast<std::int64_t>(at[0]);
-      plume.volcanoes = static_cast<std::int64_t>(at[1]);
-      plume.volcano = {at[2], at[3], at[4]};
-      plume.volcano_km3 = at[5];
-    }
+  if (!from.arrays.contains("volcanoes")) return;
+  const auto& volcanoes = from.get<double>("volcanoes");
+  if (volcanoes.size() != kVolcanoNumbers * state.plumes.size()) refuse();
+  for (std::size_t k = 0; k < state.plumes.size(); ++k) {
+    const double* at = volcanoes.data() + kVolcanoNumbers * k;
+    SpherePlume& plume = state.plumes[k];
+    plume.number = static_cast<std::int64_t>(at[0]);
+    plume.volcanoes = static_cast<std::int64_t>(at[1]);
+    plume.volcano = {at[2], at[3], at[4]};
+    plume.volcano_km3 = at[5];
   }
+}
+
+}  // namespace
+
+Checkpoint checkpoint_of(const SphereState& state) {
+  Checkpoint out;
+  out.time_myr = state.time_myr;
+  put_crust(state.crust, out.arrays);
+  put_plates(state, out.arrays);
+  put_pairs(state, out.arrays);
+  put_plumes(state, out.arrays);
+  put_lives(state, out.arrays);
+  put_past(state, out.arrays);
+  const Vector3& kept = state.kept_rotation_rad_myr;
+  out.arrays["kept_rotation_rad_myr"] = std::vector<double>{kept[0], kept[1], kept[2]};
+  out.arrays["clock"] =
+      std::vector<double>{state.time_myr, static_cast<double>(state.steps), state.resampled_myr};
+  return out;
+}
+
+SphereState state_of(const Checkpoint& from) {
+  check_numbers(from);
+  SphereState state;
+  state.crust = get_crust(from);
+  state.plates = get_plates(from);
+  state.pairs = get_pairs(from, state.plates.size());
+  const auto last = static_cast<std::int16_t>(state.plates.size());
+  for (const std::int16_t plate : state.crust.plate) {
+    if (plate < -1 || plate >= last) refuse();
+  }
+  const auto& clock = from.get<double>("clock");
+
   state.time_myr = clock[0];
   state.steps = static_cast<std::int64_t>(clock[1]);
   state.resampled_myr = clock[2];
+  get_later_additions(from, state);
+  get_plumes(from, state);
   if (from.arrays.contains("plate_id")) get_lives(from, state);
   if (from.arrays.contains("plate_past")) {
     get_past(from, state);

@@ -35,12 +35,12 @@ std::string_view end_of(const PlateLife& life) {
 }  // namespace
 
 void SphereHistory::enter(const SphereTectonics& model) {
-  const SphereState& state = model.state();
+  const SphereState& state = model.state;
   for (std::size_t p = 0; p < state.plates.size(); ++p) {
     const SpherePlate& plate = state.plates[p];
     if (!plate.alive || plate.id < 0) continue;
-    turns_.push_back({plate.id, state.time_myr, state.time_myr + model.settings().law.step_myr,
-                      grid_->to_axis(model.rotations()[p])});
+    turns_.push_back({plate.id, state.time_myr, state.time_myr + model.settings.law.step_myr,
+                      grid_->to_axis(model.rotation[p])});
   }
 }
 

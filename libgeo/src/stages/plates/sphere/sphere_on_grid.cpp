@@ -97,13 +97,13 @@ SphereOnGrid::SphereOnGrid(const PlatesParameters& parameters, const SphereTecto
                            StageIo& io, const Context& context, double whole_m)
     : p_(parameters),
       model_(model),
-      mesh_(model.mesh()),
+      mesh_(*model.mesh),
       grid_(io.grid()),
       radius_km_(1e-3 * io.grid().figure().radius_m),
       whole_m_(whole_m),
       seed_(context.seed) {
-  const SphereCrust& crust = model.state().crust;
-  boundaries_ = find_sphere_boundaries(mesh_, crust.plate, model.rotations(), p_.growth.speed_cm_yr,
+  const SphereCrust& crust = model.state.crust;
+  boundaries_ = find_sphere_boundaries(mesh_, crust.plate, model.rotation, p_.growth.speed_cm_yr,
                                        p_.boundary_smoothing_km, radius_km_);
   std::vector<std::int32_t> samples;
   for (const SphereBoundary& point : boundaries_) samples.push_back(point.sample);
@@ -134,13 +134,13 @@ SphereOnGrid::SphereOnGrid(const PlatesParameters& parameters, const SphereTecto
 
 /// Which of the two plates at each boundary sample stays up, as the drift itself would decide.
 void SphereOnGrid::find_polarity() {
-  const auto& plate = model_.state().crust.plate;
+  const auto& plate = model_.state.crust.plate;
   overrides_.assign(boundaries_.size(), 0);
   for (std::size_t k = 0; k < boundaries_.size(); ++k) {
     const SphereBoundary& point = boundaries_[k];
     for (const std::int32_t j : mesh_.neighbours(point.sample)) {
       if (plate[j] != point.other) continue;
-      overrides_[k] = model_.is_on_top(point.sample, j) ? 1 : 0;
+      overrides_[k] = is_on_top(model_, point.sample, j) ? 1 : 0;
       break;
     }
   }
@@ -175,12 +175,12 @@ void SphereOnGrid::draw(StageIo& io) const {
 
 void SphereOnGrid::draw_crust(const Cell& at, Index cell, const Vector3& unit,
                               const Outputs& out) const {
-  const SphereCrust& crust = model_.state().crust;
+  const SphereCrust& crust = model_.state.crust;
   const std::int16_t plate = crust.plate[at.nearest];
-  out.plate[cell] = model_.state().plates[plate].id;
+  out.plate[cell] = model_.state.plates[plate].id;
   const Vector3 up = grid_.to_axis(unit);
   const auto velocity =
-      east_north(grid_.to_axis(velocity_mm_yr(model_.rotations()[plate], unit, radius_km_)), up);
+      east_north(grid_.to_axis(velocity_mm_yr(model_.rotation[plate], unit, radius_km_)), up);
   out.east[cell] = static_cast<float>(velocity.east);
   out.north[cell] = static_cast<float>(velocity.north);
   double fraction = 0.0, elevation = 0.0, thickness = 0.0;
@@ -223,7 +223,7 @@ void SphereOnGrid::draw_boundary(const Cell& at, Index cell, const Vector3& bent
   const double half_width_km =
       std::max(0.5 * p_.boundary_width_km, 0.6e-3 * grid_.spacing_north_m(0));
   const double half = 0.5 * mesh_.samples().spacing();
-  const std::int16_t own = model_.state().crust.plate[at.nearest];
+  const std::int16_t own = model_.state.crust.plate[at.nearest];
   double least_km = half_width_km;
   for (const std::int32_t corner : at.place.corner) {
     if (nearest_boundary_[corner] < 0) continue;
@@ -246,7 +246,7 @@ void SphereOnGrid::draw_boundary(const Cell& at, Index cell, const Vector3& bent
 /// Age of the crust of one type about a place, on its own plate where that has some there: ages
 /// jump where plates meet and crust changes.
 double SphereOnGrid::age(const Cell& at, std::int16_t plate, bool land) const {
-  const SphereCrust& crust = model_.state().crust;
+  const SphereCrust& crust = model_.state.crust;
   for (const bool any_plate : {false, true}) {
     double sum = 0.0, weights = 0.0;
     for (int k = 0; k < 3; ++k) {
@@ -265,7 +265,7 @@ double SphereOnGrid::age(const Cell& at, std::int16_t plate, bool land) const {
 float SphereOnGrid::heat(const Vector3& unit) const {
   constexpr double kPlume_km = 260.0, kPlumeHeat = 0.5, kBackground = 0.2;
   double value = kBackground;
-  for (const SpherePlume& plume : model_.state().plumes) {
+  for (const SpherePlume& plume : model_.state.plumes) {
     const double far = radius_km_ * length(add(plume.place, unit, -1.0)) / kPlume_km;
     if (far < 5.0) value += kPlumeHeat * std::exp(-0.5 * far * far);
   }

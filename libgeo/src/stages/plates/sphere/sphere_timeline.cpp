@@ -30,17 +30,17 @@ class Stroke {
 
   /// False when no plate is at the place.
   bool operator()(const PlateMotion& motion, Figures& figures) const {
-    const int plate = model_.plate_at(place_of(motion.latitude_deg, motion.longitude_deg));
+    const int plate = plate_at(model_, place_of(motion.latitude_deg, motion.longitude_deg));
     if (plate < 0) return false;
-    model_.set_motion(plate, place_of(motion.pole_latitude_deg, motion.pole_longitude_deg),
-                      motion.speed_mm_yr / model_.settings().radius_km);
+    set_motion(model_, plate, place_of(motion.pole_latitude_deg, motion.pole_longitude_deg),
+               motion.speed_mm_yr / model_.settings.radius_km);
     figures.emplace_back("plate", id_of(plate));
     return true;
   }
   bool operator()(const PlateRift& rift, Figures& figures) const {
     if (!rift.path.empty()) return rift_along(rift, figures);
     const Vector3 at = place_of(rift.latitude_deg, rift.longitude_deg);
-    const int plate = model_.plate_at(at);
+    const int plate = plate_at(model_, at);
     if (plate < 0) return false;
     // Fragments lie round the place, the first one to the right of the fracture.
     constexpr double kAway = 0.15;  // radians
@@ -55,7 +55,7 @@ class Stroke {
       places.push_back(normalised(add(scaled(at, std::cos(kAway)), away, std::sin(kAway))));
     }
     figures.emplace_back("plate", id_of(plate));
-    model_.rift(plate, places, rift.speed_mm_yr);
+    rift_plate(model_, plate, places, rift.speed_mm_yr);
     return true;
   }
   bool operator()(const CrustChange& change, Figures& figures) const {
@@ -65,7 +65,7 @@ class Stroke {
   /// False when there is no plume to end.
   bool operator()(const PlumeChange& change, Figures& figures) const {
     const Vector3 at = place_of(change.latitude_deg, change.longitude_deg);
-    auto& plumes = model_.state().plumes;
+    auto& plumes = model_.state.plumes;
     if (change.active) {
       std::int64_t number = 0;
       for (const SpherePlume& plume : plumes) number = std::max(number, plume.number + 1);
@@ -87,30 +87,31 @@ class Stroke {
   /// The plate below the middle of the line breaks.
   [[nodiscard]] bool rift_along(const PlateRift& rift, Figures& figures) const {
     const GreatCircleLine line(places_on(grid_, rift.path));
-    const int plate = model_.plate_at(line.middle());
+    const int plate = plate_at(model_, line.middle());
     if (plate < 0) return false;
     figures.emplace_back("plate", id_of(plate));
-    model_.rift_along(plate, line, static_cast<int>(rift.fragments), rift.speed_mm_yr);
+    rift_plate_along(model_, plate, line, static_cast<int>(rift.fragments), rift.speed_mm_yr);
     return true;
   }
   [[nodiscard]] double area_changed_km2(const CrustChange& change) const {
-    const double warp_km = model_.settings().coast_warp_km;
+    const double warp_km = model_.settings.coast_warp_km;
     if (change.path.empty()) {
       // A small circle keeps its shape and its area as well as a large one.
       constexpr double kMost = 0.2;
       const Vector3 middle = place_of(change.latitude_deg, change.longitude_deg);
       const double lowest =
-          std::cos(std::min(change.radius_km / model_.settings().radius_km, std::numbers::pi));
-      return model_.change_crust([&](const Vector3& place) { return dot(place, middle) >= lowest; },
-                                 change.continental, std::min(warp_km, kMost * change.radius_km));
+          std::cos(std::min(change.radius_km / model_.settings.radius_km, std::numbers::pi));
+      return change_crust(
+          model_, [&](const Vector3& place) { return dot(place, middle) >= lowest; },
+          change.continental, std::min(warp_km, kMost * change.radius_km));
     }
     const RegionOutline region(std::span(&change.path, 1));
-    return model_.change_crust(
-        [&](const Vector3& place) { return region.holds(position_of(grid_, place)); },
+    return change_crust(
+        model_, [&](const Vector3& place) { return region.holds(position_of(grid_, place)); },
         change.continental, warp_km);
   }
   /// The number by which files know a plate.
-  [[nodiscard]] double id_of(int plate) const { return model_.state().plates[plate].id; }
+  [[nodiscard]] double id_of(int plate) const { return model_.state.plates[plate].id; }
   [[nodiscard]] Vector3 place_of(double latitude_deg, double longitude_deg) const {
     return place_on(grid_, {latitude_deg, longitude_deg});
   }

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "geo/kernels/plates/sphere/sphere_mesh.hpp"
+#include "geo/kernels/plates/sphere/sphere_settings.hpp"
 #include "geo/kernels/plates/sphere/sphere_state.hpp"
-#include "geo/kernels/plates/sphere/sphere_tectonics.hpp"
 
 namespace geo {
 

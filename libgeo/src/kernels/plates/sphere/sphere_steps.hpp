@@ -1,0 +1,121 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "geo/kernels/plates/sphere/sphere_tectonics.hpp"
+
+namespace geo {
+
+// The parts of a step. Each says what it needs beside fresh plates (SphereTectonics) and what it
+// changes; all add to the budget what they move.
+
+// Plates.
+
+/// Needs samples that have changed their plates, or their type, since. Plates that have lost all
+/// end, what they carried goes on alone. Derives the partition and all below.
+void derive_plates(SphereTectonics& model);
+/// Needs plates that have turned or whose motion has changed since. Derives frames and rotations.
+void derive_motion(SphereTectonics& model);
+/// Needs floor that has become continental since. Derives the counts of continents and ranks.
+void derive_ranks(SphereTectonics& model);
+/// Turns plates by a step and remembers where they were.
+void move_plates(SphereTectonics& model);
+/// The rotation that drives a plate, without what it yields to others, rad/Myr.
+[[nodiscard]] Vector3 driven_rotation(const SphereState& state, int plate);
+/// Common rotation of the plates that are not held, rad/Myr.
+[[nodiscard]] Vector3 net_rotation(const SphereTectonics& model);
+
+// Margins.
+
+/// Needs plates that have moved. Derives the margins, and decides for pairs of plates that meet
+/// anew which one stays up.
+void find_margins(SphereTectonics& model);
+/// Nothing lies over anything.
+void forget_margins(SphereTectonics& model);
+
+/// What handing trenches on asks of a sample, in one place of memory.
+struct TrenchSpot {
+  float x, y, z, chord2;  ///< of the nearest trench so far
+  std::int32_t trench;    ///< that one, or -1
+  std::int16_t plate;     ///< -1 also below another plate
+};
+/// The square of the chord that spans the reach of subduction.
+[[nodiscard]] float subduction_chord2(const SphereSettings& settings);
+/// One for each sample, none of which knows a trench: only nearer ones than the reach of subduction
+/// will do. Needs partners and what is hidden.
+[[nodiscard]] std::vector<TrenchSpot> spots_of_samples(const SphereTectonics& model);
+/// Hands trenches of a plate on within it; `reached` learns of samples that had none.
+void hand_on_trenches(const SphereTectonics& model, int plate,
+                      std::span<const std::int32_t> trenches, std::vector<TrenchSpot>& spots,
+                      std::vector<std::int32_t>* reached);
+
+// Crust.
+
+/// Needs margins. Raises, wears, sinks and ages all crust; arcs that emerge become continental.
+void raise_crust(SphereTectonics& model);
+/// Needs margins. Plumes build volcanoes on sea floor.
+void erupt(SphereTectonics& model);
+/// Needs margins. Rivers carve and deposit.
+void run_rivers(SphereTectonics& model);
+/// Needs what is hidden. Thins roots that are too thick.
+void spread_roots(SphereTectonics& model);
+
+// Motion.
+
+/// Needs trenches. Turns axes of plates towards what goes down, and derives motion.
+void pull_slabs(SphereTectonics& model);
+/// Needs margins. Lets motion follow the forces, and derives it. Returns what holds each plate back
+/// with all that it carries, in units of what holds one sample of sea floor.
+std::vector<Matrix3> balance_forces(SphereTectonics& model);
+/// The same of plates that the mantle alone holds back.
+[[nodiscard]] std::vector<Matrix3> drag_below(const SphereTectonics& model);
+/// Of one plate without what it carries.
+[[nodiscard]] Matrix3 drag_below(const SphereTectonics& model, int plate);
+/// Needs margins. Plates that are linked slow each other, and motion is derived.
+void yield_to_links(SphereTectonics& model, const std::vector<Matrix3>& drag);
+
+// Happenings.
+
+/// Needs margins. Continents that have gone far enough below another collide with it.
+void collide_continents(SphereTectonics& model);
+/// A terrane that has come to another plate.
+struct Collision {
+  int upper;                              ///< that plate
+  std::span<const std::int32_t> terrane;  ///< its samples
+  Vector3 centroid;                       ///< unit vector, in the frame of the planet
+  double area_km2, speed_mm_yr;           ///< of the terrane
+};
+/// Mountains of the collided plate around a terrane. The crust that the terrane had pushed below is
+/// consumed and given back as their roots: the profile and the reach are those of 4.2, its height
+/// at most `surge_km`, and its reach drawn in until its volume is what was swallowed. Needs
+/// margins; leaves it to the caller to derive the plates.
+void surge(SphereTectonics& model, const Collision& what);
+/// Needs margins. Pairs of plates keep how far their continents have come below each other.
+void remember_penetration(SphereTectonics& model);
+/// Plates rift, and old margins begin to subduct, by chance.
+void rift_by_chance(SphereTectonics& model);
+void initiate_subduction_by_chance(SphereTectonics& model);
+/// Fragments of a plate (-1 beside it) become plates, each turned about an axis on top of the old
+/// motion. False when there are no two.
+bool part_plate(SphereTectonics& model, int plate, std::span<const std::int8_t> fragment,
+                std::span<const Vector3> away, double speed_mm_yr, SphereEvent::Kind kind);
+
+// Resampling.
+
+/// New floor and the margins of continents where no plate is. `now` is the crust that grows,
+/// `owner` the plate of each of its samples, -1 in gaps before and nowhere after, `body` what moved
+/// as one before.
+void fill_gaps(SphereTectonics& model, SphereCrust& now, std::vector<std::int16_t>& owner,
+               std::span<const std::int16_t> body);
+void stretch_margins(SphereTectonics& model, std::span<const std::int32_t> gaps,
+                     std::span<const std::int32_t> nearest, SphereCrust& now,
+                     std::span<const std::int16_t> owner);
+
+// Books.
+
+/// Volume of the continents, number of plates and what their areas miss.
+void measure_volume(SphereTectonics& model);
+
+}  // namespace geo
