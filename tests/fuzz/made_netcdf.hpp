@@ -38,7 +38,7 @@ class MadeNetcdf {
   /// A dimension of `usual` entries, now and then of any other number.
   int dimension(const std::string& name, int usual) {
     const std::size_t size = bytes_.one_in(24)   ? bytes_.below(40)
-                             : bytes_.one_in(64) ? bytes_.value<std::uint16_t>() * 7919U
+                             : bytes_.one_in(64) ? large_size()
                                                  : static_cast<std::size_t>(usual);
     int dimension = -1;
     if (nc_def_dim(id_, name.c_str(), size, &dimension) != NC_NOERR) return -1;
@@ -109,6 +109,12 @@ class MadeNetcdf {
   }
 
  private:
+  /// Files with room for some million rows can be read, but not many a second.
+  std::size_t large_size() {
+    const std::size_t size = bytes_.value<std::uint16_t>();
+    return bytes_.one_in(4) ? size << 24 : size;
+  }
+
   struct Planned {
     int variable;
     nc_type type;
