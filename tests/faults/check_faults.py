@@ -323,6 +323,10 @@ class Faults:
         print(f"locale {comma}", flush=True)
 
 
+PARTS = ("streams", "locales", "signals", "folder-taken", "rights-lost", "full-disk", "filling-disk", "planet-kills",
+         "drift-kills", "fit-kills")
+
+
 def main():
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     options.add_argument("program")
@@ -330,19 +334,25 @@ def main():
     options.add_argument("--kills", type=int, default=6, help="of each kind of run")
     options.add_argument("--levels", type=int, default=3, help="at which a disk is full")
     options.add_argument("--seed", type=int, default=1)
+    options.add_argument("--only", action="append", default=[], choices=PARTS, help="all parts when none is named")
     chosen = options.parse_args()
     faults = Faults(chosen.program, chosen.folder, chosen.seed)
+    parts = {
+        "streams": faults.streams,
+        "locales": faults.locales,
+        "signals": lambda: faults.signals("planet", PLANET),
+        "folder-taken": lambda: faults.folder_taken("planet-folder", PLANET),
+        "rights-lost": lambda: faults.rights_lost("planet-rights", PLANET),
+        "full-disk": lambda: faults.full_disk("planet-disk", PLANET, chosen.levels),
+        "filling-disk": lambda: faults.disk_that_fills("planet-filling", PLANET, chosen.levels),
+        "planet-kills": lambda: faults.kills("planet-kills", PLANET, chosen.kills),
+        "drift-kills": lambda: faults.kills("drift-kills", DRIFT, chosen.kills),
+        "fit-kills": lambda: faults.kills("fit-kills", FIT, chosen.kills, codes=(0, 5)),
+    }
     try:
-        faults.streams()
-        faults.locales()
-        faults.signals("planet", PLANET)
-        faults.folder_taken("planet-folder", PLANET)
-        faults.rights_lost("planet-rights", PLANET)
-        faults.full_disk("planet-disk", PLANET, chosen.levels)
-        faults.disk_that_fills("planet-filling", PLANET, chosen.levels)
-        faults.kills("planet-kills", PLANET, chosen.kills)
-        faults.kills("drift-kills", DRIFT, chosen.kills)
-        faults.kills("fit-kills", FIT, chosen.kills, codes=(0, 5))
+        for name in PARTS:
+            if not chosen.only or name in chosen.only:
+                parts[name]()
     except Failure as failure:
         print(f"FAILED (seed {chosen.seed}): {failure}", file=sys.stderr)
         return 1

@@ -8,10 +8,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static terrane::Configuration configuration;
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   geo::fuzz::expect_value_or_refusal([&] {
-    const auto& parameters = configuration.all_parameters();
     auto& events = configuration.settings.events;
-    geo::io::apply_toml(text, "input.toml", parameters, &events);
+    events.clear();
     // What was accepted is written so that it reads back the same.
+    std::vector<geo::Parameter> parameters;
+    for (const std::string& name :
+         geo::io::apply_toml(text, "input.toml", configuration.all_parameters(), &events)) {
+      parameters.push_back(*geo::find_parameter(configuration.all_parameters(), name));
+    }
     const std::string written = geo::io::write_config(parameters, "", events);
     try {
       geo::io::apply_toml(written, "written.toml", parameters, &events);

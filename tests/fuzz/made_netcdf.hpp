@@ -25,6 +25,7 @@ class MadeNetcdf {
     nc_set_fill(id_, bytes_.one_in(16) ? NC_FILL : NC_NOFILL, &old);
   }
   ~MadeNetcdf() {
+    if (is_large_) nc_set_fill(id_, NC_NOFILL, nullptr);  // a file of holes, not of gigabytes
     nc_enddef(id_);
     if (!bytes_.one_in(16)) put_values();
     nc_close(id_);
@@ -38,7 +39,7 @@ class MadeNetcdf {
   /// A dimension of `usual` entries, now and then of any other number.
   int dimension(const std::string& name, int usual) {
     const std::size_t size = bytes_.one_in(24)   ? bytes_.below(40)
-                             : bytes_.one_in(64) ? bytes_.value<std::uint16_t>() * 7919U
+                             : bytes_.one_in(64) ? large_size(usual)
                                                  : static_cast<std::size_t>(usual);
     int dimension = -1;
     if (nc_def_dim(id_, name.c_str(), size, &dimension) != NC_NOERR) return -1;
@@ -109,6 +110,14 @@ class MadeNetcdf {
   }
 
  private:
+  /// Of one dimension, so that the file's data are few megabytes, or more than any grid has.
+  std::size_t large_size(int usual) {
+    if (is_large_) return usual;
+    is_large_ = true;
+    const std::size_t size = bytes_.below(8192);
+    return bytes_.one_in(4) ? size << 24 : size;
+  }
+
   struct Planned {
     int variable;
     nc_type type;
@@ -141,7 +150,7 @@ class MadeNetcdf {
 
   Bytes& bytes_;
   int id_ = -1;
-  bool is_hdf5_ = false;
+  bool is_hdf5_ = false, is_large_ = false;
   std::vector<int> dimensions_;
   std::vector<Planned> values_;
 };

@@ -3,6 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+
+#include "geo/core/error.hpp"
+#include "temporary_folder.hpp"
 
 namespace geo::io {
 namespace {
@@ -56,6 +60,13 @@ TEST(Hypsography, TellsItsShareOfSea) {
   EXPECT_NEAR(ocean_share_of({{0.0, 0.5, 1.0}, {-3000.0, -1000.0, 1000.0}}), 0.75, 1e-12);
   EXPECT_EQ(ocean_share_of({{0.0, 1.0}, {10.0, 4000.0}}), 0.0);
   EXPECT_EQ(ocean_share_of({{0.0, 1.0}, {-4000.0, -10.0}}), 1.0);
+}
+
+TEST(Hypsography, RefusesElevationsWhoseDifferenceIsNoNumber) {
+  const TemporaryFolder folder;
+  const std::string file = (folder.path() / "huge.csv").string();
+  std::ofstream(file) << "quantile,elevation_m\n0,-1.7e308\n1,1.7e308\n";
+  EXPECT_THROW(static_cast<void>(read_hypsography(file)), InputError);
 }
 
 }  // namespace

@@ -323,6 +323,30 @@ TEST(Dem, UnevenAxisIsRefused) {
   EXPECT_THAT(complaint(file), HasSubstr("axis lat: steps are uneven at index 5"));
 }
 
+TEST(Dem, AxisLongerThanAnyGridIsRefused) {
+  const TemporaryFolder folder;
+  int id = 0, dimension[2] = {}, latitude = 0, longitude = 0, z = 0;
+  // Classic format without fill: a file of holes.
+  good(nc_create((folder / "long.nc").c_str(), NC_64BIT_DATA, &id));
+  good(nc_set_fill(id, NC_NOFILL, nullptr));
+  good(nc_def_dim(id, "lat", std::size_t{1} << 28, &dimension[0]));
+  good(nc_def_dim(id, "lon", 4, &dimension[1]));
+  good(nc_def_var(id, "lat", NC_BYTE, 1, dimension, &latitude));
+  good(nc_put_att_text(id, latitude, "units", 13, "degrees_north"));
+  good(nc_def_var(id, "lon", NC_BYTE, 1, dimension + 1, &longitude));
+  good(nc_put_att_text(id, longitude, "units", 12, "degrees_east"));
+  good(nc_def_var(id, "z", NC_BYTE, 2, dimension, &z));
+  good(nc_put_att_text(id, z, "units", 1, "m"));
+  good(nc_enddef(id));
+  good(nc_close(id));
+  try {
+    static_cast<void>(read_dem((folder / "long.nc").string(), Planet{}));
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("axis lat: 268435456 values, must have 178956970 at most"));
+  }
+}
+
 TEST(Dem, AxesWithoutMeaningAreRefused) {
   ReliefFile file = planet_file();
   file.row_name = "j";

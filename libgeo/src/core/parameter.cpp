@@ -199,10 +199,11 @@ const Parameter* find_parameter(std::span<const Parameter> parameters, std::stri
 }
 
 std::string nearest_word(std::string_view word, std::span<const std::string_view> candidates) {
+  std::vector<int> table;
   const auto distance = [&](std::string_view a, std::string_view b) {
     // Optimal string alignment: insertions, deletions, substitutions, neighbouring swaps.
     const std::size_t columns = b.size() + 1;
-    std::vector<int> table((a.size() + 1) * columns);
+    table.resize((a.size() + 1) * columns);
     const auto at = [&](std::size_t i, std::size_t j) -> int& { return table[i * columns + j]; };
     for (std::size_t i = 0; i <= a.size(); ++i) at(i, 0) = static_cast<int>(i);
     for (std::size_t j = 0; j <= b.size(); ++j) at(0, j) = static_cast<int>(j);
@@ -220,6 +221,11 @@ std::string nearest_word(std::string_view word, std::span<const std::string_view
   std::string best;
   int least = static_cast<int>(word.size() / 3) + 2;
   for (const std::string_view candidate : candidates) {
+    // As far apart as their lengths at least; long words need no table.
+    const std::size_t longer = std::max(word.size(), candidate.size());
+    if (longer - std::min(word.size(), candidate.size()) >= static_cast<std::size_t>(least)) {
+      continue;
+    }
     const int here = distance(word, candidate);
     if (here < least) {
       least = here;

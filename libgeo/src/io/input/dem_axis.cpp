@@ -59,7 +59,13 @@ std::optional<AxisKind> kind_in_metres(const std::string& standard_name, const s
 
 std::vector<double> axis_values(const nc::File& file, int variable, const std::string& name) {
   file.check_size(variable);
-  std::vector<double> values(file.length_of(file.dimensions_of(variable)[0]));
+  // A grid has 2^29 cells at most, and three along its shorter side.
+  constexpr std::size_t kMost = (std::size_t{1} << 29) / 3;
+  const std::size_t size = file.length_of(file.dimensions_of(variable)[0]);
+  if (size > kMost) {
+    throw InputError(fmt::format("axis {}: {} values, must have {} at most", name, size, kMost));
+  }
+  std::vector<double> values(size);
   try {
     nc::check(nc_get_var_double(file.id(), variable, values.data()));
   } catch (const nc::Failure& failure) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <numbers>
 
 #include "geo/core/error.hpp"
@@ -43,6 +44,10 @@ Hypsography curve_of(const Table& table) {
     const double fraction = table.number(row, 0), elevation_m = table.number(row, 1);
     if (row == 0 && fraction != 0.0) table.refuse(row, "the first quantile must be 0");
     if (row > 0 && !(fraction > curve.fraction.back())) table.refuse(row, "quantiles must ascend");
+    // Also when the curve is moved by as much.
+    if (!(std::abs(elevation_m) <= 0.5 * std::numeric_limits<float>::max())) {
+      table.refuse(row, "an elevation is beyond single precision");
+    }
     if (row > 0 && elevation_m < curve.elevation_m.back()) {
       table.refuse(row, "elevations must not fall");
     }

@@ -78,8 +78,8 @@ std::vector<FieldDifference> differences(const Snapshot& first, const Snapshot& 
       result.fault = "other cells";
     } else {
       std::visit(
-          [&]<class T>(const std::vector<T>& array) {
-            compare(array, std::get<std::vector<T>>(*other), spec->missing, tolerance, result);
+          [&, missing = spec->missing]<class T>(const std::vector<T>& array) {
+            compare(array, std::get<std::vector<T>>(*other), missing, tolerance, result);
           },
           *values);
       const Grid& grid = *first.grid;

@@ -75,9 +75,10 @@ TERRANE_WIDE void add_group(Row& row, const Group& g, float waves, int first, in
   const float *nx = row.north[0].data(), *ny = row.north[1].data(), *nz = row.north[2].data();
   const float *cosine = row.crest[0].data(), *sine = row.crest[1].data();
   float* sum = row.sum.data();
-  const auto [cx, cy, cz] = g.centre;
-  const auto [ux, uy, uz] = g.u;
-  const auto [vx, vy, vz] = g.v;
+  // No structured binding: clang's OpenMP regions know none before version 16.
+  const float cx = g.centre[0], cy = g.centre[1], cz = g.centre[2];
+  const float ux = g.u[0], uy = g.u[1], uz = g.u[2];
+  const float vx = g.v[0], vy = g.v[1], vz = g.v[2];
   const float phase = g.phase, weight = g.weight;
 #pragma omp simd
   for (int i = first; i < last; ++i) {

@@ -365,7 +365,7 @@ std::vector<float> island_erodibility(const PlanetCells& cells, const PlanetReli
   };
   // Cubics swing beyond what they pass through; nothing is weaker or stronger than the table has
   // it.
-  const auto [least, most] = std::minmax(
+  const auto range = std::minmax(
       {p.convergent_erodibility_yr, p.divergent_erodibility_yr, p.interior_erodibility_yr});
   std::vector<float> erodibility(cells.fine().size());
   on_cells(cells.fine(), [&](int i, int j, Index c) {
@@ -376,7 +376,8 @@ std::vector<float> island_erodibility(const PlanetCells& cells, const PlanetReli
                          : static_cast<double>(planet.erodibility[cell]);
     };
     const double worn = std::max(0.0, stencil.of(at));
-    erodibility[c] = static_cast<float>(by_boundary ? std::clamp(worn, least, most) : worn);
+    erodibility[c] =
+        static_cast<float>(by_boundary ? std::clamp(worn, range.first, range.second) : worn);
   });
   if (by_boundary) return erodibility;
   return resolved_erodibility<float>(law, {}, cells.fine(), erodibility);

@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "geo/core/array_sizes.hpp"
@@ -57,14 +56,19 @@ void lay_at_sea(const Grid& grid, std::span<const std::uint8_t> sea, const Numbe
 #pragma omp parallel for schedule(static)
     for (Index cell = 0; cell < grid.size(); ++cell) afloat[cell] *= correction;
   };
-  for (const auto& [reach, substeps] : {std::pair{1.0, 2}, std::pair{3.0, 1}}) {
+  struct Spread {
+    double reach;  // in lengths
+    int substeps;
+  };
+  for (const Spread& spread : {Spread{1.0, 2}, Spread{3.0, 1}}) {
     const Number brought = area_sum<Number>(grid, [&](Index cell) { return afloat[cell]; });
     apply_linear<Number, 1>(
         std::span<Number>(afloat), {length_m},
         [&](auto values, const std::array<double, 1>& length) {
-          const double spread_m = reach * length[0];
-          diffuse(grid, values, 0.5 * spread_m * spread_m, 1.0,
-                  {.excluded = land, .scheme = DiffusionScheme::positive, .substeps = substeps});
+          const double spread_m = spread.reach * length[0];
+          diffuse(
+              grid, values, 0.5 * spread_m * spread_m, 1.0,
+              {.excluded = land, .scheme = DiffusionScheme::positive, .substeps = spread.substeps});
         });
     keep_sum(brought);
     if (!(value_of(settle()) > 0.0)) return;

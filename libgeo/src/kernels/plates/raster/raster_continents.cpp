@@ -28,11 +28,13 @@ void RasterPlate::find_continents(int steps) {
   continents_known_ = true;
   land_changed_ = false;
   continents_age_ = 0;
-  auto& [runs, row_begin, area, left, top] = continents_;
+  auto& runs = continents_.runs;
+  auto& row_begin = continents_.row_begin;
+  auto& area = continents_.area;
   runs.clear();
   row_begin.assign(1, 0);
-  left = left_;
-  top = top_;
+  continents_.left = left_;
+  continents_.top = top_;
   std::vector<std::int32_t> parent;
   const auto join = [&](std::int32_t a, std::int32_t b) {
     a = root_of(parent, a);

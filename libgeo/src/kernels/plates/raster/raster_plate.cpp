@@ -98,8 +98,8 @@ void RasterPlate::tighten() {
   resize(world_.column(left_ + first_column), world_.row(top_ + first_row), columns, rows);
 }
 
-void RasterPlate::erode(double strength) {
-  if (columns_ == 0) return;
+double RasterPlate::erode(double strength) {
+  if (columns_ == 0) return 0.0;
   std::vector<float> change(crust_.size(), 0.0F);
   const bool round_x = columns_ == world_.columns, round_y = rows_ == world_.rows;
   const auto share = static_cast<float>(0.25 * strength);
@@ -134,14 +134,17 @@ void RasterPlate::erode(double strength) {
       }
     }
   }
-  double sum = 0.0;
+  double sum = 0.0, rounded = 0.0;
   for (std::size_t k = 0; k < crust_.size(); ++k) {
-    crust_[k].height = std::max(0.0F, crust_[k].height + change[k]);
-    sum += crust_[k].height;
+    const float before = crust_[k].height, after = std::max(0.0F, before + change[k]);
+    crust_[k].height = after;
+    sum += after;
+    rounded += static_cast<double>(after) - before;
   }
   mass = sum;
   mark_blocks();
   continents_known_ = false;
+  return rounded;
 }
 
 }  // namespace geo

@@ -130,12 +130,15 @@ bool RasterSphere::advance() {
 
 void RasterSphere::move() {
   constexpr int kTighten = 32;
+  std::vector<double> rounded(plates_.size(), 0.0);
   const auto move_plate = [&](int p) {
     RasterSpherePlate& plate = plates_[p];
     if (!plate.alive) return;
     const auto period = static_cast<std::int64_t>(
         settings_.of(p, &RasterPlateSettings::erosion_steps, settings_.erosion_steps));
-    if (period > 0 && budget_.steps % period == 0) plate.erode(settings_.erosion);
+    if (period > 0 && budget_.steps % period == 0) {
+      rounded[p] = plate.erode(settings_.erosion);
+    }
     if (budget_.steps % kTighten == 0) plate.tighten();
     if (!plate.alive) return;
     plate.move();
@@ -146,6 +149,7 @@ void RasterSphere::move() {
 #pragma omp parallel for schedule(dynamic, 1) if (pays_)
   for (int p = 0; p < static_cast<int>(plates_.size()); ++p) errors.guard([&] { move_plate(p); });
   errors.rethrow();
+  for (const double added : rounded) budget_.rounded += added;
 }
 
 /// Which plates may have crust in a page of the world; one alone that fills all of it is calm.
@@ -302,7 +306,7 @@ void RasterSphere::fold(const Seat& a, const Seat& b) {
   RasterSpherePlate& from = plates_[a.plate];
   RasterSpherePlate& to = plates_[b.plate];
   RasterCrust smaller = from.crust(a.sample), larger = to.crust(b.sample);
-  const float before = smaller.height;
+  const float before = smaller.height, other_before = larger.height;
   raster_fold(smaller, larger,
               settings_.of(a.plate, &RasterPlateSettings::folding_ratio, settings_.folding_ratio),
               budget_.steps);
@@ -310,6 +314,7 @@ void RasterSphere::fold(const Seat& a, const Seat& b) {
   to.set(b.sample, larger);
   const double moved = static_cast<double>(before) - smaller.height;
   budget_.folded += moved;
+  budget_.rounded += static_cast<double>(larger.height) - other_before - moved;
   folded_[a.plate] += moved;
   folded_[b.plate] += moved;
   const std::int32_t own = from.continent(a.sample), other = to.continent(b.sample);
@@ -424,12 +429,16 @@ void RasterSphere::merge(const Overlap& overlap) {
     seen.emplace_back(own_sample(overlap.b, at, places.front()), taken.front().second);
     sum = taken.front().second.height;
   }
+  double arrived = 0.0;
   for (auto& [place, crust] : seen) {
     crust.height = static_cast<float>(crust.height * moved / sum);
     RasterCrust target = to.crust(place);
+    const float before = target.height;
     target.add(crust);
     to.set(place, target);
+    arrived += static_cast<double>(target.height) - before;
   }
+  budget_.rounded += arrived - moved;
   to.forget_continents();
   budget_.merged += moved;
   ++budget_.mergers;

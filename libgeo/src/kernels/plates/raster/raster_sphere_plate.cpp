@@ -156,7 +156,7 @@ void RasterSpherePlate::tighten() {
   alive = !open_.empty();
 }
 
-void RasterSpherePlate::erode(double strength) {
+double RasterSpherePlate::erode(double strength) {
   // Six neighbours in place of four, and a hexagonal cell of the same area as a square one.
   const auto share = static_cast<float>(0.25 * strength / std::sqrt(3.0));
   std::vector<std::pair<std::int32_t, float>> change;
@@ -182,13 +182,17 @@ void RasterSpherePlate::erode(double strength) {
       change.emplace_back(samples[k], -scale * all);
     }
   }
+  double rounded = 0.0;
   for (const auto& [sample, amount] : change) {
     float& height = find(sample)->crust.height;
     const float before = height;
     height = std::max(0.0F, height + amount);
-    mass += static_cast<double>(height) - before;
+    const double added = static_cast<double>(height) - before;
+    mass += added;
+    rounded += added;
   }
   land_changed_ = true;
+  return rounded;
 }
 
 void RasterSpherePlate::find_continents(int steps) {

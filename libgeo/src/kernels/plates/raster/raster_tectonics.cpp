@@ -114,7 +114,11 @@ bool RasterTectonics::advance() {
       over_ = true;
       return false;
     }
-    divide(map().crust);
+    std::vector<RasterCrust> crust = map().crust;
+    double all = 0.0;
+    for (const RasterCrust& cell : crust) all += cell.height;
+    budget_.rounded += all - mass();
+    divide(std::move(crust));
     return true;
   }
   ++budget_.steps;
@@ -140,12 +144,15 @@ bool RasterTectonics::advance() {
 
 void RasterTectonics::move() {
   constexpr int kTighten = 32;
+  std::vector<double> rounded(plates_.size(), 0.0);
   const auto move_plate = [&](int p) {
     RasterPlate& plate = plates_[p];
     if (!plate.alive) return;
     const auto period = static_cast<std::int64_t>(
         settings_.of(p, &RasterPlateSettings::erosion_steps, settings_.erosion_steps));
-    if (period > 0 && budget_.steps % period == 0) plate.erode(settings_.erosion);
+    if (period > 0 && budget_.steps % period == 0) {
+      rounded[p] = plate.erode(settings_.erosion);
+    }
     if (budget_.steps % kTighten == 0) plate.tighten();
     // With a spin, the path bends as the plate turns: motion about a pole.
     const double c = std::cos(plate.spin + plate.curve), s = std::sin(plate.spin + plate.curve);
@@ -161,6 +168,7 @@ void RasterTectonics::move() {
 #pragma omp parallel for schedule(dynamic, 1) if (pays_)
   for (int p = 0; p < static_cast<int>(plates_.size()); ++p) errors.guard([&] { move_plate(p); });
   errors.rethrow();
+  for (const double added : rounded) budget_.rounded += added;
 }
 
 /// Where magma of what went down rises: inland, along the motion of the lower plate as the upper
@@ -223,6 +231,7 @@ void RasterTectonics::slow_down() {
       to.note(event.other_before, event.other_after);
       const double moved = static_cast<double>(event.before) - event.after;
       budget_.folded += moved;
+      budget_.rounded += static_cast<double>(event.other_after) - event.other_before - moved;
       folded[event.from] += moved;
       folded[event.to] += moved;
       if (event.continent < 0 || event.other < 0) continue;
@@ -294,6 +303,7 @@ void RasterTectonics::merge(const Overlap& overlap) {
         from.set(place, {});
         to.note(before, target.height);
         moved += source.height;
+        budget_.rounded += static_cast<double>(target.height) - before - source.height;
         std::int16_t& owner = owner_[static_cast<std::size_t>(y) * world.columns + x];
         if (owner == overlap.a) owner = overlap.b;
       }

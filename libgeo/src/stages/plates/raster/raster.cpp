@@ -89,6 +89,7 @@ void report(const Model& model, Budget& budget) {
   budget["raster_crust_melted"] = sums.melted;
   budget["raster_crust_folded"] = sums.folded;
   budget["raster_crust_resampled"] = sums.resampled;
+  budget["raster_crust_rounded"] = sums.rounded;
   budget["raster_crust_closing_error"] = (mass - sums.balance()) / mass;
 }
 

@@ -167,8 +167,8 @@ class RasterPlate {
   void open(int world_column, int world_row, int columns, int rows);
   /// Shrinks the map to its crust and counts mass and reach anew.
   void tighten();
-  /// Levels land: see RasterSettings::erosion.
-  void erode(double strength);
+  /// Levels land: see RasterSettings::erosion. Returns what rounding has added to the crust.
+  double erode(double strength);
   /// Finds the continents anew if the map has changed its place, or land has come or gone and
   /// `steps` calls have passed since.
   void find_continents(int steps);

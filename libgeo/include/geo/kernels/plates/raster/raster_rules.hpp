@@ -163,11 +163,14 @@ struct RasterBudget {
   double folded = 0.0;     ///< moved from smaller to larger continents
   double merged = 0.0;     ///< moved with continents from plate to plate
   double resampled = 0.0;  ///< on a sphere: added when all crust is read at the lattice's places
+  double rounded = 0.0;    ///< added where crust moves between cells, which hold single precision
   std::int64_t steps = 0;
   int cycles = 0, mergers = 0;
 
   /// What the crust should be now.
-  [[nodiscard]] double balance() const { return start + created - subducted + melted + resampled; }
+  [[nodiscard]] double balance() const {
+    return start + created - subducted + melted + resampled + rounded;
+  }
 };
 
 /// The world's map: one value for each cell.

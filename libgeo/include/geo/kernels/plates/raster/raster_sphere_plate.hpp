@@ -113,8 +113,9 @@ class RasterSpherePlate {
   }
 
   /// Levels land: a lower neighbour takes a part of the step down to it, never below sea level, so
-  /// that height spreads as far as by `strength` / 4 on a square lattice.
-  void erode(double strength);
+  /// that height spreads as far as by `strength` / 4 on a square lattice. Returns what rounding has
+  /// added to the crust.
+  double erode(double strength);
   /// Drops empty pages and counts the mass anew; without crust the plate is no more.
   void tighten();
   /// Finds continents, connected land, anew if land has come or gone and `steps` calls have passed.
