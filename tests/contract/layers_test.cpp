@@ -83,9 +83,9 @@ TEST(Layers, PrivateHeadersStayInTheirLayer) {
   }
 }
 
-/// What opens and writes runs learns from StageInfo what a stage is: no names in strings, no keys of
-/// parameters; names of files in a run's folder are the public interface. Maps, masks and layers of a
-/// report have words of their own, some of them the same.
+/// What opens and writes runs learns from StageInfo what a stage is: no names in strings, no keys
+/// of parameters; names of files in a run's folder are the public interface. Maps, masks and layers
+/// of a report have words of their own, some of them the same.
 TEST(Layers, FilesKnowNoStageByItsName) {
   std::string names;
   const Pipeline pipeline = make_pipeline();

@@ -12,8 +12,8 @@
 
 namespace geo {
 
-// How sections vary along a boundary and beside it: design, chosen beside the Earth's relief for
-// belts that wind and swell.
+// How sections vary along a boundary and beside it: design, chosen beside the Earth's topography
+// for belts that wind and swell.
 
 /// How much a deviation of the noise along a boundary makes it stronger or weaker, and the bounds
 /// of that for shortening (a share) and for the strength of a section, which ends nowhere in a cut.

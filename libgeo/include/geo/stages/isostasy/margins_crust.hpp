@@ -89,7 +89,7 @@ class Columns {
   }
 
  private:
-  // Where no source is named, values are design, chosen beside the Earth's relief.
+  // Where no source is named, values are design, chosen beside the Earth's topography.
 
   /// Oldest sea floor but for a few remnants [muller2008].
   static constexpr double kOldestFloor_myr = 200.0;

@@ -89,7 +89,7 @@ void decide_pairs(SphereTectonics& model) {
   }
 }
 
-/// Which of them have gone below the other plate.
+/// Which of them lie under the other plate: subducted floor and continents thrust below.
 void hide_what_is_below(SphereTectonics& model) {
   SphereMargins& margins = model.margins;
   const auto count = static_cast<std::int32_t>(margins.contacts.size());

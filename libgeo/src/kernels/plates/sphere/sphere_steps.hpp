@@ -64,7 +64,7 @@ void spread_roots(SphereTectonics& model);
 
 // Motion.
 
-/// Needs trenches. Turns axes of plates towards what goes down, and derives motion.
+/// Needs trenches. Turns axes of plates towards slabs that subduct, and derives motion.
 void pull_slabs(SphereTectonics& model);
 /// Needs margins. Lets motion follow the forces, and derives it. Returns what holds each plate back
 /// with all that it carries, in units of what holds one sample of sea floor.
