@@ -2,8 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <limits>
 
 #include "cli/folder_contents.hpp"
 #include "cli/program.hpp"
@@ -168,11 +170,15 @@ TEST_F(Run, PredictsTheTimeOfDearAndCheapClimates) {
     const Outcome ran = terrane(arguments);
     ASSERT_EQ(ran.code, 0) << ran.err;
     arguments.emplace_back("--dry-run");
-    const std::string told = terrane(arguments).out;
-    const auto at = told.find("time    about ");
-    ASSERT_NE(at, std::string::npos) << told;
     took_s.push_back(ran.processor_s);
-    predicted_s.push_back(std::stod(told.substr(at + 14)));
+    predicted_s.push_back(std::numeric_limits<double>::infinity());
+    // A prediction is for the machine as busy as it is: the least of three has other work out.
+    for (int time = 0; time < 3; ++time) {
+      const std::string told = terrane(arguments).out;
+      const auto at = told.find("time    about ");
+      ASSERT_NE(at, std::string::npos) << told;
+      predicted_s.back() = std::min(predicted_s.back(), std::stod(told.substr(at + 14)));
+    }
     EXPECT_GT(predicted_s.back(), 0.2 * took_s.back());
     EXPECT_LT(predicted_s.back(), 5.0 * took_s.back());
   }
