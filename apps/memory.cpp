@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cerrno>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -149,6 +150,7 @@ extern "C" {
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
 void* __libc_realloc(void* block, std::size_t size);
+void* __libc_memalign(std::size_t alignment, std::size_t size);
 }
 
 namespace {
@@ -179,6 +181,21 @@ extern "C" void* calloc(std::size_t count, std::size_t size) noexcept {
 }
 extern "C" void* realloc(void* block, std::size_t size) noexcept {
   return checked(__libc_realloc(block, size), size);
+}
+/// OpenMP's teams, for one.
+extern "C" void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept {
+  return checked(__libc_memalign(alignment, size), size);
+}
+extern "C" void* memalign(std::size_t alignment, std::size_t size) noexcept {
+  return checked(__libc_memalign(alignment, size), size);
+}
+extern "C" int posix_memalign(void** block, std::size_t alignment, std::size_t size) noexcept {
+  const bool is_power_of_two = alignment != 0 && (alignment & (alignment - 1)) == 0;
+  if (!is_power_of_two || alignment % sizeof(void*) != 0) return EINVAL;
+  void* const made = checked(__libc_memalign(alignment, size), size);
+  if (made == nullptr) return ENOMEM;
+  *block = made;
+  return 0;
 }
 
 /// OpenMP cannot say that a thread could not begin but by its own words and exit code 1.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdlib>
 
 #include "cli/program.hpp"
 #include "cli/sample_run.hpp"
@@ -89,6 +90,17 @@ TEST(Memory, ThatRunsOutInFilesAndPicturesIsToldAtTwentyLimits) {
                "--set", "output.compression=1", "--threads", "2", "--quiet", "-o", folder / "out"});
   ASSERT_EQ(written.code, 0) << written.err;
   expect_told_at_all_limits({"maps", folder / "out", "--width", "2400"});
+}
+
+/// Libraries look a function up in the program before they take the C library's. OpenMP allocates
+/// its teams aligned, and ends the program with exit code 1 where it is refused.
+TEST(Memory, IsAskedForThroughTheProgramAlone) {
+  for (const char* name : {"malloc", "calloc", "realloc", "aligned_alloc", "memalign",
+                           "posix_memalign", "pthread_create"}) {
+    const std::string command =
+        std::string("nm -D --defined-only '") + TERRANE_PROGRAM + "' | grep -q ' T " + name + "$'";
+    EXPECT_EQ(std::system(command.c_str()), 0) << name;
+  }
 }
 
 TEST(Memory, ThatASmallGridNeedsIsThere) {
