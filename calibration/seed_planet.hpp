@@ -18,6 +18,7 @@
 #include "geo/stages/erosion/ground.hpp"
 #include "geo/stages/erosion/landscape.hpp"
 #include "geo/stages/erosion/seas.hpp"
+#include "geo/stages/erosion/wear_down.hpp"
 #include "geo/stages/isostasy/floating_crust.hpp"
 #include "geo/stages/isostasy/freeboard.hpp"
 #include "geo/stages/isostasy/rocks.hpp"
@@ -126,8 +127,8 @@ class SeedPlanet {
                                          const Ground<V>& ground) const;
   /// The steps of stage erosion, along routes that are found or held.
   template <class V>
-  void wear_down(const ErosionParameters& p, std::span<const V> z, bool routes,
-                 Landscape<V>& landscape);
+  void wear_along_routes(const ErosionParameters& p, std::span<const V> z, bool routes,
+                         Landscape<V>& landscape);
   /// Rates and volumes over land and sea.
   template <class V>
   void sum_up(const ErosionParameters& p, const ActiveVariables<V>& active,
@@ -264,16 +265,14 @@ std::vector<V> SeedPlanet::uplift_of(const Model& model, const ActiveVariables<V
 }
 
 template <class V>
-void SeedPlanet::wear_down(const ErosionParameters& p, std::span<const V> z, bool routes,
-                           Landscape<V>& landscape) {
-  for (std::int64_t step = 0; step < p.steps; ++step) {
+void SeedPlanet::wear_along_routes(const ErosionParameters& p, std::span<const V> z, bool routes,
+                                   Landscape<V>& landscape) {
+  const auto route = [&](std::int64_t step) -> const Drainage& {
     Drainage& drainage = held_.drainage[step / p.route_every];
-    if (step % p.route_every == 0) {
-      if (routes) drain(p, grid(), as_floats<V>(z), landscape.outlets(), drainage);
-      landscape.breach(drainage);
-    }
-    landscape.step(drainage);
-  }
+    if (routes) drain(p, grid(), as_floats<V>(z), landscape.outlets(), drainage);
+    return drainage;
+  };
+  wear_down(p, {.route = route}, landscape);
   if (p.steps > 0) landscape.dry_filled_seas();
 }
 
@@ -319,7 +318,7 @@ PlanetSurface<V> SeedPlanet::evaluate(const Model& model, const ActiveVariables<
   }
   Landscape<V> landscape(p, active, grid, z, uplift, ground.thickening, erodibility, held_.outlets);
   landscape.set_landlocked(held_.landlocked);
-  wear_down<V>(p, z, routes, landscape);
+  wear_along_routes<V>(p, z, routes, landscape);
   if (routes) find_straits(p, as_floats<V>(z), held_.late_straits);
   for (const auto& [cell, height_m] : held_.late_straits) z[cell] = V(height_m);
   inject_noise(p, active, grid, seed_, z);

@@ -5,14 +5,15 @@
 #include <numbers>
 
 #include "geo/kernels/exemplars/exemplar_detail.hpp"
-#include "geo/kernels/landscape/stream_power.hpp"
 #include "geo/kernels/noise/noise.hpp"
-#include "geo/kernels/numerics/diffusion.hpp"
 #include "geo/kernels/numerics/shapes.hpp"
 #include "geo/kernels/remapping/catmull_rom.hpp"
 #include "geo/kernels/water/depressions.hpp"
 #include "geo/kernels/water/receiver_distance.hpp"
+#include "geo/stages/erosion/drainage.hpp"
 #include "geo/stages/erosion/ground.hpp"
+#include "geo/stages/erosion/landscape.hpp"
+#include "geo/stages/erosion/wear_down.hpp"
 
 namespace geo {
 namespace {
@@ -308,6 +309,20 @@ void restore_means(const PlanetCells& cells, std::span<const float> target,
   });
 }
 
+/// The planet's law of rivers and hillslopes for the steps of an island: what rivers take is gone,
+/// and what the crust gives back is what `keep_means` says.
+ErosionParameters fine_law(const IslandParameters& p, ErosionParameters law) {
+  law.steps = p.erosion_steps;
+  law.time_step_yr = p.time_step_yr;
+  law.route_every = 1;
+  law.model = "detachment";
+  law.flow_routing = "d8";
+  law.depressions = "fill";
+  law.uplift_mm_yr = 0.0;
+  law.rebound_fraction = 0.0;
+  return law;
+}
+
 }  // namespace
 
 void add_ways_out(const Grid& fine, std::span<const float> z, std::span<std::uint8_t> outlets) {
@@ -384,41 +399,34 @@ std::vector<float> island_erodibility(const PlanetCells& cells, const PlanetReli
 }
 
 IslandErosion wear_island(const PlanetCells& cells, const IslandParameters& p,
-                          const ErosionParameters& law, const IslandGround& ground,
+                          const ErosionParameters& planets, const IslandGround& ground,
                           const std::function<void(double)>& advance,
                           std::span<float> elevation_m) {
   const Grid& fine = cells.fine();
-  const auto size = static_cast<std::size_t>(fine.size());
-  IslandErosion done{std::vector<float>(size), std::vector<float>(size)};
-  std::vector<std::uint8_t> land(size);
+  const ErosionParameters law = fine_law(p, planets);
+  IslandErosion done{{}, std::vector<float>(fine.size())};
+  std::vector<std::uint8_t> land(fine.size());
   std::transform(elevation_m.begin(), elevation_m.end(), land.begin(),
                  [](float z) { return static_cast<std::uint8_t>(z >= 0.0F); });
   const std::vector<float> target = cells.means(elevation_m, land, 0.0F);
-  const StreamPower power{law.area_exponent, law.slope_exponent, p.time_step_yr};
-
-  std::vector<double> area(size);
-  std::vector<float> before(size), surface(size);
-  for (std::int64_t step = 0; step < p.erosion_steps; ++step) {
-    before.assign(elevation_m.begin(), elevation_m.end());
-    const FlowGraph graph = route_water(fine, elevation_m, ground.outlets).graph;
-    std::fill(area.begin(), area.end(), fine.area_m2(0));
-    for (std::size_t c = 0; c < size; ++c) area[c] += ground.inflow_area_m2[c];
-    graph.accumulate(area);
-    incise<float, float>(fine, graph, area, ground.erodibility, power, elevation_m);
-    // Hillslopes end at the shore, whatever the depth beyond.
-    std::transform(elevation_m.begin(), elevation_m.end(), surface.begin(),
-                   [](float z) { return std::max(z, 0.0F); });
-    diffuse(fine, surface, law.diffusivity_m2_yr, p.time_step_yr,
-            {.fixed = ground.held, .scheme = DiffusionScheme::positive});
-    on_cells(fine, [&](int, int, Index c) {
-      // Land stays land: a river ends at the sea's level.
-      const float worn = std::max(0.0F, surface[c]);
-      elevation_m[c] = land[c] == 0 || ground.held[c] != 0 ? before[c] : worn;
-      done.lowered_m[c] += before[c] - elevation_m[c];
-    });
-    if (p.keep_means) restore_means(cells, target, land, ground.held, elevation_m, done.raised_m);
-    advance(static_cast<double>(step + 1) / static_cast<double>(p.erosion_steps));
-  }
+  Landscape<float> landscape(law, {}, fine, elevation_m, {}, {}, ground.erodibility,
+                             {ground.held.begin(), ground.held.end()});
+  Drainage drainage;
+  const auto route = [&](std::int64_t) -> const Drainage& {
+    drain(law, fine, elevation_m, ground.outlets, drainage, nullptr, ground.inflow_area_m2);
+    return drainage;
+  };
+  const auto restore = [&](std::int64_t step) {
+    if (p.keep_means) {
+      landscape.book_reshaping([&] {
+        restore_means(cells, target, land, ground.held, elevation_m, done.raised_m);
+        return true;
+      });
+    }
+    advance(static_cast<double>(step + 1) / static_cast<double>(law.steps));
+  };
+  wear_down(law, {.route = route, .after = restore}, landscape);
+  done.lowered_m.assign(landscape.lowered_m().begin(), landscape.lowered_m().end());
   return done;
 }
 

@@ -54,7 +54,8 @@ void keep_some_water(const ErosionParameters& p, const Grid& grid, std::span<dou
 }  // namespace
 
 void drain(const ErosionParameters& p, const Grid& grid, std::span<const float> elevation_m,
-           std::span<const std::uint8_t> outlets, Drainage& drainage, const LandClimate* climate) {
+           std::span<const std::uint8_t> outlets, Drainage& drainage, const LandClimate* climate,
+           std::span<const double> inflow_area_m2) {
   const bool spread = p.flow_routing == "mfd";
   FlowGraph& graph = drainage.graph;
   graph = {};
@@ -67,6 +68,7 @@ void drain(const ErosionParameters& p, const Grid& grid, std::span<const float> 
     std::fill_n(area_m2.begin() + grid.cell(0, j), grid.nx(), grid.area_m2(j));
   }
   if (climate != nullptr) shed_rain(p, grid, elevation_m, outlets, *climate, area_m2);
+  for (std::size_t c = 0; c < inflow_area_m2.size(); ++c) area_m2[c] += inflow_area_m2[c];
   const auto put_in_order = [&] { graph.order = downstream_order(graph.receiver); };
   if (spread) {
     accumulate_flow(grid, routing.filled_m, graph.receiver, {FlowMethod::multiple, p.flow_exponent},

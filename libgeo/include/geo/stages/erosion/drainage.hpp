@@ -29,10 +29,12 @@ struct Drainage {
 /// Routes the water of a surface as erosion.flow_routing says, over the sills of all depressions.
 /// With a climate each cell sheds its runoff (land_water), not less than `least_runoff_mm_yr`; what
 /// lakes lose to the air (balance_lakes) is gone beyond their sills, in closed basins all of it: no
-/// river cuts them open. `drainage` is replaced; what it held is released first: two would not fit
+/// river cuts them open. `inflow_area_m2`: what enters a part of a planet drains so much, one value
+/// per cell or none. `drainage` is replaced; what it held is released first: two would not fit
 /// the memory budget.
 void drain(const ErosionParameters& parameters, const Grid& grid,
            std::span<const float> elevation_m, std::span<const std::uint8_t> outlets,
-           Drainage& drainage, const LandClimate* climate = nullptr);
+           Drainage& drainage, const LandClimate* climate = nullptr,
+           std::span<const double> inflow_area_m2 = {});
 
 }  // namespace geo

@@ -53,7 +53,8 @@ class Landscape {
   using Number = Arithmetic<V>;
 
   /// `thickening_m_yr`: crust that shortening adds, whose uplift `uplift_m_yr` holds; or empty.
-  /// `outlets`: find_outlets of the surface. `erodibility`: resolved for this grid, one per cell.
+  /// `outlets`: cells that keep their height: find_outlets of the surface, and where rivers enter.
+  /// `erodibility`: resolved for this grid, one per cell or a single one.
   Landscape(const ErosionParameters& parameters, const ActiveVariables<V>& active, const Grid& grid,
             std::span<V> elevation_m, std::span<const V> uplift_m_yr,
             std::span<const V> thickening_m_yr, std::span<const V> erodibility,
@@ -84,9 +85,11 @@ class Landscape {
   /// Where the water leaves the land.
   [[nodiscard]] const std::vector<std::uint8_t>& outlets() const { return outlets_; }
 
-  /// Cuts down the sills that the water crosses, where depressions are breached.
+  /// Whether water cuts down the sills that it crosses.
+  [[nodiscard]] bool breaches() const { return p_.depressions == "breach" && p_.steps > 0; }
+  /// Lets it do so.
   void breach(const Drainage& drainage) {
-    if (p_.depressions != "breach" || p_.steps == 0) return;
+    if (!breaches()) return;
     before_.assign(z_.begin(), z_.end());
     breach_sills(grid_, drainage.graph, z_);
     book_lowering();
@@ -107,6 +110,7 @@ class Landscape {
       incise(grid_, drainage.graph, area_m2, erodibility_, law(), z_);
     }
     creep();
+    hold_outlets();
     widen_valleys<V>(grid_, before_, outlets_, z_);
     book_lowering();
     carry(drainage.graph, ice);
@@ -249,6 +253,13 @@ class Landscape {
                                  {.fixed = outlets_, .scheme = DiffusionScheme::positive});
                        });
     on_land([&](Index cell) { z_[cell] = surface[cell]; });
+  }
+  /// Where rivers pass through outlets, as they do where they enter a part of a planet.
+  void hold_outlets() {
+#pragma omp parallel for schedule(static)
+    for (Index cell = 0; cell < grid_.size(); ++cell) {
+      if (outlets_[cell] != 0) z_[cell] = before_[cell];
+    }
   }
   void book_lowering() {
     rock_.eroded -= volume_since_before();

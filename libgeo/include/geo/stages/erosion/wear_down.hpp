@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "geo/stages/erosion/drainage.hpp"
+#include "geo/stages/erosion/erosion.hpp"
+#include "geo/stages/erosion/landscape.hpp"
+
+namespace geo {
+
+/// What the steps of a landscape take from their surroundings. All but `route` may be empty.
+struct Surroundings {
+  /// The drainage of the surface as it stands before `step`; it stays until the next is asked for.
+  std::function<const Drainage&(std::int64_t step)> route;
+  /// What else happens before a step; returns whether it changed the surface.
+  std::function<bool(std::int64_t step)> strike{};
+  /// The ice of a step, or none.
+  std::function<IceWork(std::int64_t step)> ice{};
+  /// Called after each step.
+  std::function<void(std::int64_t step)> after{};
+};
+
+/// The steps of a landscape, for every planet, island and fit. Water is routed again every
+/// `route_every` steps, and where events or ice have changed the surface, which breaches its
+/// depressions where they are to be. The last step builds deltas.
+template <class V>
+void wear_down(const ErosionParameters& p, const Surroundings& around, Landscape<V>& landscape) {
+  const Drainage* drainage = nullptr;
+  bool coast_moved = false;
+  for (std::int64_t step = 0; step < p.steps; ++step) {
+    const bool struck = around.strike && around.strike(step);
+    if (struck || coast_moved || step % p.route_every == 0) {
+      drainage = &around.route(step);
+      landscape.breach(*drainage);
+    }
+    const IceWork ice = around.ice ? around.ice(step) : IceWork{};
+    landscape.step(*drainage, /*builds_deltas=*/step + 1 == p.steps, ice);
+    coast_moved = static_cast<bool>(ice);
+    if (around.after) around.after(step);
+  }
+}
+
+}  // namespace geo

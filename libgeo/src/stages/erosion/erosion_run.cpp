@@ -1,0 +1,302 @@
+#include "erosion_run.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geo/stages/erosion/finishing.hpp"
+#include "geo/stages/erosion/ground.hpp"
+#include "geo/stages/erosion/seas.hpp"
+#include "geo/stages/erosion/wear_down.hpp"
+#include "stages/relief/climate_of_land.hpp"
+#include "stages/relief/finish_relief.hpp"
+
+namespace geo {
+namespace {
+
+/// Rock uplift by plates (Tectonica blueprint 4.5).
+void add_tectonic_uplift(const ErosionParameters& p, const StageIo& io, double faster,
+                         std::span<float> uplift_m_yr) {
+  if (p.uplift_from == "deformation" || p.uplift_from == "shortening") {
+    const auto closing = io.read_optional(field::convergent_deformation);
+    const auto opening = io.read_optional(field::divergent_deformation);
+    const auto shear = io.read_optional(field::transform_deformation);
+    if (closing.empty() || opening.empty() || shear.empty()) return;
+    add_belt_uplift<float>(p, {}, closing, opening, shear, faster, uplift_m_yr);
+  } else if (p.uplift_from == "boundaries") {
+    const auto type = io.read_optional(field::boundary_type);
+    const auto strength = io.read_optional(field::boundary_strength);
+    if (type.empty() || strength.empty()) return;
+    add_boundary_uplift<float>(p, {}, type, strength, faster, uplift_m_yr);
+  }
+}
+
+/// Crust that belts gain while the landscape runs; empty where they do not grow.
+std::span<const float> thickening_of(const ErosionParameters& p, const StageIo& io) {
+  if (!(growth_of_belts_myr<float>(p, {}) > 0.0)) return {};
+  return io.read_optional(field::thickening_rate);
+}
+
+std::span<float> uplift_of(const ErosionParameters& p, StageIo& io, const Context& context,
+                           std::span<const float> thickening_m_yr) {
+  const std::span<float> uplift = io.write(field::uplift_rate);
+  add_tectonic_uplift(p, io, speed_factor(p, context.configuration), uplift);
+  if (!thickening_m_yr.empty()) {
+    add_thickening_uplift<float>(p, {}, io.grid(), thickening_m_yr, uplift);
+  }
+  return uplift;
+}
+
+std::vector<float> erodibility_of(const ErosionParameters& p, const StageIo& io,
+                                  std::span<const float> thickening_m_yr) {
+  std::vector<float> erodibility =
+      resolved_erodibility<float>(p, {}, io.grid(), io.read_optional(field::erodibility));
+  if (!thickening_m_yr.empty()) break_rock<float>(p, {}, thickening_m_yr, erodibility);
+  return erodibility;
+}
+
+std::span<float> unscoured(const ErosionParameters& p, StageIo& io) {
+  if (!p.freezes()) return {};
+  const std::span<float> scoured = io.write(field::glacial_erosion);
+  std::fill(scoured.begin(), scoured.end(), 0.0F);
+  return scoured;
+}
+
+/// The climates stand at even distances, the first at the beginning.
+bool is_turn_of_climate(const ErosionParameters& p, std::int64_t step) {
+  return step * p.climates / p.steps != (step - 1) * p.climates / p.steps || step == 0;
+}
+
+}  // namespace
+
+ErosionRun::ErosionRun(const ErosionParameters& parameters, StageIo& io, Context& context)
+    : p_(parameters),
+      io_(io),
+      context_(context),
+      grid_(io.grid()),
+      elevation_m_(io.write(field::elevation)),
+      thickening_m_yr_(thickening_of(p_, io)),
+      uplift_m_yr_(uplift_of(p_, io, context, thickening_m_yr_)),
+      erodibility_(erodibility_of(p_, io, thickening_m_yr_)),
+      landscape_(p_, {}, grid_, elevation_m_, uplift_m_yr_, thickening_m_yr_, erodibility_,
+                 find_outlets(grid_, elevation_m_)),
+      events_(grid_, context, p_.steps, p_.time_step_yr),
+      follows_rain_(p_.discharge == "rain" && has_climate(grid_, context)),
+      scoured_m_(unscoured(p_, io)),
+      sea_share_(share_of_sea(grid_, elevation_m_)) {
+  if (p_.freezes() && follows_rain_) ice_.emplace(p_, grid_, context.planet);
+}
+
+/// Changes elevation at will; land and sea are then told apart again.
+template <class Change>
+bool ErosionRun::reshape(Change&& change) {
+  const bool did = landscape_.book_reshaping(change);
+  if (did) landscape_.set_outlets(find_outlets(grid_, elevation_m_));
+  return did;
+}
+
+void ErosionRun::wear() {
+  if (p_.steps == 0) return;
+  reshape([&] { return join_seas(p_, grid_, elevation_m_); });
+  landscape_.set_landlocked(landlocked_cells(p_, grid_, elevation_m_));
+  wear_down(
+      p_,
+      {.route = [&](std::int64_t) -> const Drainage& { return route(); },
+       .strike =
+           [&](std::int64_t step) {
+             const bool struck = strike(step);
+             turn_climate(step);
+             return struck;
+           },
+       .ice = [&](std::int64_t step) { return ice_of(step); },
+       .after =
+           [&](std::int64_t step) {
+             context_.advance(static_cast<double>(step + 1) / static_cast<double>(p_.steps + 1));
+           }},
+      landscape_);
+  landscape_.dry_filled_seas();
+  landscape_.set_outlets(find_outlets(grid_, elevation_m_));
+  reshape([&] { return join_seas(p_, grid_, elevation_m_); });
+}
+
+const Drainage& ErosionRun::route() {
+  drain(p_, grid_, elevation_m_, landscape_.outlets(), drainage_, climate_ ? &*climate_ : nullptr);
+  return drainage_;
+}
+
+bool ErosionRun::strike(std::int64_t step) {
+  if (context_.events.empty()) return false;
+  return reshape([&] { return events_.strike(step, elevation_m_); });
+}
+
+void ErosionRun::turn_climate(std::int64_t step) {
+  if (!follows_rain_ || !is_turn_of_climate(p_, step)) return;
+  climate_ = climate_of_land(grid_, elevation_m_, context_);
+}
+
+IceWork ErosionRun::ice_of(std::int64_t step) {
+  if (!ice_) return {};
+  const double before_today_yr = static_cast<double>(p_.steps - step - 1) * p_.time_step_yr;
+  const double years_yr = ice_->years_of_step(before_today_yr);
+  if (years_yr <= 0.0) return {};
+  return [this, years_yr](std::span<float> bed_m) {
+    const std::vector<float> before_m(bed_m.begin(), bed_m.end());
+    std::vector<double> let_out_m3 = ice_->work(*climate_, years_yr, bed_m);
+#pragma omp parallel for schedule(static)
+    for (std::size_t c = 0; c < bed_m.size(); ++c) scoured_m_[c] += before_m[c] - bed_m[c];
+    return let_out_m3;
+  };
+}
+
+void ErosionRun::finish() {
+  if (!thickening_m_yr_.empty()) write_rock_uplift();
+  reshape([&] { return inject_noise<float>(p_, {}, grid_, context_.seed, elevation_m_); });
+  reshape([&] { return warp<float>(p_, {}, grid_, context_.seed, elevation_m_); });
+  landscape_.relax();
+  reshape([&] { return ReliefFinish(p_, grid_, context_).reshape(elevation_m_); });
+  if (p_.steps > 0) {
+    reshape([&] { return keep_sea_share(p_, grid_, elevation_m_, sea_share_); });
+  }
+  strike(p_.steps);
+  if (ice_) ice_->settle_today(*climate_, elevation_m_);
+  climate_.reset();  // files have the area
+  if (ice_) landscape_.sink(ice_->sunk_m());
+  cut_last_sills();
+}
+
+void ErosionRun::cut_last_sills() {
+  if (!landscape_.breaches()) return;
+  landscape_.breach(route());
+  is_routed_ = true;
+}
+
+void ErosionRun::write() {
+  write_crust();
+  if (p_.deposits()) write_sediment();
+  report();
+  write_drainage(/*iced=*/lay_ice());
+  write_erosion_rate();
+  if (thickening_m_yr_.empty()) add_uniform_uplift();
+}
+
+/// The elevation that others see is the surface of the ice. Returns whether any lies.
+bool ErosionRun::lay_ice() {
+  if (!p_.freezes()) return false;
+  const std::span<float> thickness_m = io_.write(field::ice_thickness);
+  if (!ice_) {
+    std::fill(thickness_m.begin(), thickness_m.end(), 0.0F);
+    return false;
+  }
+  std::copy(ice_->thickness_m().begin(), ice_->thickness_m().end(), thickness_m.begin());
+#pragma omp parallel for schedule(static)
+  for (std::size_t c = 0; c < elevation_m_.size(); ++c) elevation_m_[c] += thickness_m[c];
+  ice_->report(context_.budget);
+  return context_.budget["ice_m3"] != 0.0;
+}
+
+/// Water flows over the surface of the ice.
+void ErosionRun::write_drainage(bool iced) {
+  if (iced) {
+    drain(p_, grid_, elevation_m_, find_outlets(grid_, elevation_m_), drainage_);
+  } else if (!is_routed_) {
+    route();
+  }
+  std::copy(drainage_.area_m2.begin(), drainage_.area_m2.end(),
+            io_.write(field::drainage_area).begin());
+  std::copy(drainage_.graph.receiver.begin(), drainage_.graph.receiver.end(),
+            io_.write(field::flow_receiver).begin());
+}
+
+void ErosionRun::write_erosion_rate() const {
+  const std::span<float> rate_m_yr = io_.write(field::erosion_rate);
+  if (p_.steps == 0) {
+    return incision_rate(grid_, drainage_.graph, drainage_.area_m2, erodibility_, landscape_.law(),
+                         io_.read(field::elevation), rate_m_yr);
+  }
+  const double time_yr = p_.steps * p_.time_step_yr;
+  const std::span<const float> lowered_m = landscape_.lowered_m();
+#pragma omp parallel for schedule(static)
+  for (Index cell = 0; cell < grid_.size(); ++cell) {
+    rate_m_yr[cell] = static_cast<float>(lowered_m[cell] / time_yr);
+  }
+}
+
+void ErosionRun::write_crust() const {
+  const std::span<float> change_m = io_.write(field::crust_thickness_change);
+#pragma omp parallel for schedule(static)
+  for (std::size_t cell = 0; cell < change_m.size(); ++cell) {
+    change_m[cell] = static_cast<float>(landscape_.crust_change_m()[cell]);
+  }
+}
+
+void ErosionRun::write_sediment() const {
+  const SedimentRecord& sediment = landscape_.sediment();
+  const auto copy = [&](const std::vector<float>& from, const Field<float>& to, double factor) {
+    const std::span<float> values = io_.write(to);
+    if (from.empty()) return std::fill(values.begin(), values.end(), 0.0F);
+#pragma omp parallel for schedule(static)
+    for (std::size_t cell = 0; cell < values.size(); ++cell) {
+      values[cell] = static_cast<float>(factor * from[cell]);
+    }
+  };
+  const double time_yr = std::max(1.0, p_.steps * p_.time_step_yr);
+  copy(sediment.thickness_m, field::sediment_thickness, 1.0);
+  copy(sediment.laid_m, field::deposition_rate, 1.0 / time_yr);
+  copy(sediment.carried_m3_yr, field::sediment_flux, 1.0);
+}
+
+/// Where crust thickens, the file reports how fast rock came up, rebound included.
+void ErosionRun::write_rock_uplift() const {
+  const double time_yr = 1e6 * growth_of_belts_myr<float>(p_, {});
+#pragma omp parallel for schedule(static)
+  for (std::size_t cell = 0; cell < uplift_m_yr_.size(); ++cell) {
+    uplift_m_yr_[cell] = static_cast<float>(landscape_.raised_m()[cell] / time_yr);
+  }
+}
+
+/// What the file reports is the whole uplift of the land.
+void ErosionRun::add_uniform_uplift() const {
+  const auto everywhere = static_cast<float>(1e-3 * p_.uplift_mm_yr);
+  if (everywhere == 0.0F) return;
+#pragma omp parallel for schedule(static)
+  for (std::size_t cell = 0; cell < uplift_m_yr_.size(); ++cell) {
+    if (elevation_m_[cell] >= 0.0F) uplift_m_yr_[cell] += everywhere;
+  }
+}
+
+void ErosionRun::report() const {
+  Budget& budget = context_.budget;
+  const RockVolumes<double>& rock = landscape_.rock();
+  const double stored = landscape_.stored_m3();
+  const double scale =
+      std::max({std::abs(rock.uplifted), std::abs(rock.eroded), std::abs(rock.reshaped), 1.0});
+  budget["rock_uplifted_m3"] = rock.uplifted;
+  budget["rock_rebound_m3"] = rock.rebound;
+  budget["rock_eroded_m3"] = rock.eroded + rock.laid_on_land;
+  budget["rock_reshaped_m3"] = rock.reshaped;
+  budget["rock_stored_m3"] = stored;
+  if (growth_of_belts_myr<float>(p_, {}) > 0.0) {
+    const double grown = area_sum<double>(landscape_.grid(),
+                                          [&](Index c) { return landscape_.crust_change_m()[c]; });
+    budget["crust_shortened_m3"] = rock.shortened;
+    budget["crust_stored_m3"] = grown;
+    budget["crust_closing_error"] =
+        (rock.shortened + rock.laid_at_sea - rock.eroded - grown) / scale;
+  }
+  budget["rock_closing_error"] =
+      (rock.uplifted + rock.rebound + rock.reshaped + rock.laid_at_sea - rock.eroded - stored) /
+      scale;
+  if (landscape_.deposits()) {
+    const double unsettled = landscape_.unsettled_m3();
+    budget["sediment_laid_on_land_m3"] = rock.laid_on_land;
+    budget["sediment_laid_at_sea_m3"] = rock.laid_at_sea;
+    budget["sediment_unsettled_m3"] = unsettled;
+    budget["rock_exported_m3"] = rock.over_edges;
+    budget["sediment_closing_error"] =
+        (rock.eroded - rock.laid_at_sea - unsettled - rock.over_edges) / scale;
+  } else {
+    budget["rock_exported_m3"] = rock.eroded;
+  }
+  budget["time_yr"] = p_.steps * p_.time_step_yr;
+}
+
+}  // namespace geo

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "geo/core/stage.hpp"
+#include "geo/stages/erosion/drainage.hpp"
+#include "geo/stages/erosion/erosion.hpp"
+#include "geo/stages/erosion/landscape.hpp"
+#include "ice_age.hpp"
+#include "stages/relief/relief_events.hpp"
+
+namespace geo {
+
+/// One run of the erosion stage: a planet's landscape, and the water, the climate, the ice and the
+/// events that work on it. `wear`, then `finish`, then `write`.
+class ErosionRun {
+ public:
+  ErosionRun(const ErosionParameters& parameters, StageIo& io, Context& context);
+
+  /// The steps, between the straits that the sea cuts before and after them.
+  void wear();
+  /// What shapes the land once rivers have: noise, warping, hypsometry, the sea's share, events of
+  /// today, and the weight of today's ice.
+  void finish();
+  /// Fields, budgets, and the ice on the finished bed.
+  void write();
+
+ private:
+  const Drainage& route();
+  bool strike(std::int64_t step);
+  [[nodiscard]] IceWork ice_of(std::int64_t step);
+  void turn_climate(std::int64_t step);
+  template <class Change>
+  bool reshape(Change&& change);
+  void cut_last_sills();
+  [[nodiscard]] bool lay_ice();
+  void write_drainage(bool iced);
+  void write_erosion_rate() const;
+  void write_crust() const;
+  void write_sediment() const;
+  void write_rock_uplift() const;
+  void add_uniform_uplift() const;
+  void report() const;
+
+  const ErosionParameters& p_;
+  StageIo& io_;
+  Context& context_;
+  const Grid& grid_;
+  std::span<float> elevation_m_;
+  std::span<const float> thickening_m_yr_;  ///< empty where belts do not grow
+  std::span<float> uplift_m_yr_;
+  std::vector<float> erodibility_;
+  Landscape<float> landscape_;
+  Drainage drainage_;
+  bool is_routed_ = false;  ///< along the finished bed
+  ReliefEvents events_;
+  bool follows_rain_;
+  std::optional<LandClimate> climate_;
+  std::optional<IceAge> ice_;
+  std::span<float> scoured_m_;
+  double sea_share_;
+};
+
+}  // namespace geo
