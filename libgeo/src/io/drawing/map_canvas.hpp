@@ -11,14 +11,13 @@
 #include <string_view>
 #include <vector>
 
+#include "geo/io/drawing/chart_painter.hpp"
 #include "geo/io/maps/maps.hpp"
 #include "map_colours.hpp"
 #include "map_page.hpp"
 #include "map_raster.hpp"
 
 namespace geo::io {
-
-enum class Align { left, centre, right };
 
 /// A sheet of paper with Cairo's pen: pixels, lines and type.
 class Canvas {
