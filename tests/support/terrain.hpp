@@ -10,6 +10,10 @@
 
 namespace geo::test {
 
+/// Rock closes to how floats round heights, which sums of rates and loads do not see: each write
+/// moves a height by up to 2^-24 of it, this way or that. Seen: 5e-8 of the rock that moves.
+inline constexpr double kHeightRounding = 1e-7;
+
 /// Rough random terrain, pits and all: independent values at cells plus a broad random tilt.
 /// About a third lies below zero.
 inline std::vector<float> random_terrain(const Grid& grid, std::uint64_t seed) {

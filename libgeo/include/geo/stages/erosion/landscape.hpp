@@ -24,7 +24,9 @@
 
 namespace geo {
 
-/// Rock volumes that pass through a landscape, m3.
+/// Rock volumes that pass through a landscape, m3. Uplift and rebound are summed from rates and
+/// loads, the rest from what processes did to the surface: with `stored_m3`, which is the surface
+/// at the end less that at the beginning, they close to the rounding of heights.
 template <class Number>
 struct RockVolumes {
   Number uplifted{0.0}, eroded{0.0}, rebound{0.0}, reshaped{0.0};
@@ -119,18 +121,18 @@ class Landscape {
 
   /// Rock that sinks under a load that is none of its own, m per cell, as a part of the rebound.
   void sink(std::span<const float> by_m) {
-    before_.assign(z_.begin(), z_.end());
     on_land([&](Index cell) { z_[cell] -= V(by_m[cell]); });
-    rock_.rebound += volume_since_before();
+    rock_.rebound -= land_sum([&](Index cell) { return Number(by_m[cell]); });
   }
 
   /// Blueprint 4.6: part of the way back to the isostatic elevation.
   void relax() {
     if (p_.relaxation_fraction <= 0.0) return;
-    before_.assign(z_.begin(), z_.end());
     const V share(active_(p_.relaxation_fraction));
+    rock_.rebound += land_sum([&](Index cell) {
+      return Number(active_(p_.relaxation_fraction)) * (Number(initial_[cell]) - Number(z_[cell]));
+    });
     on_land([&](Index cell) { z_[cell] += share * (initial_[cell] - z_[cell]); });
-    rock_.rebound += volume_since_before();
   }
 
   /// Lets `reshape` change elevation at will. Returns whether it did; land and sea are then to be
@@ -203,20 +205,45 @@ class Landscape {
       if (outlets_[cell] != 0 && value_of(z_[cell]) < 0.0) change(cell);
     }
   }
+  /// Volume of what a process adds to the land, m per cell.
+  template <class Height>
+  [[nodiscard]] Number land_sum(Height&& height_m) const {
+    return area_sum<Number>(grid_,
+                            [&](Index c) { return outlets_[c] == 0 ? height_m(c) : Number(0.0); });
+  }
+  /// And to the floor of the sea, which stood at `before_`.
+  template <class Height>
+  [[nodiscard]] Number sea_floor_sum(Height&& height_m) const {
+    return area_sum<Number>(grid_, [&](Index c) {
+      return outlets_[c] != 0 && value_of(before_[c]) < 0.0 ? height_m(c) : Number(0.0);
+    });
+  }
+  /// How far land rises that is to rise so far: subsidence ends at the sea.
+  [[nodiscard]] Number rise_of_land(Index cell, const Number& by_m) const {
+    return greater(by_m, Number(-Number(before_[cell])));
+  }
+  /// The same of the floor of the sea, which stays below it.
+  [[nodiscard]] Number rise_of_sea_floor(Index cell, const Number& by_m) const {
+    const Number before_m(before_[cell]);
+    return lesser(by_m, Number(greater(Number(-kShallowest_m), before_m) - before_m));
+  }
   [[nodiscard]] Number volume_since_before() const {
     return area_sum<Number>(grid_, [&](Index c) { return Number(z_[c]) - Number(before_[c]); });
   }
   void raise() {
     before_.assign(z_.begin(), z_.end());
     const Number dt = active_(p_.time_step_yr), everywhere = 1e-3 * active_(p_.uplift_mm_yr);
-    on_land([&](Index cell) {
+    const auto uplift_m = [&](Index cell) {
       const Number field = uplift_m_yr_.empty() ? Number(0.0) : Number(uplift_m_yr_[cell]);
+      return Number((field + everywhere) * dt);
+    };
+    on_land([&](Index cell) {
       // Subsidence ends at the sea: a step that drowned land would move the coast without a
       // routing.
-      z_[cell] = greater(V(0.0F), V(Number(z_[cell]) + (field + everywhere) * dt));
+      z_[cell] = greater(V(0.0F), V(Number(z_[cell]) + uplift_m(cell)));
     });
+    rock_.uplifted += land_sum([&](Index cell) { return rise_of_land(cell, uplift_m(cell)); });
     if (!thickening_m_yr_.empty()) thicken(dt);
-    rock_.uplifted += volume_since_before();
     record_raising();
   }
   void record_raising() {
@@ -230,6 +257,8 @@ class Landscape {
     at_sea_floor([&](Index cell) {
       z_[cell] = lesser(V(Number(z_[cell]) + Number(uplift_m_yr_[cell]) * dt), V(-kShallowest_m));
     });
+    rock_.uplifted += sea_floor_sum(
+        [&](Index cell) { return rise_of_sea_floor(cell, Number(uplift_m_yr_[cell]) * dt); });
     rock_.shortened +=
         area_sum<Number>(grid_, [&](Index cell) { return Number(thickening_m_yr_[cell]) * dt; });
     if constexpr (kRecords) {
@@ -431,18 +460,20 @@ class Landscape {
                          });
     }
     before_.assign(z_.begin(), z_.end());
+    const auto comes_m = [&](Index cell) { return Number(part * Number(response[cell])); };
     on_land([&](Index cell) {
-      z_[cell] = greater(V(0.0F), V(z_[cell] + V(part * Number(response[cell]))));
+      z_[cell] = greater(V(0.0F), V(z_[cell] + V(comes_m(cell))));
       owed_m_[cell] -= V(part) * owed_m_[cell];
     });
+    rock_.rebound += land_sum([&](Index cell) { return rise_of_land(cell, comes_m(cell)); });
     if (deposits()) {
       at_sea_floor([&](Index cell) {
-        z_[cell] = lesser(V(z_[cell] + V(part * Number(response[cell]))),
-                          greater(z_[cell], V(-kShallowest_m)));
+        z_[cell] = lesser(V(z_[cell] + V(comes_m(cell))), greater(z_[cell], V(-kShallowest_m)));
         owed_m_[cell] -= V(part) * owed_m_[cell];
       });
+      rock_.rebound +=
+          sea_floor_sum([&](Index cell) { return rise_of_sea_floor(cell, comes_m(cell)); });
     }
-    rock_.rebound += volume_since_before();
     record_raising();
   }
 
