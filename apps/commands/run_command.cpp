@@ -137,78 +137,97 @@ void run(const RunOptions& options) {
   log_info(fmt::format("the files are in {}", options.folder));
 }
 
-}  // namespace
-
-void add_run_command(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand(
-      "run", "Runs the pipeline and writes one NetCDF and one VTK file per stage");
-  const auto options = std::make_shared<RunOptions>();
-  RunOptions& o = *options;
-  command->add_option("CONFIG", o.sources.config, "Configuration file (TOML)");
-  command->add_option("-o", o.folder, "Folder for the files of the run (default: out)")
-      ->type_name("DIR");
-  command->add_option("--preset", o.sources.preset, "Start from a built-in configuration")
+/// What planet is to be made.
+void add_planet_options(CLI::App& command, ConfigurationSources& from) {
+  command.add_option("--preset", from.preset, "Start from a built-in configuration")
       ->type_name("NAME");
-  command->add_option("--seed", o.sources.seed, "Seed of every random number")->type_name("N");
-  command->add_option("--set", o.sources.assignments, "Set one parameter; may be repeated")
+  command.add_option("--seed", from.seed, "Seed of every random number")->type_name("N");
+  command.add_option("--set", from.assignments, "Set one parameter; may be repeated")
       ->type_name("section.key=value")
       ->expected(1)
       ->take_all()
       ->allow_extra_args(false);  // a configuration may follow
-  command->add_option("--grid", o.sources.grid, "Cells of the grid")->type_name("WIDTHxHEIGHT");
+  command.add_option("--grid", from.grid, "Cells of the grid")->type_name("WIDTHxHEIGHT");
   command
-      ->add_option("--topology", o.sources.topology,
-                   "sphere, or torus: a tile whose opposite sides meet; without --preset and a "
-                   "file, preset raster")
+      .add_option("--topology", from.topology,
+                  "sphere, or torus: a tile whose opposite sides meet; without --preset and a "
+                  "file, preset raster")
       ->type_name("sphere|torus");
   command
-      ->add_option("--turn", o.sources.turn,
-                   "Lay the planet out with its place LAT,LON at the north pole and the prime "
-                   "meridian ANGLE degrees further east")
+      .add_option("--turn", from.turn,
+                  "Lay the planet out with its place LAT,LON at the north pole and the prime "
+                  "meridian ANGLE degrees further east")
       ->type_name("LAT,LON,ANGLE");
+}
+
+/// What it is made from.
+void add_input_options(CLI::App& command, ConfigurationSources& from) {
   command
-      ->add_option("--dem", o.sources.dem,
-                   "A DEM takes the place of plates and isostasy; without --preset, preset "
-                   "earth-dem")
+      .add_option("--dem", from.dem,
+                  "A DEM takes the place of plates and isostasy; without --preset, preset "
+                  "earth-dem")
       ->type_name("FILE[:VARIABLE]");
   command
-      ->add_option("--dem-range", o.sources.dem_range,
-                   "Heights of black and white in a grey PNG, m, such as --dem-range=-11000,9000 "
-                   "(default: what the JSON beside it says)")
+      .add_option("--dem-range", from.dem_range,
+                  "Heights of black and white in a grey PNG, m, such as --dem-range=-11000,9000 "
+                  "(default: what the JSON beside it says)")
       ->type_name("MIN,MAX");
   command
-      ->add_option("--dem-window", o.sources.dem_window,
-                   "Where the edges of a PNG lie, degrees (default: the whole planet)")
+      .add_option("--dem-window", from.dem_window,
+                  "Where the edges of a PNG lie, degrees (default: the whole planet)")
       ->type_name("W,S,E,N");
   command
-      ->add_option("--exemplars", o.sources.exemplars,
-                   "Folder of DEMs (NetCDF, GeoTIFF, m) that the island's terrain is made "
-                   "like")
+      .add_option("--exemplars", from.exemplars,
+                  "Folder of DEMs (NetCDF, GeoTIFF, m) that the island's terrain is made "
+                  "like")
       ->type_name("DIR");
+}
+
+/// Which stages are run.
+void add_stage_options(CLI::App& command, RunOptions& o) {
   command
-      ->add_option("--from", o.from,
-                   "First stage. In a new folder it starts from the DEM itself; with "
-                   "--overwrite the folder's earlier stages stay")
+      .add_option("--from", o.from,
+                  "First stage. In a new folder it starts from the DEM itself; with "
+                  "--overwrite the folder's earlier stages stay")
       ->type_name("STAGE");
-  command->add_option("--to", o.to, "Last stage")->type_name("STAGE");
-  command->add_flag("--resume", o.resume, "Go on after the last complete stage of the folder");
-  command->add_flag("--allow-other-build", o.allow_other_build,
-                    "With --resume or --from: go on behind stages that another build of terrane "
-                    "wrote; the manifest keeps that it was allowed");
-  command->add_flag("--overwrite", o.overwrite, "Replace the run that the folder holds");
-  command->add_option("--threads", o.threads, "Threads (default: as many as there are cores)")
+  command.add_option("--to", o.to, "Last stage")->type_name("STAGE");
+  command.add_flag("--resume", o.resume, "Go on after the last complete stage of the folder");
+  command.add_flag("--allow-other-build", o.allow_other_build,
+                   "With --resume or --from: go on behind stages that another build of terrane "
+                   "wrote; the manifest keeps that it was allowed");
+  command.add_flag("--overwrite", o.overwrite, "Replace the run that the folder holds");
+}
+
+/// How the run goes, and what it writes and says.
+void add_manner_options(CLI::App& command, RunOptions& o) {
+  command.add_option("--threads", o.threads, "Threads (default: as many as there are cores)")
       ->type_name("N");
-  command->add_flag("--no-vtk", o.no_vtk, "Write no files for ParaView");
-  command->add_flag("--no-maps", o.no_maps, "Draw no maps and no report");
-  command->add_flag("--dry-run", o.dry_run,
-                    "Check everything, predict memory and time, write "
-                    "nothing");
-  command->add_flag("--quiet", o.quiet, "Say nothing but warnings and errors");
-  command->add_flag("--log-json", o.log_json, "Log one JSON object a line");
-  command->add_flag(
-      "--json-progress", o.json_progress,
-      "For programs that watch: progress and log as one JSON object a line on stderr");
-  command->callback([&action, options] { action = [options] { run(*options); }; });
+  command.add_flag("--no-vtk", o.no_vtk, "Write no files for ParaView");
+  command.add_flag("--no-maps", o.no_maps, "Draw no maps and no report");
+  command.add_flag("--dry-run", o.dry_run,
+                   "Check everything, predict memory and time, write "
+                   "nothing");
+  command.add_flag("--quiet", o.quiet, "Say nothing but warnings and errors");
+  command.add_flag("--log-json", o.log_json, "Log one JSON object a line");
+  command.add_flag("--json-progress", o.json_progress,
+                   "For programs that watch: progress and log as one JSON object a line on stderr");
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& program, Action& action) {
+  CLI::App& command = *program.add_subcommand(
+      "run", "Runs the pipeline and writes one NetCDF and one VTK file per stage");
+  const auto options = std::make_shared<RunOptions>();
+  RunOptions& o = *options;
+  command.add_option("CONFIG", o.sources.config, "Configuration file (TOML)");
+  command.add_option("-o", o.folder, "Folder for the files of the run (default: out)")
+      ->type_name("DIR");
+  add_planet_options(command, o.sources);
+  add_input_options(command, o.sources);
+  add_stage_options(command, o);
+  add_manner_options(command, o);
+  command.callback([&action, options] { action = [options] { run(*options); }; });
 }
 
 }  // namespace terrane

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
+#include <iterator>
 #include <limits>
 
 #include "geo/core/error.hpp"
@@ -17,114 +19,137 @@ std::vector<std::string_view> names_of_projections() {
   return names;
 }
 
-}  // namespace
-
-std::vector<Parameter> RunSettings::parameters() {
+std::vector<Parameter> run_rows(RunSettings& s) {
   return {
-      integer("run.seed", seed, "1", 0, std::numeric_limits<std::int64_t>::max(),
+      integer("run.seed", s.seed, "1", 0, std::numeric_limits<std::int64_t>::max(),
               "seed of every random number", "design"),
-      text("run.grid", grid,
+      text("run.grid", s.grid,
            "cells as WIDTHxHEIGHT; auto takes the size of dem.file, without one 4096x2048, of a "
            "torus "
            "1024x1024",
            "design"),
-      choice("run.topology", topology, {"sphere", "torus"},
+      choice("run.topology", s.topology, {"sphere", "torus"},
              "a whole planet, or a tile as wide as the planet's girth whose opposite sides meet, "
              "for plates.model = raster",
              "design"),
       text(
-          "run.turn", turn,
+          "run.turn", s.turn,
           "LAT,LON,ANGLE, degrees: lays the planet, and what is given of it as files, out with its "
           "place LAT,LON at the north pole and the prime meridian ANGLE further east; empty turns "
           "nothing",
           "design"),
-      text("run.from", from, "first stage to run; empty is the first there is", "design"),
-      text("run.to", to, "last stage to run; empty is the last there is", "design"),
-      text("dem.file", dem_file,
+      text("run.from", s.from, "first stage to run; empty is the first there is", "design"),
+      text("run.to", s.to, "last stage to run; empty is the last there is", "design"),
+  };
+}
+
+std::vector<Parameter> dem_rows(RunSettings& s) {
+  return {
+      text("dem.file", s.dem_file,
            "file of a digital elevation model (NetCDF, GeoTIFF, grey PNG, ESRI ASCII), which takes "
            "the place of plates and isostasy",
            "design"),
-      text("dem.variable", dem_variable,
+      text("dem.variable", s.dem_variable,
            "variable of that file; empty is the one that looks like an elevation", "design"),
-      text("dem.range", dem_range,
+      text("dem.range", s.dem_range,
            "MIN,MAX, values of black and white in an image, of elevations in m; empty is what the "
            "JSON beside it says; without dem.file it is that of images in fields.* that have none",
            "design"),
-      text("dem.window", dem_window,
+      text("dem.window", s.dem_window,
            "W,S,E,N, where the edges of images lie, degrees; empty is the whole planet, or what "
            "the JSON beside them says",
            "design"),
-      choice("dem.sea_level", dem_sea_level, {"datum", "fraction"},
+      choice("dem.sea_level", s.dem_sea_level, {"datum", "fraction"},
              "where the sea stands: at the DEM's own datum, or where planet.ocean_fraction of "
              "the area lies below it",
              "design"),
-      text("fields.erodibility", erodibility,
+  };
+}
+
+std::vector<Parameter> fields_rows(RunSettings& s) {
+  return {
+      text("fields.erodibility", s.erodibility,
            "FILE[:VARIABLE] with the erodibility of each place, yr-1; empty is "
            "erosion.erodibility_yr everywhere",
            "design"),
-      text("fields.uplift_rate", uplift_rate,
+      text("fields.uplift_rate", s.uplift_rate,
            "FILE[:VARIABLE] with the rock uplift of each place, as a velocity", "design"),
-      text("fields.hypsography", hypsography,
+      text("fields.hypsography", s.hypsography,
            "what plates.model = hypsography and erosion.hypsometry = rank aim at: earth, "
            "earth-statistical, or a CSV file with columns quantile,elevation_m",
            "design"),
       choice(
-          "fields.hypsography_ocean", hypsography_ocean, {"planet", "curve"},
+          "fields.hypsography_ocean", s.hypsography_ocean, {"planet", "curve"},
           "its parts below and above 0 are mixed so that planet.ocean_fraction lies below (where "
           "planet.sea_level is fraction), or it is taken as it stands and its 0 is the sea of all "
           "stages",
           "davidson2013"),
-      text("fields.ranking", ranking,
+      text("fields.ranking", s.ranking,
            "FILE[:VARIABLE] of any unit, a mask or a DEM, that orders places by height where "
            "plates follow a hypsography",
            "davidson2013"),
-      text("fields.plates", plates,
+      text("fields.plates", s.plates,
            "plates from which drift begins: earth, a GeoJSON file of polygons with their Euler "
            "poles, or FILE[:VARIABLE] with the number of the plate at each place, with "
            "fields.plate_rotations; empty draws plates.count of them",
            "bird2003"),
-      text("fields.plate_rotations", plate_rotations,
+      text("fields.plate_rotations", s.plate_rotations,
            "CSV file with the motions of plates that fields.plates gives by number: plate_id, "
            "pole_latitude_deg, pole_longitude_deg, rate_deg_myr; the last row of a plate counts",
            "design"),
-      text("fields.initial_elevation", initial_elevation,
+      text("fields.initial_elevation", s.initial_elevation,
            "FILE[:VARIABLE] of a planet's elevation from which drift begins where "
            "plates.sphere.initial_elevation "
            "is given",
            "cortial2019"),
-      text("fields.initial_age", initial_age,
+      text("fields.initial_age", s.initial_age,
            "FILE[:VARIABLE] of the age of its sea floor, Myr, missing on land; empty tells it by "
            "depth",
            "muller2008"),
-      text("fields.start_frame", start_frame,
+      text("fields.start_frame", s.start_frame,
            "frame of an earlier run, from which drifting plates go on, bit for bit", "design"),
       text(
-          "fields.exemplars", exemplars,
+          "fields.exemplars", s.exemplars,
           "folder of NetCDF or GeoTIFF files, elevations in m, that terrain is made like where "
           "island.detail or isostasy.detail is exemplars; empty is those that terrane grows itself",
           "cortial2019"),
-      flag("output.vtk", vtk, "write a VTK file beside each NetCDF file", "design"),
-      flag("output.globe", globe,
+  };
+}
+
+std::vector<Parameter> output_rows(RunSettings& s) {
+  return {
+      flag("output.vtk", s.vtk, "write a VTK file beside each NetCDF file", "design"),
+      flag("output.globe", s.globe,
            "write each stage of the planet also as a closed surface that ParaView shows as a globe",
            "design"),
-      real("output.globe_exaggeration", globe_exaggeration, "1", 0.0, 1000.0,
+      real("output.globe_exaggeration", s.globe_exaggeration, "1", 0.0, 1000.0,
            "by what heights are multiplied on those surfaces; 0 is a smooth globe", "design"),
-      flag("output.maps", maps, "draw the maps and the report", "design"),
-      integer("output.map_width_px", map_width_px, "1", 300, 20000, "width of the maps in pixels",
+      flag("output.maps", s.maps, "draw the maps and the report", "design"),
+      integer("output.map_width_px", s.map_width_px, "1", 300, 20000, "width of the maps in pixels",
               "design"),
-      choice("output.map_projection", map_projection, names_of_projections(),
+      choice("output.map_projection", s.map_projection, names_of_projections(),
              "projection of the maps of a planet; islands keep their own", "snyder1987"),
-      text("output.map_center", map_center,
+      text("output.map_center", s.map_center,
            "LAT,LON of the middle of the maps; empty is 0,0; only azimuthal projections take a "
            "latitude",
            "design"),
-      flag("output.monthly", monthly,
+      flag("output.monthly", s.monthly,
            "also write temperature, precipitation and winds of the twelve months", "design"),
-      integer("output.compression", compression, "1", 0, 9,
+      integer("output.compression", s.compression, "1", 0, 9,
               "how hard NetCDF files are compressed; 0 stores them as they are", "design"),
-      integer("output.vtk_compression", vtk_compression, "1", 0, 9,
+      integer("output.vtk_compression", s.vtk_compression, "1", 0, 9,
               "how hard VTK files are compressed; 0 stores them as they are", "design"),
   };
+}
+
+}  // namespace
+
+std::vector<Parameter> RunSettings::parameters() {
+  std::vector<Parameter> all;
+  for (const auto rows : {run_rows, dem_rows, fields_rows, output_rows}) {
+    std::ranges::move(rows(*this), std::back_inserter(all));
+  }
+  return all;
 }
 
 MapView RunSettings::map_view() const {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -107,6 +108,10 @@ class MapCanvas : public Canvas {
   void curved_graticule();
   void label_curved_graticule(double step_deg);
   void label_polar_graticule(double step_deg);
+  void label_azimuthal_graticule(double step_deg);
+  void label_parallels(double step_deg);
+  void label_meridians(double step_deg);
+  void label_line(std::optional<PagePoint> at, const std::string& label);
   void kilometre_ticks();
   void scale_bar();
   /// Whether the edge of what is shown runs through a box that ends `above` the map's lower edge.

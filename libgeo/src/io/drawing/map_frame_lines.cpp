@@ -186,78 +186,88 @@ void MapCanvas::label_polar_graticule(double step) {
 }
 
 void MapCanvas::label_curved_graticule(double step) {
-  const Window& region = page_->region();
-  const double lon_0 = page_->centre().longitude_deg, lat_0 = page_->centre().latitude_deg;
-  const MapPage::Projector projector(*page_);
-  const double left = layout_.map_left, top = layout_.map_top;
-  // Labels follow the lines through the middle of the map, or stand beside its edge.
-  const auto labelled_east = multiples(page_->is_azimuthal() ? 2.0 * step : step,
-                                       lon_0 + region.west_deg, lon_0 + region.east_deg);
-  const auto labelled_lat = multiples(step, region.south_deg, region.north_deg);
+  if (page_->is_polar()) return label_polar_graticule(step);
+  if (page_->is_azimuthal()) return label_azimuthal_graticule(step);
+  label_parallels(step);
+  label_meridians(step);
+}
+
+/// A label on a line of the map; none stands across its edge.
+void MapCanvas::label_line(std::optional<PagePoint> at, const std::string& label) {
   font(14 * unit_);
-  const auto on_map = [&](std::optional<PagePoint> at, const std::string& label, Align align) {
-    const double room = 12 * unit_, width = layout_.map_width, height = layout_.map_height;
-    if (!at || at->y < room || at->y > height - room) return;
-    // None stands across the edge of the map.
-    const double half = 0.5 * text_width(label);
-    for (const double end : {at->x - half, at->x + half}) {
-      if (end < 0.0 || end >= width) return;
-      if (!frame_->shows(static_cast<int>(end), static_cast<int>(at->y))) return;
-    }
-    text_on_map(left + at->x, top + at->y + 5 * unit_, label, align, kInk);
-  };
-  if (page_->is_polar()) {
-    label_polar_graticule(step);
-    return;
+  const double room = 12 * unit_, width = layout_.map_width, height = layout_.map_height;
+  if (!at || at->y < room || at->y > height - room) return;
+  const double half = 0.5 * text_width(label);
+  for (const double end : {at->x - half, at->x + half}) {
+    if (end < 0.0 || end >= width) return;
+    if (!frame_->shows(static_cast<int>(end), static_cast<int>(at->y))) return;
   }
-  if (page_->is_azimuthal()) {
-    const double middle_lat = step * std::round(lat_0 / step);
-    const double middle_east =
-        step * std::round((lon_0 + 0.5 * (region.west_deg + region.east_deg)) / step) - lon_0;
-    const double level = std::abs(middle_lat) > 75.0 ? std::copysign(75.0, middle_lat) : middle_lat;
-    for (const double lat :
-         multiples(step, region.south_deg + 0.2 * step, region.north_deg - 0.2 * step)) {
-      if (std::abs(lat) > 89.9 || std::abs(lat - level) < 1e-6) continue;
-      on_map(projector.point_east_of_centre(middle_east, lat), latitude_label(lat), Align::centre);
-    }
-    for (const double lon : labelled_east) {
-      on_map(projector.point_east_of_centre(std::remainder(lon - lon_0, 360.0), level),
-             longitude_label(lon), Align::centre);
-    }
-    return;
+  text_on_map(layout_.map_left + at->x, layout_.map_top + at->y + 5 * unit_, label, Align::centre,
+              kInk);
+}
+
+/// Labels follow the lines through the middle of the map.
+void MapCanvas::label_azimuthal_graticule(double step) {
+  const Window& region = page_->region();
+  const auto [lat_0, lon_0] = page_->centre();
+  const MapPage::Projector projector(*page_);
+  const double middle_lat = step * std::round(lat_0 / step);
+  const double middle_east =
+      step * std::round((lon_0 + 0.5 * (region.west_deg + region.east_deg)) / step) - lon_0;
+  const double level = std::abs(middle_lat) > 75.0 ? std::copysign(75.0, middle_lat) : middle_lat;
+  for (const double lat :
+       multiples(step, region.south_deg + 0.2 * step, region.north_deg - 0.2 * step)) {
+    if (std::abs(lat) > 89.9 || std::abs(lat - level) < 1e-6) continue;
+    label_line(projector.point_east_of_centre(middle_east, lat), latitude_label(lat));
   }
+  for (const double lon : multiples(2.0 * step, lon_0 + region.west_deg, lon_0 + region.east_deg)) {
+    label_line(projector.point_east_of_centre(std::remainder(lon - lon_0, 360.0), level),
+               longitude_label(lon));
+  }
+}
+
+/// Latitudes beside the map's western edge.
+void MapCanvas::label_parallels(double step) {
+  const Window& region = page_->region();
+  const MapPage::Projector projector(*page_);
   colour(kInk);
   font(16 * unit_);
-  for (const double lat : labelled_lat) {
+  for (const double lat : multiples(step, region.south_deg, region.north_deg)) {
     const auto at = projector.point_east_of_centre(region.west_deg, lat);
     if (!at || std::abs(lat) > 89.9) continue;
     // Clear of the longitudes below the corner.
     const bool at_corner = lat - region.south_deg < 1e-6;
     const double lean = at_corner ? 6 * unit_ : 10 * unit_ * lat / 90.0;
-    text(left + at->x - 10 * unit_, top + at->y + 6 * unit_ - lean, latitude_label(lat),
-         Align::right);
+    text(layout_.map_left + at->x - 10 * unit_, layout_.map_top + at->y + 6 * unit_ - lean,
+         latitude_label(lat), Align::right);
   }
-  // Below the southern edge, unless meridians meet there.
-  const double south = region.south_deg;
+}
+
+/// Longitudes below the southern edge, or where meridians meet there, along the equator.
+void MapCanvas::label_meridians(double step) {
+  const Window& region = page_->region();
+  const double lon_0 = page_->centre().longitude_deg, south = region.south_deg;
+  const MapPage::Projector projector(*page_);
   const auto west_end = projector.point_east_of_centre(region.west_deg, south);
   const auto east_end = projector.point_east_of_centre(region.east_deg, south);
   const bool has_room = west_end && east_end && east_end->x - west_end->x > 0.3 * layout_.map_width;
   const double width = has_room ? east_end->x - west_end->x : layout_.map_width;
   const double between = width * step / (region.east_deg - region.west_deg);
+  font(16 * unit_);
   const double every = text_width("150°W") + 6 * unit_ > between ? 2.0 * step : step;
-  for (const double lon : labelled_east) {
-    const double east = lon - lon_0;
-    const std::string label = longitude_label(lon);
+  for (const double lon : multiples(step, lon_0 + region.west_deg, lon_0 + region.east_deg)) {
     if (std::abs(std::remainder(lon, every)) > 1e-6) continue;
+    const double east = lon - lon_0;
     if (has_room) {
       colour(kInk);
       font(16 * unit_);
       const auto at = projector.point_east_of_centre(east, south);
-      if (at) text(left + at->x, top + at->y + 24 * unit_, label, Align::centre);
+      if (!at) continue;
+      text(layout_.map_left + at->x, layout_.map_top + at->y + 24 * unit_, longitude_label(lon),
+           Align::centre);
     } else {
-      font(14 * unit_);
       const double level = std::clamp(0.0, region.south_deg, region.north_deg);
-      on_map(projector.point_east_of_centre(east, level), label, Align::centre);
+      label_line(projector.point_east_of_centre(east, level), longitude_label(lon));
     }
   }
 }

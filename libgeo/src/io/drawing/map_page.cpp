@@ -213,25 +213,7 @@ MapPage::MapPage(const Grid& grid, const MapView& view) : grid_(&grid) {
 }
 
 void MapPage::set_region(const MapView& view) {
-  if (view.box) {
-    const Window& box = *view.box;
-    region_.south_deg = std::max(region_.south_deg, box.south_deg);
-    region_.north_deg = std::min(region_.north_deg, box.north_deg);
-    if (grid_->topology() == Topology::sphere) {
-      region_.west_deg = box.west_deg;
-      region_.east_deg = box.east_deg;
-    } else {
-      // The same longitudes as the grid counts them.
-      const double turn = 360.0 * std::round((0.5 * (region_.west_deg + region_.east_deg) -
-                                              0.5 * (box.west_deg + box.east_deg)) /
-                                             360.0);
-      region_.west_deg = std::max(region_.west_deg, box.west_deg + turn);
-      region_.east_deg = std::min(region_.east_deg, box.east_deg + turn);
-    }
-    if (!(region_.west_deg < region_.east_deg && region_.south_deg < region_.north_deg)) {
-      throw ConfigurationError("the box of the map lies beyond what the grid covers");
-    }
-  }
+  if (view.box) crop(*view.box);
   if (view.projection == "mercator") {
     region_.south_deg = std::max(region_.south_deg, -kMercatorDeg);
     region_.north_deg = std::min(region_.north_deg, kMercatorDeg);
@@ -240,28 +222,54 @@ void MapPage::set_region(const MapView& view) {
     }
   }
   const bool whole = grid_->topology() == Topology::sphere && !view.box;
+  set_centre(view, whole);
+  if (whole) {
+    region_.west_deg = -180.0;
+    region_.east_deg = 180.0;
+  } else {
+    turn_to_centre();
+  }
+}
+
+void MapPage::crop(const Window& box) {
+  region_.south_deg = std::max(region_.south_deg, box.south_deg);
+  region_.north_deg = std::min(region_.north_deg, box.north_deg);
+  if (grid_->topology() == Topology::sphere) {
+    region_.west_deg = box.west_deg;
+    region_.east_deg = box.east_deg;
+  } else {
+    // The same longitudes as the grid counts them.
+    const double turn = 360.0 * std::round((0.5 * (region_.west_deg + region_.east_deg) -
+                                            0.5 * (box.west_deg + box.east_deg)) /
+                                           360.0);
+    region_.west_deg = std::max(region_.west_deg, box.west_deg + turn);
+    region_.east_deg = std::min(region_.east_deg, box.east_deg + turn);
+  }
+  if (!(region_.west_deg < region_.east_deg && region_.south_deg < region_.north_deg)) {
+    throw ConfigurationError("the box of the map lies beyond what the grid covers");
+  }
+}
+
+void MapPage::set_centre(const MapView& view, bool whole) {
   centre_ = view.centre.value_or(whole ? Centre{}
                                        : Centre{0.5 * (region_.south_deg + region_.north_deg),
                                                 0.5 * (region_.west_deg + region_.east_deg)});
-  const bool polar = view.projection.starts_with("polar");
-  if (polar) {
+  if (view.projection.starts_with("polar")) {
     centre_ = {view.projection == "polar-north" ? 90.0 : -90.0,
                view.centre ? view.centre->longitude_deg : 0.0};
     if (view.box) reach_deg_ = 120.0;
   }
-  if (!is_azimuthal()) {
-    if (view.centre && view.centre->latitude_deg != 0.0) {
-      throw ConfigurationError(fmt::format(
-          "map projection {}: its middle lies on the equator: the latitude of the centre must be 0",
-          view.projection));
-    }
-    centre_.latitude_deg = 0.0;
+  if (is_azimuthal()) return;
+  if (view.centre && view.centre->latitude_deg != 0.0) {
+    throw ConfigurationError(fmt::format(
+        "map projection {}: its middle lies on the equator: the latitude of the centre must be 0",
+        view.projection));
   }
-  if (whole) {
-    region_.west_deg = -180.0;
-    region_.east_deg = 180.0;
-    return;
-  }
+  centre_.latitude_deg = 0.0;
+}
+
+/// Longitudes are counted from the centre.
+void MapPage::turn_to_centre() {
   const double width = region_.east_deg - region_.west_deg;
   const double middle =
       std::remainder(0.5 * (region_.west_deg + region_.east_deg) - centre_.longitude_deg, 360.0);

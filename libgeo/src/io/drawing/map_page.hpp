@@ -74,6 +74,9 @@ class MapPage {
   enum class Form { cylindrical, pseudocylindrical, azimuthal, plane };
 
   void set_region(const MapView& view);
+  void crop(const Window& box);
+  void set_centre(const MapView& view, bool whole);
+  void turn_to_centre();
   void trace_edge();
   void set_layout(int width_px, double height_over_width);
   [[nodiscard]] bool holds(double east_deg, double latitude_deg) const;

@@ -94,6 +94,58 @@ State IslandSession::read_planet() const {
   return std::move(*state);
 }
 
+Provenance IslandSession::provenance_of(const std::string& name) const {
+  const auto& build = build_info();
+  return {.title = fmt::format("terrane: {}", name),
+          .config_toml = write_config(
+              parameters_, fmt::format("terrane {}: {}", build.version, name), settings_.events),
+          .seed = static_cast<std::uint64_t>(settings_.seed),
+          .version = build.version,
+          .history = fmt::format("{:%Y-%m-%dT%H:%M:%SZ} terrane {} ({}): {}",
+                                 fmt::gmtime(now_or_given()), build.version, build.commit, name),
+          .references = "docs/references.bib: tectonica2026"};
+}
+
+Context IslandSession::context_of(const RunEvents& events) const {
+  Context context;
+  context.planet = planet_;
+  context.seed = static_cast<std::uint64_t>(settings_.seed);
+  context.exemplars = exemplars_;
+  context.events = settings_.events;
+  context.on_progress = events.progress;
+  context.stop = events.stop;
+  return context;
+}
+
+/// The island's files, and what the manifest is to say of them.
+StageRecord IslandSession::write_island(const std::string& name, const State& island,
+                                        const Context& told) const {
+  StageRecord record;
+  record.name = name;
+  record.own_grid = true;
+  record.on_command = true;
+  record.builder = this_builder();
+  record.budget = told.budget;
+  record.warnings = told.warnings;
+  Snapshot snapshot;
+  snapshot.stage = stage_name();
+  snapshot.grid = island.shared_grid();
+  for (const FieldSpec* spec : pipeline_.stages()[stage_]->info().writes) {
+    snapshot.fields.emplace_back(spec, island.values(*spec));
+    record.fields.push_back(summarise(*spec, *island.values(*spec), island.grid()));
+  }
+  const Provenance provenance = provenance_of(name);
+  const auto netcdf = folder_.stage_file(stage_number_, name, ".nc");
+  write_netcdf(netcdf, snapshot, provenance, static_cast<int>(settings_.compression));
+  record.list(folder_.path(), netcdf.filename().string());
+  if (settings_.vtk) {
+    const auto vti = folder_.stage_file(stage_number_, name, ".vti");
+    write_vti(vti, snapshot, provenance, static_cast<int>(settings_.vtk_compression));
+    record.list(folder_.path(), vti.filename().string());
+  }
+  return record;
+}
+
 std::string IslandSession::execute(const RunEvents& events) {
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
@@ -103,53 +155,15 @@ std::string IslandSession::execute(const RunEvents& events) {
         "{} holds a part of a planet: an island needs the whole of one", folder_.path().string()));
   }
   const std::string name = manifest_.free_name(stage_name(), manifest_.complete ? 1 : 2);
-  const auto seed = static_cast<std::uint64_t>(settings_.seed);
-  const auto& build = build_info();
-  const Provenance provenance{
-      .title = fmt::format("terrane: {}", name),
-      .config_toml = write_config(parameters_, fmt::format("terrane {}: {}", build.version, name),
-                                  settings_.events),
-      .seed = seed,
-      .version = build.version,
-      .history = fmt::format("{:%Y-%m-%dT%H:%M:%SZ} terrane {} ({}): {}",
-                             fmt::gmtime(now_or_given()), build.version, build.commit, name),
-      .references = "docs/references.bib: tectonica2026"};
-
-  Context context;
-  context.planet = planet_;
-  context.seed = seed;
-  context.exemplars = exemplars_;
-  context.events = settings_.events;
-  context.on_progress = events.progress;
-  context.stop = events.stop;
+  Context context = context_of(events);
   StageRecord record;
-  record.name = name;
-  record.own_grid = true;
-  record.on_command = true;
-  record.builder = this_builder();
   FieldsAtHand at_hand;
   Pipeline::Observer observer;
   observer.before = [&](int) {
     if (events.stage_begins) events.stage_begins(name, static_cast<double>(state.grid().size()));
   };
   observer.after = [&](int, const State& island, const Context& told) {
-    Snapshot snapshot;
-    snapshot.stage = stage_name();
-    snapshot.grid = island.shared_grid();
-    for (const FieldSpec* spec : pipeline_.stages()[stage_]->info().writes) {
-      snapshot.fields.emplace_back(spec, island.values(*spec));
-      record.fields.push_back(summarise(*spec, *island.values(*spec), island.grid()));
-    }
-    const auto netcdf = folder_.stage_file(stage_number_, name, ".nc");
-    write_netcdf(netcdf, snapshot, provenance, static_cast<int>(settings_.compression));
-    record.list(folder_.path(), netcdf.filename().string());
-    if (settings_.vtk) {
-      const auto vti = folder_.stage_file(stage_number_, name, ".vti");
-      write_vti(vti, snapshot, provenance, static_cast<int>(settings_.vtk_compression));
-      record.list(folder_.path(), vti.filename().string());
-    }
-    record.budget = told.budget;
-    record.warnings = told.warnings;
+    record = write_island(name, island, told);
     at_hand.keep_planet(state, state.present());
     at_hand.keep_island(name, island);
   };

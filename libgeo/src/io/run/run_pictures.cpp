@@ -230,6 +230,23 @@ Report report_of(const RunFolder& folder, const Manifest& manifest, const Grid& 
   return report;
 }
 
+std::vector<const StageRecord*> islands_of(const Manifest& manifest) {
+  std::vector<const StageRecord*> islands;
+  for (const StageRecord& record : manifest.stages) {
+    if (record.own_grid) islands.push_back(&record);
+  }
+  return islands;
+}
+
+/// The report with those of its maps that are there. Returns all files.
+std::vector<std::filesystem::path> write_pages(const RunFolder& folder, Report& report) {
+  std::erase_if(report.maps, [](const MapFile& map) { return !std::filesystem::exists(map.path); });
+  std::vector<std::filesystem::path> written;
+  for (const MapFile& map : report.maps) written.push_back(map.path);
+  written.push_back(write_report(folder.path(), report));
+  return written;
+}
+
 }  // namespace
 
 void FieldsAtHand::keep_planet(const State& state, std::span<const FieldSpec* const> fields) {
@@ -269,10 +286,7 @@ std::vector<std::filesystem::path> draw_run(const RunFolder& folder, const MapVi
   pieces.emplace_back([&] { report.scorecard = scorecard_of(state); });
   const auto months = months_of(folder, manifest, state.grid());
   pieces.emplace_back([&] { report.globe = globe_markup(state, frames_of(folder), months); });
-  std::vector<const StageRecord*> islands;
-  for (const StageRecord& record : manifest.stages) {
-    if (record.own_grid) islands.push_back(&record);
-  }
+  const std::vector<const StageRecord*> islands = islands_of(manifest);
   std::vector<std::vector<MapFile>> island_maps(islands.size());
   for (std::size_t k = 0; k < islands.size(); ++k) {
     pieces.emplace_back([&, k] {
@@ -288,11 +302,10 @@ std::vector<std::filesystem::path> draw_run(const RunFolder& folder, const MapVi
     planet.prepare();
     for (auto& piece : planet.pieces()) pieces.push_back(std::move(piece));
   }
-  std::optional<MapFile> hypsometry;
+  std::optional<MapFile> hypsometry, year;
   if (state.has(field::elevation)) {
     pieces.emplace_back([&] { hypsometry = draw_hypsometry_file(state, folder.maps(), note); });
   }
-  std::optional<MapFile> year;
   if (months && state.has(field::elevation)) {
     pieces.emplace_back([&] {
       const auto heights = thinned(state.read(field::elevation), state.grid(), months->cells);
@@ -307,11 +320,7 @@ std::vector<std::filesystem::path> draw_run(const RunFolder& folder, const MapVi
     report.maps.insert(report.maps.end(), maps.begin(), maps.end());
   }
   if (hypsometry) report.maps.push_back(*hypsometry);
-  std::erase_if(report.maps, [](const MapFile& map) { return !std::filesystem::exists(map.path); });
-  std::vector<std::filesystem::path> written;
-  for (const MapFile& map : report.maps) written.push_back(map.path);
-  written.push_back(write_report(folder.path(), report));
-  return written;
+  return write_pages(folder, report);
 }
 
 std::vector<std::filesystem::path> draw_view(const RunFolder& folder, const MapView& view,

@@ -58,21 +58,36 @@ struct Doubled {
   [[nodiscard]] double angle() const { return 0.5 * std::atan2(sine, cosine); }
 };
 
-}  // namespace
-
-LocalTerrain look_around(const Grid& planet, const TerrainGuide& guide, const Vector3& unit,
-                         double spacing_m) {
-  const TangentFrame frame = tangent_frame(unit);
-  const double step = spacing_m / planet.figure().radius_m;
+/// The places about one, and the cells that they lie in.
+struct Neighbourhood {
+  TangentFrame frame;
   std::array<Index, kPlaces> cell;
-  std::array<double, kPlaces> z;
+  std::array<double, kPlaces> z_m;
+};
+
+Neighbourhood neighbourhood_of(const Grid& planet, const TerrainGuide& guide, const Vector3& unit,
+                             double spacing_m) {
+  Neighbourhood around;
+  around.frame = tangent_frame(unit);
+  const double step = spacing_m / planet.figure().radius_m;
   for (int k = 0; k < kPlaces; ++k) {
     const double east = step * (k % kAcross - kAcross / 2);
     const double north = step * (k / kAcross - kAcross / 2);
-    cell[k] = cell_at(planet, normalised(add(add(unit, frame.east, east), frame.north, north)));
-    z[k] = std::max(0.0, static_cast<double>(guide.elevation_m[cell[k]]));
+    around.cell[k] = cell_at(
+        planet, normalised(add(add(unit, around.frame.east, east), around.frame.north, north)));
+    around.z_m[k] = std::max(0.0, static_cast<double>(guide.elevation_m[around.cell[k]]));
   }
-  Doubled level, folds;
+  return around;
+}
+
+/// How rough and steep the surface is, and along which direction it is level.
+struct Shape {
+  Doubled level;
+  double roughness_m, slope;
+};
+
+Shape shape_of(const std::array<double, kPlaces>& z, double spacing_m) {
+  Shape shape{};
   double bumps = 0.0, slopes = 0.0, weights = 0.0;
   for (int j = 1; j + 1 < kAcross; ++j) {
     for (int i = 1; i + 1 < kAcross; ++i) {
@@ -82,44 +97,62 @@ LocalTerrain look_around(const Grid& planet, const TerrainGuide& guide, const Ve
       const double gy = (z[k + kAcross] - z[k - kAcross]) / (2.0 * spacing_m);
       const double bump_x = z[k] - 0.5 * (z[k + 1] + z[k - 1]);
       const double bump_y = z[k] - 0.5 * (z[k + kAcross] + z[k - kAcross]);
-      level.add(-gy, gx, w);
+      shape.level.add(-gy, gx, w);
       slopes += w * (gx * gx + gy * gy);
       bumps += w * 0.5 * (bump_x * bump_x + bump_y * bump_y);
       weights += w;
     }
   }
-  LocalTerrain local;
-  local.roughness_m = std::sqrt(bumps / weights);
-  const double slope = std::sqrt(slopes / weights);
-  const bool given = !guide.fold_east.empty() && !guide.fold_north.empty();
+  shape.roughness_m = std::sqrt(bumps / weights);
+  shape.slope = std::sqrt(slopes / weights);
+  return shape;
+}
+
+/// Directions of folds in those cells.
+Doubled folds_of(const Grid& planet, const TerrainGuide& guide, const Neighbourhood& around) {
+  Doubled folds;
+  if (guide.fold_east.empty() || guide.fold_north.empty()) return folds;
   for (int k = 0; k < kPlaces; ++k) {
-    const double w = weight_of(k);
-    local.share[static_cast<std::size_t>(terrain_of(guide, cell[k], slope))] += w;
-    if (!given) continue;
-    const double east = guide.fold_east[cell[k]], north = guide.fold_north[cell[k]];
+    const Index cell = around.cell[k];
     // East and north of the cell, seen from here: they turn near the poles.
-    const Centre there = planet.position(planet.column(cell[k]), planet.row(cell[k]));
+    const Centre there = planet.position(planet.column(cell), planet.row(cell));
     const double longitude = there.longitude_deg / kDegrees,
                  latitude = there.latitude_deg / kDegrees;
     const TangentFrame other =
         tangent_frame({std::cos(latitude) * std::cos(longitude),
                        std::cos(latitude) * std::sin(longitude), std::sin(latitude)});
-    const Vector3 fold = add(scaled(other.east, east), other.north, north);
-    folds.add(dot(fold, frame.east), dot(fold, frame.north), w);
+    const Vector3 fold =
+        add(scaled(other.east, guide.fold_east[cell]), other.north, guide.fold_north[cell]);
+    folds.add(dot(fold, around.frame.east), dot(fold, around.frame.north), weight_of(k));
   }
+  return folds;
+}
+
+/// The direction along folds where they are sure, else that along which the surface is level.
+double fold_direction_rad(const TerrainGuide& guide, const Doubled& folds, const Doubled& level) {
   constexpr double kSure = 0.3, kFolded = 0.05;
-  const bool sure = folds.weight > kFolded && folds.strength() > kSure;
-  if (!sure) {
-    local.fold_rad = level.angle();
-  } else if (guide.level_weight > 0.0 && level.weight > 0.0) {
-    Doubled both = folds;
-    const double weight = guide.level_weight * folds.weight / level.weight;
-    both.cosine += weight * level.cosine;
-    both.sine += weight * level.sine;
-    local.fold_rad = both.angle();
-  } else {
-    local.fold_rad = folds.angle();
+  if (!(folds.weight > kFolded && folds.strength() > kSure)) return level.angle();
+  if (!(guide.level_weight > 0.0 && level.weight > 0.0)) return folds.angle();
+  Doubled both = folds;
+  const double weight = guide.level_weight * folds.weight / level.weight;
+  both.cosine += weight * level.cosine;
+  both.sine += weight * level.sine;
+  return both.angle();
+}
+
+}  // namespace
+
+LocalTerrain look_around(const Grid& planet, const TerrainGuide& guide, const Vector3& unit,
+                         double spacing_m) {
+  const Neighbourhood around = neighbourhood_of(planet, guide, unit, spacing_m);
+  const Shape shape = shape_of(around.z_m, spacing_m);
+  LocalTerrain local;
+  local.roughness_m = shape.roughness_m;
+  for (int k = 0; k < kPlaces; ++k) {
+    const Terrain terrain = terrain_of(guide, around.cell[k], shape.slope);
+    local.share[static_cast<std::size_t>(terrain)] += weight_of(k);
   }
+  local.fold_rad = fold_direction_rad(guide, folds_of(planet, guide, around), shape.level);
   return local;
 }
 

@@ -280,6 +280,97 @@ std::vector<float> winding(const PlanetCells& cells, std::uint64_t seed) {
   return noise;
 }
 
+/// Courses of a part of the planet while they are traced: the steps of the planet's rivers, one
+/// after the other from the sea upwards.
+class Tracing {
+ public:
+  Tracing(const PlanetCells& cells, const PlanetWater& water, const Crossings& crossings,
+          std::span<const float> elevation_m, std::span<const float> noise)
+      : water_(water),
+        crossings_(crossings),
+        z_(elevation_m),
+        beds_(cells, water, elevation_m),
+        network_(cells.fine(), elevation_m, noise, beds_.strip()) {
+    for (const auto& [planet_cell, edge_cell] : crossings.rivers) {
+      crossing_of_[planet_cell] = edge_cell;
+    }
+  }
+
+  [[nodiscard]] const Beds& beds() const { return beds_; }
+
+  /// The way of a planet cell's water to its receiver.
+  void trace_step(Index from) {
+    const Index to = water_.receiver[from];
+    const bool starts_inside = beds_.inside(from), ends_inside = beds_.inside(to);
+    const auto crossing = crossing_of_.find(from);
+    if (starts_inside != ends_inside && crossing == crossing_of_.end()) return;
+    const auto at_edge = [&] { return edge(crossing->second); };
+    const End source = starts_inside ? beds_(from) : at_edge();
+    const End goal = ends_inside ? beds_(to) : at_edge();
+    // One that begins at the edge where another ends, or in the sea, has nowhere to go.
+    if (network_.place(source.cell) != Network::kNone || z_[source.cell] < 0.0F) return;
+    const auto joins = [&](std::int32_t place) { return goal_of_[place] == to; };
+    const int margin = std::max(2, 2 * beds_.reach(from));
+    if (!network_.connect(source, goal, margin, joins, false)) {
+      network_.connect(source, goal, margin, joins, true);
+    }
+    goal_of_.resize(network_.size(), to);
+    on_lake_.resize(network_.size(), beds_.on_lake(from) && beds_.on_lake(to) ? 1 : 0);
+  }
+  /// What enters beside the rivers, down to where one goes on.
+  void trace_brooks() {
+    for (const auto& [cell, edge_cell] : crossings_.brooks) {
+      const End goal = beds_(cell);
+      // Where nothing goes on there is no river to go to.
+      if (network_.place(edge_cell) != Network::kNone ||
+          network_.place(goal.cell) == Network::kNone) {
+        continue;
+      }
+      const auto joins = [&](std::int32_t /*place*/) { return true; };
+      network_.connect(edge(edge_cell), goal, std::max(2, 2 * beds_.reach(cell)), joins, true);
+      on_lake_.resize(network_.size(), 0);
+    }
+  }
+  /// The courses with how far each may sink below the level that the planet has for it.
+  [[nodiscard]] RiverCourses take() {
+    constexpr float kShare = 0.25F, kAnywhere_m = 30.0F;
+    RiverCourses courses = network_.take();
+    for (std::size_t k = 0; k < courses.cell.size(); ++k) {
+      const float level_m = courses.level_m[k];
+      const float sunk_m = std::max(0.0F, std::min(kShare * level_m, level_m - kAnywhere_m));
+      courses.least_m.push_back(on_lake_[k] != 0 ? level_m : sunk_m);
+      // What sank upstream of a lake would drain it.
+      if (const std::int32_t next = courses.next[k]; next != kCourseEnds) {
+        courses.least_m[k] = std::max(courses.least_m[k], courses.least_m[next]);
+      }
+    }
+    return courses;
+  }
+
+ private:
+  [[nodiscard]] End edge(Index edge_cell) const {
+    return {edge_cell, std::max(0.0, static_cast<double>(z_[edge_cell]))};
+  }
+
+  const PlanetWater& water_;
+  const Crossings& crossings_;
+  std::span<const float> z_;
+  Beds beds_;
+  Network network_;
+  std::map<Index, Index> crossing_of_;
+  std::vector<Index> goal_of_;  ///< for each place, the planet cell that its step goes to
+  std::vector<std::uint8_t> on_lake_;
+};
+
+/// Slopes of the ground beside the courses.
+std::vector<float> side_slopes(std::span<const float> noise) {
+  constexpr float kSteepest = 0.15F, kUneven = 0.8F;
+  std::vector<float> slopes(noise.size());
+  std::transform(noise.begin(), noise.end(), slopes.begin(),
+                 [](float n) { return kSteepest * std::exp(kUneven * std::min(0.0F, n)); });
+  return slopes;
+}
+
 }  // namespace
 
 RiverCourses trace_river_courses(const PlanetCells& cells, const PlanetWater& water,
@@ -293,63 +384,11 @@ RiverCourses trace_river_courses(const PlanetCells& cells, const PlanetWater& wa
                {"lake_id", water.lake_id.size(), ArraySize::May::be_empty}});
   check_sizes("trace_river_courses", cells.fine().size(), {{"elevation_m", elevation_m.size()}});
   const std::vector<float> noise = winding(cells, seed);
-  Beds beds(cells, water, elevation_m);
-  Network network(cells.fine(), elevation_m, noise, beds.strip());
-  std::map<Index, Index> crossing_of;
-  for (const auto& [planet_cell, edge_cell] : crossings.rivers) {
-    crossing_of[planet_cell] = edge_cell;
-  }
-
-  // For each place of the courses, the planet cell that its step goes to.
-  std::vector<Index> goal_of;
-  std::vector<std::uint8_t> on_lake;
-  for (const Index from : river_steps(cells, water, beds)) {
-    const Index to = water.receiver[from];
-    const bool starts_inside = beds.inside(from), ends_inside = beds.inside(to);
-    const auto crossing = crossing_of.find(from);
-    if (starts_inside != ends_inside && crossing == crossing_of.end()) continue;
-    const auto at_edge = [&] {
-      const float z = elevation_m[crossing->second];
-      return End{crossing->second, std::max(0.0, static_cast<double>(z))};
-    };
-    const End source = starts_inside ? beds(from) : at_edge();
-    const End goal = ends_inside ? beds(to) : at_edge();
-    // One that begins at the edge where another ends, or in the sea, has nowhere to go.
-    if (network.place(source.cell) != Network::kNone || elevation_m[source.cell] < 0.0F) continue;
-    const auto joins = [&](std::int32_t place) { return goal_of[place] == to; };
-    const int margin = std::max(2, 2 * beds.reach(from));
-    if (!network.connect(source, goal, margin, joins, false)) {
-      network.connect(source, goal, margin, joins, true);
-    }
-    goal_of.resize(network.size(), to);
-    on_lake.resize(network.size(), beds.on_lake(from) && beds.on_lake(to) ? 1 : 0);
-  }
-  for (const auto& [cell, edge_cell] : crossings.brooks) {
-    const End goal = beds(cell);
-    // Where nothing goes on there is no river to go to.
-    if (network.place(edge_cell) != Network::kNone || network.place(goal.cell) == Network::kNone) {
-      continue;
-    }
-    const double level_m = std::max(0.0, static_cast<double>(elevation_m[edge_cell]));
-    const auto joins = [&](std::int32_t /*place*/) { return true; };
-    network.connect({edge_cell, level_m}, goal, std::max(2, 2 * beds.reach(cell)), joins, true);
-    on_lake.resize(network.size(), 0);
-  }
-  RiverCourses courses = network.take();
-  constexpr float kSteepest = 0.15F, kUneven = 0.8F;
-  courses.side_slope.resize(noise.size());
-  std::transform(noise.begin(), noise.end(), courses.side_slope.begin(),
-                 [](float n) { return kSteepest * std::exp(kUneven * std::min(0.0F, n)); });
-  constexpr float kShare = 0.25F, kAnywhere_m = 30.0F;
-  for (std::size_t k = 0; k < courses.cell.size(); ++k) {
-    const float level_m = courses.level_m[k];
-    const float sunk_m = std::max(0.0F, std::min(kShare * level_m, level_m - kAnywhere_m));
-    courses.least_m.push_back(on_lake[k] != 0 ? level_m : sunk_m);
-    // What sank upstream of a lake would drain it.
-    if (const std::int32_t next = courses.next[k]; next != kCourseEnds) {
-      courses.least_m[k] = std::max(courses.least_m[k], courses.least_m[next]);
-    }
-  }
+  Tracing tracing(cells, water, crossings, elevation_m, noise);
+  for (const Index from : river_steps(cells, water, tracing.beds())) tracing.trace_step(from);
+  tracing.trace_brooks();
+  RiverCourses courses = tracing.take();
+  courses.side_slope = side_slopes(noise);
   return courses;
 }
 

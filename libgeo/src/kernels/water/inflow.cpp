@@ -112,6 +112,99 @@ std::vector<Passage> find_passages(const PlanetCells& cells, const PlanetWater& 
   return passages;
 }
 
+/// What enters a part of the planet, and where, while it is found.
+class Inflow {
+ public:
+  Inflow(const PlanetCells& cells, const PlanetWater& water, std::span<float> elevation_m,
+         std::span<double> inflow_area_m2, std::span<float> inflow_m3_s)
+      : cells_(cells),
+        planet_(cells.planet()),
+        water_(water),
+        z_(elevation_m),
+        area_m2_(inflow_area_m2),
+        inflow_m3_s_(inflow_m3_s),
+        window_(cells, water.receiver),
+        discharge_(cells, water),
+        inside_m2_(areas_inside(cells)),
+        taken_(elevation_m.size()),
+        leaves_(elevation_m.size()) {
+    std::fill(area_m2_.begin(), area_m2_.end(), 0.0);
+    std::fill(inflow_m3_s_.begin(), inflow_m3_s_.end(), 0.0F);
+  }
+
+  /// Rivers that cross the edge, where it is lowest near the place where they do on the planet.
+  void let_rivers_cross() {
+    for (const Passage& passage : find_passages(cells_, water_, window_)) cross(passage);
+  }
+  /// What planet cells on the edge shed outside flows in with their river, or beside it.
+  void let_edges_shed() {
+    for (const auto& [cell, edge] : land_edges(cells_, z_)) {
+      if (!window_.inside(cell) || water_.elevation_m[cell] < 0.0F) continue;
+      const auto river = entry_of_.find(cell);
+      const Index entry = river != entry_of_.end() ? river->second
+                                                   : lowest_inward(cells_.fine(), edge, z_, leaves_,
+                                                                   water_.elevation_m[cell]);
+      if (entry == kNoCell) continue;
+      enter(entry, cell, outside_m2(cell));
+      if (river == entry_of_.end()) crossings_.brooks.push_back({cell, entry});
+    }
+  }
+  [[nodiscard]] Crossings take() { return std::move(crossings_); }
+
+ private:
+  void cross(const Passage& passage) {
+    const auto& [from, to, outward] = passage;
+    const Stretch stretch = stretch_of(passage);
+    const Index lowest = lowest_land(stretch, z_, taken_);
+    if (lowest == kNoCell) {  // straight into the sea, or out of it
+      if (outward) crossings_.rivers.push_back({from, stretch.middle()});
+      return;
+    }
+    const double way = outward ? 1.0 - stretch.share : stretch.share;
+    const double level_m = std::lerp(std::max(water_.elevation_m[from], 0.0F),
+                                     std::max(water_.elevation_m[to], 0.0F), way);
+    z_[lowest] = std::min(z_[lowest], static_cast<float>(level_m));
+    crossings_.rivers.push_back({from, lowest});
+    taken_[lowest] = 1;
+    if (outward) {
+      leaves_[lowest] = 1;
+      return;
+    }
+    const double own_inside = planet_.area_m2(planet_.row(from)) - outside_m2(from);
+    entry_of_.try_emplace(to, lowest);
+    enter(lowest, from, water_.drainage_area_m2[from] - own_inside);
+  }
+  [[nodiscard]] Stretch stretch_of(const Passage& passage) const {
+    const int row = planet_.row(passage.from);
+    const double reach_m = 0.5 * std::min(planet_.spacing_east_m(row), planet_.face_east_m(row));
+    const auto start = window_.place(passage.from), end = window_.place(passage.to);
+    return passage.outward ? window_.frame().crossing(end, start, reach_m)
+                           : window_.frame().crossing(start, end, reach_m);
+  }
+  void enter(Index edge_cell, Index planet_cell, double area_m2) {
+    area_m2_[edge_cell] += area_m2;
+    inflow_m3_s_[edge_cell] += static_cast<float>(area_m2 / water_.drainage_area_m2[planet_cell] *
+                                                  discharge_(planet_cell));
+  }
+  [[nodiscard]] double outside_m2(Index cell) const {
+    const double inside = inside_m2_[cells_.at(planet_.column(cell), planet_.row(cell))];
+    return std::max(0.0, planet_.area_m2(planet_.row(cell)) - inside);
+  }
+
+  const PlanetCells& cells_;
+  const Grid& planet_;
+  const PlanetWater& water_;
+  std::span<float> z_;
+  std::span<double> area_m2_;
+  std::span<float> inflow_m3_s_;
+  PlanetWindow window_;
+  Discharge discharge_;
+  std::vector<double> inside_m2_;
+  std::vector<std::uint8_t> taken_, leaves_;
+  std::map<Index, Index> entry_of_;
+  Crossings crossings_;
+};
+
 }  // namespace
 
 Crossings find_inflow(const PlanetCells& cells, const PlanetWater& water,
@@ -127,61 +220,10 @@ Crossings find_inflow(const PlanetCells& cells, const PlanetWater& water,
               {{"elevation_m", elevation_m.size()},
                {"inflow_area_m2", inflow_area_m2.size()},
                {"inflow_m3_s", inflow_m3_s.size()}});
-  const Grid& planet = cells.planet();
-  const PlanetWindow window(cells, water.receiver);
-  const Discharge discharge(cells, water);
-  std::fill(inflow_area_m2.begin(), inflow_area_m2.end(), 0.0);
-  std::fill(inflow_m3_s.begin(), inflow_m3_s.end(), 0.0F);
-  const auto enter = [&](Index edge_cell, Index planet_cell, double area_m2) {
-    inflow_area_m2[edge_cell] += area_m2;
-    inflow_m3_s[edge_cell] +=
-        static_cast<float>(area_m2 / water.drainage_area_m2[planet_cell] * discharge(planet_cell));
-  };
-  const std::vector<double> inside_m2 = areas_inside(cells);
-  const auto outside_m2 = [&](Index cell) {
-    const double inside = inside_m2[cells.at(planet.column(cell), planet.row(cell))];
-    return std::max(0.0, planet.area_m2(planet.row(cell)) - inside);
-  };
-
-  Crossings crossings;
-  std::map<Index, Index> entry_of;
-  std::vector<std::uint8_t> taken(elevation_m.size()), leaves(elevation_m.size());
-  for (const auto& [from, to, outward] : find_passages(cells, water, window)) {
-    const int row = planet.row(from);
-    const double reach_m = 0.5 * std::min(planet.spacing_east_m(row), planet.face_east_m(row));
-    const auto start = window.place(from), end = window.place(to);
-    const Stretch stretch = outward ? window.frame().crossing(end, start, reach_m)
-                                    : window.frame().crossing(start, end, reach_m);
-    const Index lowest = lowest_land(stretch, elevation_m, taken);
-    if (lowest == kNoCell) {  // straight into the sea, or out of it
-      if (outward) crossings.rivers.push_back({from, stretch.middle()});
-      continue;
-    }
-    const double way = outward ? 1.0 - stretch.share : stretch.share;
-    const double level_m = std::lerp(std::max(water.elevation_m[from], 0.0F),
-                                     std::max(water.elevation_m[to], 0.0F), way);
-    elevation_m[lowest] = std::min(elevation_m[lowest], static_cast<float>(level_m));
-    crossings.rivers.push_back({from, lowest});
-    taken[lowest] = 1;
-    if (outward) {
-      leaves[lowest] = 1;
-      continue;
-    }
-    const double own_inside = planet.area_m2(row) - outside_m2(from);
-    entry_of.try_emplace(to, lowest);
-    enter(lowest, from, water.drainage_area_m2[from] - own_inside);
-  }
-  for (const auto& [cell, edge] : land_edges(cells, elevation_m)) {
-    if (!window.inside(cell) || water.elevation_m[cell] < 0.0F) continue;
-    const auto river = entry_of.find(cell);
-    const Index entry = river != entry_of.end() ? river->second
-                                                : lowest_inward(cells.fine(), edge, elevation_m,
-                                                                leaves, water.elevation_m[cell]);
-    if (entry == kNoCell) continue;
-    enter(entry, cell, outside_m2(cell));
-    if (river == entry_of.end()) crossings.brooks.push_back({cell, entry});
-  }
-  return crossings;
+  Inflow inflow(cells, water, elevation_m, inflow_area_m2, inflow_m3_s);
+  inflow.let_rivers_cross();
+  inflow.let_edges_shed();
+  return inflow.take();
 }
 
 }  // namespace geo

@@ -100,6 +100,28 @@ std::int8_t riparian(std::int8_t dry, double temperature_c) {
   return id(temperature_c >= kBorealForest_c ? Biome::temperate_forest : Biome::boreal_forest);
 }
 
+/// The fields that tell what lives where, and those that say it.
+struct LifeFields {
+  explicit LifeFields(StageIo& io)
+      : elevation(io.read(field::elevation)),
+        temperature(io.read(field::temperature)),
+        range(io.read(field::temperature_range)),
+        rain(io.read(field::precipitation)),
+        seasonality(io.read(field::precipitation_seasonality)),
+        river(io.read_optional(field::river_intensity)),
+        lake(io.read_optional(field::lake_depth)),
+        coast(io.read_optional(field::distance_to_coast)),
+        biome(io.write(field::biome)),
+        koppen(io.write(field::koppen_class)),
+        productivity(io.write(field::net_primary_productivity)),
+        settlement(io.write(field::settlement_suitability)) {}
+
+  std::span<const float> elevation, temperature, range, rain, seasonality;
+  std::span<const float> river, lake, coast;  ///< may be empty
+  std::span<std::int8_t> biome, koppen;
+  std::span<float> productivity, settlement;
+};
+
 class BiomesStage final : public Stage {
  public:
   explicit BiomesStage(BiomesParameters parameters) : p_(std::move(parameters)) {}
@@ -111,67 +133,71 @@ class BiomesStage final : public Stage {
 
   void run(StageIo& io, Context& context) const override {
     const Grid& grid = io.grid();
-    const auto elevation = io.read(field::elevation);
-    const auto temperature = io.read(field::temperature);
-    const auto range = io.read(field::temperature_range);
-    const auto rain = io.read(field::precipitation);
-    const auto seasonality = io.read(field::precipitation_seasonality);
-    const auto river = io.read_optional(field::river_intensity);
-    const auto lake = io.read_optional(field::lake_depth);
-    const auto coast = io.read_optional(field::distance_to_coast);
-    const auto biome = io.write(field::biome);
-    const auto koppen = io.write(field::koppen_class);
-    const auto productivity = io.write(field::net_primary_productivity);
-    const auto settlement = io.write(field::settlement_suitability);
-
+    const LifeFields fields(io);
     const Treeline treeline(p_, grid, context.seed);
-    const bool by_limits = p_.settlement == "limits";
-    const bool by_exposure = p_.coast == "exposure" && p_.coast_weight > 0;
-    const std::vector<float> land_share = by_exposure ? land_of(elevation) : std::vector<float>{};
+    const std::vector<float> land_share =
+        counts_exposure() ? land_of(fields.elevation) : std::vector<float>{};
     const DisplacedSampler land(grid, land_share);
 #pragma omp parallel for schedule(dynamic, 8)
     for (int j = 0; j < grid.ny(); ++j) {
       for (int i = 0; i < grid.nx(); ++i) {
         const Index c = grid.cell(i, j);
-        const std::int8_t from_months = koppen[c];
-        biome[c] = koppen[c] = 0;
-        productivity[c] = settlement[c] = 0;
-        if (elevation[c] < 0) continue;
-        const double t = temperature[c];
-        const KoppenIndices climate = harmonic_indices(t, range[c], rain[c], seasonality[c]);
-        biome[c] = id(treeline.biome(i, j, elevation[c], range[c], climate));
-        koppen[c] = from_months > 0 ? from_months : koppen_class(climate);
-        if (!lake.empty() && lake[c] > 0) continue;  // nobody farms or lives on the water
-        const double npp = miami_productivity(t, rain[c]);
-        productivity[c] = static_cast<float>(npp);
-        double suitability =
-            by_limits
-                ? limited(grid, elevation, i, j,
-                          settlement_limits(harmonic_months(t, range[c], rain[c], seasonality[c])),
-                          river.empty() ? 0.0F : river[c])
-                : npp / kFullYield * altitude_factor(elevation[c]);
-        if (!river.empty()) suitability += p_.river_weight * river[c];
-        if (p_.coast_weight > 0 && (!coast.empty() || by_exposure)) {
-          const double near = by_exposure ? sea_exposure(land, i, j, p_.coast_reach_km * 1000)
-                                          : 1 - coast[c] / (p_.coast_reach_km * 1000);
-          suitability += p_.coast_weight * std::max(near, 0.0);
-        }
-        settlement[c] = static_cast<float>(std::clamp(suitability, 0.0, 1.0));
+        if (!grow(i, j, c, treeline, fields)) continue;
+        fields.settlement[c] =
+            static_cast<float>(std::clamp(suitability(grid, i, j, c, land, fields), 0.0, 1.0));
       }
     }
     context.advance(0.7);
     const auto line_rivers = [&] {
-      if (!river.empty()) line_rivers_with_trees(grid, river, temperature, biome);
+      if (fields.river.empty()) return;
+      line_rivers_with_trees(grid, fields.river, fields.temperature, fields.biome);
     };
     if (p_.smooth_corridors) line_rivers();
-    std::vector<std::int8_t> scratch(biome.size());
-    smooth_biomes(grid, p_.smoothing_km * 1000, biome, scratch);
+    std::vector<std::int8_t> scratch(fields.biome.size());
+    smooth_biomes(grid, p_.smoothing_km * 1000, fields.biome, scratch);
     context.advance(0.9);
     if (!p_.smooth_corridors) line_rivers();
     context.advance(1.0);
   }
 
  private:
+  [[nodiscard]] bool counts_exposure() const {
+    return p_.coast == "exposure" && p_.coast_weight > 0;
+  }
+
+  /// What grows in a cell; returns whether people may live there: not on water.
+  bool grow(int i, int j, Index c, const Treeline& treeline, const LifeFields& f) const {
+    const std::int8_t from_months = f.koppen[c];
+    f.biome[c] = f.koppen[c] = 0;
+    f.productivity[c] = f.settlement[c] = 0;
+    if (f.elevation[c] < 0) return false;
+    const KoppenIndices climate =
+        harmonic_indices(f.temperature[c], f.range[c], f.rain[c], f.seasonality[c]);
+    f.biome[c] = id(treeline.biome(i, j, f.elevation[c], f.range[c], climate));
+    f.koppen[c] = from_months > 0 ? from_months : koppen_class(climate);
+    if (!f.lake.empty() && f.lake[c] > 0) return false;
+    f.productivity[c] = static_cast<float>(miami_productivity(f.temperature[c], f.rain[c]));
+    return true;
+  }
+  /// Suitability for settlement, rivers and shores included.
+  [[nodiscard]] double suitability(const Grid& grid, int i, int j, Index c,
+                                   const DisplacedSampler& land, const LifeFields& f) const {
+    double suitability =
+        p_.settlement == "limits"
+            ? limited(grid, f.elevation, i, j,
+                      settlement_limits(harmonic_months(f.temperature[c], f.range[c], f.rain[c],
+                                                        f.seasonality[c])),
+                      f.river.empty() ? 0.0F : f.river[c])
+            : miami_productivity(f.temperature[c], f.rain[c]) / kFullYield *
+                  altitude_factor(f.elevation[c]);
+    if (!f.river.empty()) suitability += p_.river_weight * f.river[c];
+    if (p_.coast_weight > 0 && (!f.coast.empty() || counts_exposure())) {
+      const double near = counts_exposure() ? sea_exposure(land, i, j, p_.coast_reach_km * 1000)
+                                            : 1 - f.coast[c] / (p_.coast_reach_km * 1000);
+      suitability += p_.coast_weight * std::max(near, 0.0);
+    }
+    return suitability;
+  }
   /// Suitability where climate, slope and soil set limits. A river waters the fields along it.
   [[nodiscard]] double limited(const Grid& grid, std::span<const float> elevation, int i, int j,
                                SettlementLimits limits, double river) const {

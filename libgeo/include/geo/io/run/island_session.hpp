@@ -40,6 +40,10 @@ class IslandSession {
  private:
   [[nodiscard]] std::string_view stage_name() const;
   [[nodiscard]] State read_planet() const;
+  [[nodiscard]] Provenance provenance_of(const std::string& name) const;
+  [[nodiscard]] Context context_of(const RunEvents& events) const;
+  [[nodiscard]] StageRecord write_island(const std::string& name, const State& island,
+                                         const Context& told) const;
 
   const Pipeline& pipeline_;
   int stage_number_;

@@ -28,6 +28,80 @@ inline double valley_floor_beyond_cell_m2(const Grid& grid, int row) {
   return std::max(0.0, height_m * height_m - grid.area_m2(row));
 }
 
+namespace detail {
+
+/// Valleys of one row of a sphere whose cells are narrower than high.
+class RowOfValleys {
+ public:
+  explicit RowOfValleys(int columns)
+      : before_(columns), after_(columns), lowest_(columns), source_(columns) {}
+
+  /// `before_m`, `elevation_m`, `fixed`: the row's cells, as in widen_valleys.
+  template <class V>
+  void widen(double width_m, double height_m, const V* before_m, const std::uint8_t* fixed,
+             V* elevation_m) {
+    draw_bell(width_m, height_m);
+    for (int i = 0; i < columns(); ++i) {
+      before_[i] = value_of(before_m[i]);
+      lowest_[i] = after_[i] = value_of(elevation_m[i]);
+      source_[i] = i;
+    }
+    for (int s = 0; s < columns(); ++s) {
+      if (fixed[s] == 0 && is_source(s)) {
+        for (const int side : {-1, 1}) spread(s, side, fixed);
+      }
+    }
+    lower(before_m, elevation_m);
+  }
+
+ private:
+  [[nodiscard]] int columns() const { return static_cast<int>(source_.size()); }
+  [[nodiscard]] double cut_m(int i) const { return before_[i] - after_[i]; }
+  [[nodiscard]] int east(int i) const { return i + 1 < columns() ? i + 1 : 0; }
+  [[nodiscard]] int west(int i) const { return i > 0 ? i - 1 : columns() - 1; }
+
+  /// cos² out to half a height, as far as the row goes round.
+  void draw_bell(double width_m, double height_m) {
+    bell_.clear();
+    for (int k = 1; k * width_m < height_m && 2 * k < columns(); ++k) {
+      const double c = std::cos(0.5 * std::numbers::pi * k * width_m / height_m);
+      bell_.push_back(c * c);
+    }
+  }
+  [[nodiscard]] bool is_source(int s) const {
+    constexpr double kLeast_m = 1e-3;  // of lowering that makes a valley
+    return cut_m(s) >= kLeast_m && cut_m(s) >= cut_m(west(s)) && cut_m(s) >= cut_m(east(s));
+  }
+  void spread(int s, int side, const std::uint8_t* fixed) {
+    int i = s;
+    for (const double share : bell_) {
+      i = side < 0 ? west(i) : east(i);
+      if (fixed[i] != 0) return;
+      const double to = std::max(before_[i] - share * cut_m(s), after_[s]);
+      if (to >= lowest_[i]) continue;
+      lowest_[i] = to;
+      source_[i] = s;
+    }
+  }
+  /// Beds first come as they are; then what they took from others, from the same step's values.
+  template <class V>
+  void lower(const V* before_m, V* elevation_m) const {
+    const std::vector<V> beds(elevation_m, elevation_m + columns());
+    for (int i = 0; i < columns(); ++i) {
+      const int s = source_[i];
+      if (s == i) continue;
+      const int apart = std::min((s - i + columns()) % columns(), (i - s + columns()) % columns());
+      const V taken(bell_[apart - 1] * (before_m[s] - beds[s]));
+      elevation_m[i] = greater(V(before_m[i] - taken), beds[s]);
+    }
+  }
+
+  std::vector<double> before_, after_, lowest_, bell_;
+  std::vector<int> source_;  ///< whose valley each cell is part of
+};
+
+}  // namespace detail
+
 /// Valleys as wide as the cells are high. A river lowers one cell; where meridians converge cells
 /// are slivers, and the valley of a river along a meridian would be as narrow as they are, that of
 /// one along a parallel as wide as anywhere. So what a step of incision took from a cell it takes
@@ -52,62 +126,17 @@ void widen_valleys(const Grid& grid, std::span<const V> before_m,
                {"fixed", fixed.size()},
                {"elevation_m", elevation_m.size()}});
   if (grid.topology() != Topology::sphere) return;
-  constexpr double kLeast_m = 1e-3;  // of lowering that makes a valley
-  const int nx = grid.nx();
   ParallelErrors errors;
 #pragma omp parallel
   {
-    auto before = errors.make<std::vector<double>>(nx);
-    auto after = errors.make<std::vector<double>>(nx);
-    auto lowest = errors.make<std::vector<double>>(nx);
-    std::vector<double> bell;
-    auto source = errors.make<std::vector<int>>(nx);
+    auto row = errors.make<detail::RowOfValleys>(grid.nx());
 #pragma omp for schedule(dynamic, 8)
     for (int j = 0; j < grid.ny(); ++j) {
       errors.guard([&] {
-        const double width = grid.spacing_east_m(j), height = grid.face_east_m(j);
-        if (width >= height) return;
+        const double width_m = grid.spacing_east_m(j), height_m = grid.face_east_m(j);
+        if (width_m >= height_m) return;
         const Index begin = grid.cell(0, j);
-        for (int i = 0; i < nx; ++i) {
-          before[i] = value_of(before_m[begin + i]);
-          lowest[i] = after[i] = value_of(elevation_m[begin + i]);
-          source[i] = i;
-        }
-        bell.clear();
-        for (int k = 1; k * width < height && 2 * k < nx; ++k) {
-          const double c = std::cos(0.5 * std::numbers::pi * k * width / height);
-          bell.push_back(c * c);
-        }
-        const auto lowered = [&](int i) { return before[i] - after[i]; };
-        for (int s = 0; s < nx; ++s) {
-          const double cut = lowered(s);
-          if (fixed[begin + s] != 0 || cut < kLeast_m) continue;
-          if (cut < lowered(s > 0 ? s - 1 : nx - 1) || cut < lowered(s + 1 < nx ? s + 1 : 0))
-            continue;
-          for (const int side : {-1, 1}) {
-            int i = s;
-            for (const double share : bell) {
-              i += side;
-              if (i < 0) i = nx - 1;
-              if (i == nx) i = 0;
-              if (fixed[begin + i] != 0) break;
-              const double to = std::max(before[i] - share * cut, after[s]);
-              if (to >= lowest[i]) continue;
-              lowest[i] = to;
-              source[i] = s;
-            }
-          }
-        }
-        // Beds first come as they are; then what they took from others, from the same step's
-        // values.
-        std::vector<V> beds(elevation_m.begin() + begin, elevation_m.begin() + begin + nx);
-        for (int i = 0; i < nx; ++i) {
-          const int s = source[i];
-          if (s == i) continue;
-          const int apart = std::min((s - i + nx) % nx, (i - s + nx) % nx);
-          const V taken(bell[apart - 1] * (before_m[begin + s] - beds[s]));
-          elevation_m[begin + i] = greater(V(before_m[begin + i] - taken), beds[s]);
-        }
+        row->widen(width_m, height_m, &before_m[begin], &fixed[begin], &elevation_m[begin]);
       });
     }
   }

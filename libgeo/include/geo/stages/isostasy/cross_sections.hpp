@@ -108,84 +108,128 @@ void soften_far_edges(const Grid& grid, const ConvergentMargins& margins,
   }
 }
 
-/// Cross sections of convergent margins, old belts, broad variation of continents and sea floor.
+/// What varies convergent margins along their length, and crust and mantle from place to place.
+struct SectionNoise {
+  template <class V>
+  SectionNoise(const Crust<V>& crust, const Grid& grid)
+      : along(grid, crust.seed, "isostasy.belts", 1100.0, 3, 0.6, crust.noise),
+        shift(grid, crust.seed, "isostasy.belt_shift", 700.0, 3, 0.6, crust.noise),
+        thickness(grid, crust.seed, "isostasy.thickness", 3200.0, 4, 0.55, crust.noise),
+        mantle_swell(grid, crust.seed, "isostasy.swells", 2600.0, 5, 0.6, crust.noise),
+        ocean_floor(grid, crust.seed, "isostasy.ocean_swells", 2800.0, 4, 0.55, crust.noise),
+        suture(grid, crust.seed, "isostasy.sutures", 4200.0, 4, 0.5, crust.noise),
+        worn(grid, crust.seed, "isostasy.worn", 2000.0, 3, 0.6, crust.noise) {}
+
+  UnitNoise along, shift, thickness, mantle_swell, ocean_floor, suture, worn;
+};
+
+/// That noise along one row of the grid, and what is done with it there.
 template <class V>
-void cut_sections(const Crust<V>& crust, const CoarseGrid& coarse, const TectonicFrame& frame,
-                  Tectonics<V>& t) {
-  const IsostasyParameters& p = crust.parameters;
-  const Grid& grid = coarse.grid();
-  const auto unit_noise = [&](std::string_view stream, double wavelength_km, int octaves,
-                              double gain) {
-    return UnitNoise(grid, crust.seed, stream, wavelength_km, octaves, gain, crust.noise);
-  };
-  const UnitNoise along = unit_noise("isostasy.belts", 1100.0, 3, 0.6);
-  const UnitNoise shift = unit_noise("isostasy.belt_shift", 700.0, 3, 0.6);
-  const UnitNoise noise = unit_noise("isostasy.thickness", 3200.0, 4, 0.55);
-  const UnitNoise mantle_swell = unit_noise("isostasy.swells", 2600.0, 5, 0.6);
-  const UnitNoise floor = unit_noise("isostasy.ocean_swells", 2800.0, 4, 0.55);
-  const UnitNoise suture = unit_noise("isostasy.sutures", 4200.0, 4, 0.5);
-  const UnitNoise worn = unit_noise("isostasy.worn", 2000.0, 3, 0.6);
+class SectionRow {
+ public:
+  SectionRow(const Crust<V>& crust, const Grid& grid, const SectionNoise& noise,
+             const ConvergentMargins& margins, Tectonics<V>& t)
+      : grid_(grid),
+        margins_(margins),
+        t_(t),
+        row_(grid),
+        along_(noise.along, grid.nx()),
+        shift_(noise.shift, grid.nx()),
+        thickness_(noise.thickness, grid.nx()),
+        mantle_swell_(noise.mantle_swell, grid.nx()),
+        ocean_floor_(noise.ocean_floor, grid.nx()),
+        suture_(noise.suture, grid.nx()),
+        worn_(noise.worn, grid.nx()),
+        thickness_noise_km_(crust.active(crust.parameters.thickness_noise_km)),
+        swell_m_(crust.active(crust.parameters.swell_m)),
+        trenches_(crust.active(crust.parameters.trench_depth_m) / kDeepestTrench_m),
+        shortening_{crust.active(crust.parameters.collision_shortening),
+                    crust.active(crust.parameters.subduction_shortening),
+                    crust.active(crust.parameters.continental_km),
+                    crust.active(crust.parameters.front_shortening)} {}
+
+  /// Broad variation of continents and sea floor, and old belts.
+  void vary(int j) {
+    row_.choose_all(j);
+    for (auto* line : {&thickness_, &mantle_swell_, &ocean_floor_, &suture_, &worn_}) {
+      line->read(row_);
+    }
+    for (int i = 0; i < grid_.nx(); ++i) {
+      const Index cell = grid_.cell(i, j);
+      t_.ocean_swell[cell] = static_cast<float>(ocean_floor_[i]);
+      t_.thickness_noise_km[cell] = V(thickness_noise_km_ * thickness_[i]);
+      // Plateaus stand further above the middle of continents than basins lie below it.
+      const double up = std::exp(kSkew * mantle_swell_[i]) - std::exp(kLogMean);
+      t_.swell_m[cell] = V(swell_m_ * up / kSkewed);
+      const double age = smooth_step(kWornDown, kWhole, worn_[i]);
+      t_.relict[cell] = static_cast<float>(age * bell(suture_[i], 0.0, kSuture));
+    }
+  }
+  /// Sections across the convergent margins that are near.
+  void cut(int j) {
+    const auto is_near = [&](int i) {
+      return std::abs(margins_.across_km[grid_.cell(i, j)]) <= kSections_km;
+    };
+    row_.choose(j, is_near);
+    for (auto* line : {&along_, &shift_}) line->read(row_);
+    for (int i = 0; i < grid_.nx(); ++i) {
+      if (!is_near(i)) continue;
+      cut_section(margins_, grid_.cell(i, j), along_[i], shift_[i], trenches_, shortening_, t_);
+    }
+  }
+
+ private:
+  const Grid& grid_;
+  const ConvergentMargins& margins_;
+  Tectonics<V>& t_;
+  NoiseRow row_;
+  UnitNoise::Line along_, shift_, thickness_, mantle_swell_, ocean_floor_, suture_, worn_;
+  Arithmetic<V> thickness_noise_km_, swell_m_, trenches_;
+  Shortening<V> shortening_;
+};
+
+template <class V>
+void clear_sections(const Grid& grid, Tectonics<V>& t) {
   for (auto* field : {&t.thickening, &t.shortening_km_myr, &t.arc, &t.trench_m,
                       &t.thickness_noise_km, &t.swell_m}) {
     field->assign(grid.size(), V(0.0F));
   }
   t.ocean_swell.resize(grid.size());
   t.relict.resize(grid.size());
-  const Arithmetic<V> thickness_noise_km = crust.active(p.thickness_noise_km);
-  const Arithmetic<V> swell_m = crust.active(p.swell_m);
-  const Shortening<V> shortening{crust.active(p.collision_shortening),
-                                 crust.active(p.subduction_shortening),
-                                 crust.active(p.continental_km), crust.active(p.front_shortening)};
-  const Arithmetic<V> trenches = crust.active(p.trench_depth_m) / kDeepestTrench_m;
-  struct Lines {
-    NoiseRow row;
-    UnitNoise::Line alongs, shifts, noises, swells, floors, sutures, worns;
-  };
-  const auto line_of = [&](const UnitNoise& values) { return UnitNoise::Line(values, grid.nx()); };
+}
+
+template <class V>
+void smooth_sections(const Crust<V>& crust, const Grid& grid, const ConvergentMargins& margins,
+                     Tectonics<V>& t) {
+  const Arithmetic<V> smoothing_km = crust.active(crust.parameters.deformation_smoothing_km);
+  soften_far_edges<V>(grid, margins, 1e3 * kBeltSmoothing * smoothing_km, t.thickening);
+  blur(grid, t.shortening_km_myr, 1e3 * smoothing_km);
+  blur(grid, t.arc, 1e3 * kArcSmoothing * smoothing_km);
+  blur(grid, t.trench_m, 1e3 * kTrenchSmoothing * smoothing_km);
+}
+
+/// Cross sections of convergent margins, old belts, broad variation of continents and sea floor.
+template <class V>
+void cut_sections(const Crust<V>& crust, const CoarseGrid& coarse, const TectonicFrame& frame,
+                  Tectonics<V>& t) {
+  const Grid& grid = coarse.grid();
+  const SectionNoise noise(crust, grid);
+  clear_sections(grid, t);
   ParallelErrors errors;
 #pragma omp parallel
   {
-    std::optional<Lines> made;
-    errors.guard([&] {
-      made.emplace(Lines{NoiseRow(grid), line_of(along), line_of(shift), line_of(noise),
-                         line_of(mantle_swell), line_of(floor), line_of(suture), line_of(worn)});
-    });
+    std::optional<SectionRow<V>> row;
+    errors.guard([&] { row.emplace(crust, grid, noise, frame.margins, t); });
 #pragma omp for schedule(dynamic, 8)
     for (int j = 0; j < grid.ny(); ++j) {
       errors.guard([&] {
-        auto& [row, alongs, shifts, noises, swells, floors, sutures, worns] = *made;
-        row.choose_all(j);
-        for (auto* line : {&noises, &swells, &floors, &sutures, &worns}) line->read(row);
-        for (int i = 0; i < grid.nx(); ++i) {
-          const Index cell = grid.cell(i, j);
-          t.ocean_swell[cell] = static_cast<float>(floors[i]);
-          t.thickness_noise_km[cell] = V(thickness_noise_km * noises[i]);
-          // Plateaus stand further above the middle of continents than basins lie below it.
-          const double up = std::exp(kSkew * swells[i]) - std::exp(kLogMean);
-          t.swell_m[cell] = V(swell_m * up / kSkewed);
-          const double age = smooth_step(kWornDown, kWhole, worns[i]);
-          t.relict[cell] = static_cast<float>(age * bell(sutures[i], 0.0, kSuture));
-        }
-        const auto far_km = [&](int i) {
-          return std::abs(frame.margins.across_km[grid.cell(i, j)]);
-        };
-        const auto is_near = [&](int i) { return far_km(i) <= kSections_km; };
-        row.choose(j, is_near);
-        for (auto* line : {&alongs, &shifts}) line->read(row);
-        for (int i = 0; i < grid.nx(); ++i) {
-          if (is_near(i))
-            cut_section(frame.margins, grid.cell(i, j), alongs[i], shifts[i], trenches, shortening,
-                        t);
-        }
+        row->vary(j);
+        row->cut(j);
       });
     }
   }
   errors.rethrow();
-  const Arithmetic<V> smoothing_km = crust.active(p.deformation_smoothing_km);
-  soften_far_edges<V>(grid, frame.margins, 1e3 * kBeltSmoothing * smoothing_km, t.thickening);
-  blur(grid, t.shortening_km_myr, 1e3 * smoothing_km);
-  blur(grid, t.arc, 1e3 * kArcSmoothing * smoothing_km);
-  blur(grid, t.trench_m, 1e3 * kTrenchSmoothing * smoothing_km);
+  smooth_sections(crust, grid, frame.margins, t);
   t.convergent = t.thickening;
   for (Index cell = 0; cell < grid.size(); ++cell) t.convergent[cell] += t.arc[cell];
 }

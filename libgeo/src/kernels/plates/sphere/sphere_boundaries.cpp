@@ -30,20 +30,14 @@ double strongest(const RelativeMotion& motion) {
   return std::max({motion.closing, motion.opening, motion.shear});
 }
 
-}  // namespace
-
-std::vector<SphereBoundary> find_sphere_boundaries(const SphereMesh& mesh,
-                                                   std::span<const std::int16_t> plate,
-                                                   std::span<const Vector3> rotation_rad_myr,
-                                                   double plate_speed_cm_yr, double smoothing_km,
-                                                   double radius_km) {
+/// Boundaries where they lie, each with the direction to the other plate.
+std::vector<SphereBoundary> places_of_boundaries(const SphereMesh& mesh,
+                                                 std::span<const std::int16_t> plate) {
   const FibonacciSphere& samples = mesh.samples();
   std::vector<SphereBoundary> all;
-  std::vector<std::int32_t> number(mesh.size(), -1);
   for (std::int32_t i = 0; i < mesh.size(); ++i) {
     const std::int16_t other = foreign_plate(mesh, plate, i);
     if (other < 0) continue;
-    number[i] = static_cast<std::int32_t>(all.size());
     Vector3 towards{};
     for (const std::int32_t j : mesh.neighbours(i)) {
       if (plate[j] == other)
@@ -57,30 +51,56 @@ std::vector<SphereBoundary> find_sphere_boundaries(const SphereMesh& mesh,
                    BoundaryType::interior,
                    0.0});
   }
+  return all;
+}
+
+/// A mean of a boundary's direction and those beside it; its other side looks the opposite way.
+Vector3 mean_direction(const SphereMesh& mesh, std::span<const SphereBoundary> all,
+                       std::span<const std::int32_t> number, const SphereBoundary& here) {
+  Vector3 sum = here.towards;
+  for (const std::int32_t j : mesh.neighbours(here.sample)) {
+    if (number[j] < 0) continue;
+    const SphereBoundary& beside = all[number[j]];
+    if (beside.plate == here.plate && beside.other == here.other) {
+      sum = add(sum, beside.towards);
+    } else if (beside.plate == here.other && beside.other == here.plate) {
+      sum = add(sum, beside.towards, -1.0);
+    }
+  }
+  return normalised(tangent(sum, mesh.samples().position(here.sample)));
+}
+
+void smooth_directions(const SphereMesh& mesh, double smoothing_km, double radius_km,
+                       std::vector<SphereBoundary>& all) {
+  std::vector<std::int32_t> number(mesh.size(), -1);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    number[all[k].sample] = static_cast<std::int32_t>(k);
+  }
   // A mean over the neighbours spreads by about 0.7 of the spacing.
-  const double step_km = 0.7 * samples.spacing() * radius_km;
+  const double step_km = 0.7 * mesh.samples().spacing() * radius_km;
   const auto passes = static_cast<int>(std::lround(std::pow(smoothing_km / step_km, 2)));
   std::vector<Vector3> next(all.size());
   for (int pass = 0; pass < std::min(passes, 400); ++pass) {
 #pragma omp parallel for schedule(static)
     for (std::size_t k = 0; k < all.size(); ++k) {
-      Vector3 sum = all[k].towards;
-      for (const std::int32_t j : mesh.neighbours(all[k].sample)) {
-        if (number[j] < 0) continue;
-        const SphereBoundary& beside = all[number[j]];
-        if (beside.plate == all[k].plate && beside.other == all[k].other) {
-          sum = add(sum, beside.towards);
-        } else if (beside.plate == all[k].other && beside.other == all[k].plate) {
-          sum = add(sum, beside.towards, -1.0);
-        }
-      }
-      next[k] = normalised(tangent(sum, samples.position(all[k].sample)));
+      next[k] = mean_direction(mesh, all, number, all[k]);
     }
     for (std::size_t k = 0; k < all.size(); ++k) all[k].towards = next[k];
   }
+}
+
+}  // namespace
+
+std::vector<SphereBoundary> find_sphere_boundaries(const SphereMesh& mesh,
+                                                   std::span<const std::int16_t> plate,
+                                                   std::span<const Vector3> rotation_rad_myr,
+                                                   double plate_speed_cm_yr, double smoothing_km,
+                                                   double radius_km) {
+  std::vector<SphereBoundary> all = places_of_boundaries(mesh, plate);
+  smooth_directions(mesh, smoothing_km, radius_km, all);
   double most = 0.0;
   for (SphereBoundary& point : all) {
-    const Vector3& at = samples.position(point.sample);
+    const Vector3& at = mesh.samples().position(point.sample);
     point.motion = relative_motion(velocity_mm_yr(rotation_rad_myr[point.plate], at, radius_km),
                                    velocity_mm_yr(rotation_rad_myr[point.other], at, radius_km),
                                    point.towards, at);
