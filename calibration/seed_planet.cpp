@@ -1,8 +1,8 @@
 #include "calibration/seed_planet.hpp"
 
 #include "geo/core/stage.hpp"
+#include "geo/stages/isostasy/sea_level.hpp"
 #include "geo/stages/plates/plates.hpp"
-#include "geo/stages/relief/sea_level.hpp"
 
 namespace geo::calibration {
 namespace {

@@ -5,8 +5,8 @@
 #include <initializer_list>
 #include <vector>
 
+#include "climate_of_land.hpp"
 #include "erosion_run.hpp"
-#include "stages/relief/climate_of_land.hpp"
 
 namespace geo {
 namespace {

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "climate_of_land.hpp"
+#include "finish_surface.hpp"
 #include "geo/stages/erosion/finishing.hpp"
 #include "geo/stages/erosion/ground.hpp"
 #include "geo/stages/erosion/seas.hpp"
 #include "geo/stages/erosion/wear_down.hpp"
-#include "stages/relief/climate_of_land.hpp"
-#include "stages/relief/finish_relief.hpp"
 
 namespace geo {
 namespace {
@@ -152,7 +152,7 @@ void ErosionRun::finish() {
   reshape([&] { return inject_noise<float>(p_, {}, grid_, context_.seed, elevation_m_); });
   reshape([&] { return warp<float>(p_, {}, grid_, context_.seed, elevation_m_); });
   landscape_.relax();
-  reshape([&] { return ReliefFinish(p_, grid_, context_).reshape(elevation_m_); });
+  reshape([&] { return SurfaceFinish(p_, grid_, context_).reshape(elevation_m_); });
   if (p_.steps > 0) {
     reshape([&] { return keep_sea_share(p_, grid_, elevation_m_, sea_share_); });
   }

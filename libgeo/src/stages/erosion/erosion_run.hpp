@@ -10,7 +10,7 @@
 #include "geo/stages/erosion/erosion.hpp"
 #include "geo/stages/erosion/landscape.hpp"
 #include "ice_age.hpp"
-#include "stages/relief/relief_events.hpp"
+#include "surface_events.hpp"
 
 namespace geo {
 
@@ -56,7 +56,7 @@ class ErosionRun {
   Landscape<float> landscape_;
   Drainage drainage_;
   bool is_routed_ = false;  ///< along the finished bed
-  ReliefEvents events_;
+  SurfaceEvents events_;
   bool follows_rain_;
   std::optional<LandClimate> climate_;
   std::optional<IceAge> ice_;

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "climate_of_land.hpp"
 #include "geo/kernels/numerics/area_sum.hpp"
 #include "geo/kernels/numerics/smoothing.hpp"
-#include "stages/relief/climate_of_land.hpp"
 
 namespace geo {
 namespace {

@@ -18,7 +18,7 @@
 #include "island_climate.hpp"
 #include "island_relief.hpp"
 #include "stages/climate/climate_events.hpp"
-#include "stages/relief/guided_by_folds.hpp"
+#include "stages/isostasy/guided_by_folds.hpp"
 
 namespace geo {
 namespace {

@@ -9,11 +9,11 @@
 #include "geo/stages/isostasy/floating_crust.hpp"
 #include "geo/stages/isostasy/freeboard.hpp"
 #include "geo/stages/isostasy/rocks.hpp"
-#include "geo/stages/relief/sea_level.hpp"
+#include "geo/stages/isostasy/sea_level.hpp"
 #include "given_crust.hpp"
+#include "guided_by_folds.hpp"
 #include "land_detail.hpp"
 #include "sea_floor_fabric.hpp"
-#include "stages/relief/guided_by_folds.hpp"
 #include "torus_crust.hpp"
 
 namespace geo {

@@ -10,10 +10,10 @@ namespace geo {
 
 /// The events of a run that change its relief, each at its time: at the beginning of the erosion
 /// step nearest to its age, or after the last. Each leaves its record with the context.
-class ReliefEvents {
+class SurfaceEvents {
  public:
   /// `steps` steps of `time_step_yr` end today.
-  ReliefEvents(const Grid& grid, Context& context, std::int64_t steps, double time_step_yr)
+  SurfaceEvents(const Grid& grid, Context& context, std::int64_t steps, double time_step_yr)
       : grid_(grid), context_(context), steps_(steps), time_step_yr_(time_step_yr) {}
 
   /// Lets those that fall before `step` change the relief; `steps` is today. Returns whether any

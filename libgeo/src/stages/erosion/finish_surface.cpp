@@ -1,4 +1,4 @@
-#include "finish_relief.hpp"
+#include "finish_surface.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include "geo/kernels/noise/noise.hpp"
 #include "geo/kernels/numerics/quantile_mapping.hpp"
 #include "geo/kernels/numerics/smoothing.hpp"
-#include "geo/stages/relief/sea_level.hpp"
+#include "geo/stages/isostasy/sea_level.hpp"
 
 namespace geo {
 namespace {
@@ -30,7 +30,7 @@ std::vector<std::uint8_t> land_of(std::span<const float> elevation_m) {
 
 }  // namespace
 
-bool ReliefFinish::reshape(std::span<float> elevation_m) const {
+bool SurfaceFinish::reshape(std::span<float> elevation_m) const {
   const bool reshapes =
       p_.land_smoothing_km > 0.0 || p_.hypsometry != "none" || p_.detail_noise > 0.0;
   if (!reshapes) return false;
@@ -60,12 +60,12 @@ bool ReliefFinish::reshape(std::span<float> elevation_m) const {
   return true;
 }
 
-void ReliefFinish::smooth_land(std::span<float> elevation_m) const {
+void SurfaceFinish::smooth_land(std::span<float> elevation_m) const {
   if (p_.land_smoothing_km <= 0.0) return;
   smooth(grid_, elevation_m, 1e3 * p_.land_smoothing_km, land_of(elevation_m));
 }
 
-void ReliefFinish::add_detail(std::span<float> elevation_m) const {
+void SurfaceFinish::add_detail(std::span<float> elevation_m) const {
   if (p_.detail_noise <= 0.0) return;
   const Noise noise(context_.seed, "erosion.detail");
   constexpr float kHigh_m = 5000.0F;

@@ -10,9 +10,9 @@ namespace geo {
 /// What happens to a relief in the end, where it is asked for: smoothing of land, hypsometry,
 /// detail noise (blueprint 4.6 to 4.9a). The sea then takes its level again if any of it moved the
 /// ground. Returns whether it did.
-class ReliefFinish {
+class SurfaceFinish {
  public:
-  ReliefFinish(const ErosionParameters& parameters, const Grid& grid, const Context& context)
+  SurfaceFinish(const ErosionParameters& parameters, const Grid& grid, const Context& context)
       : p_(parameters), grid_(grid), context_(context) {}
   [[nodiscard]] bool reshape(std::span<float> elevation_m) const;
 

@@ -1,4 +1,4 @@
-#include "geo/stages/relief/sea_level.hpp"
+#include "geo/stages/isostasy/sea_level.hpp"
 
 #include <algorithm>
 

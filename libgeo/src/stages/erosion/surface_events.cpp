@@ -1,4 +1,4 @@
-#include "relief_events.hpp"
+#include "surface_events.hpp"
 
 #include <fmt/format.h>
 
@@ -122,12 +122,12 @@ class RiftCourse {
 
 }  // namespace
 
-std::int64_t ReliefEvents::step_of(double age_yr) const {
+std::int64_t SurfaceEvents::step_of(double age_yr) const {
   const double back = std::round(age_yr / time_step_yr_);
   return back >= static_cast<double>(steps_) ? 0 : steps_ - static_cast<std::int64_t>(back);
 }
 
-bool ReliefEvents::strike(std::int64_t step, std::span<float> elevation_m) {
+bool SurfaceEvents::strike(std::int64_t step, std::span<float> elevation_m) {
   bool any = false;
   for (std::size_t i = 0; i < context_.events.size(); ++i) {
     const Event& event = context_.events[i];
@@ -156,8 +156,8 @@ bool ReliefEvents::strike(std::int64_t step, std::span<float> elevation_m) {
 
 /// Mean height of the cells whose centres lie within a circle, or of the one that its centre lies
 /// in.
-double ReliefEvents::mean_within_m(std::span<const float> elevation_m, const Centre& centre,
-                                   double radius_m) const {
+double SurfaceEvents::mean_within_m(std::span<const float> elevation_m, const Centre& centre,
+                                    double radius_m) const {
   const Vector3 middle = unit_vector_of(centre);
   const double planet_m = grid_.figure().radius_m;
   double sum = 0.0, area = 0.0, nearest = 4.0;
@@ -174,8 +174,8 @@ double ReliefEvents::mean_within_m(std::span<const float> elevation_m, const Cen
   return area > 0.0 ? sum / area : at_nearest;
 }
 
-void ReliefEvents::apply(const Impact& impact, const std::string& label, EventRecord& record,
-                         std::span<float> elevation_m) {
+void SurfaceEvents::apply(const Impact& impact, const std::string& label, EventRecord& record,
+                          std::span<float> elevation_m) {
   constexpr double kThinnest_m = 1e-3;  // of the ejecta that are still laid down
   const Centre place{impact.latitude_deg, impact.longitude_deg};
   ImpactScene scene{.diameter_m = 1e3 * impact.diameter_km,
@@ -227,8 +227,8 @@ void ReliefEvents::apply(const Impact& impact, const std::string& label, EventRe
                     {"central_uplift_m", crater.uplift_m}};
 }
 
-void ReliefEvents::apply(const Rift& rift, const std::string& /*label*/, EventRecord& record,
-                         std::span<float> elevation_m) {
+void SurfaceEvents::apply(const Rift& rift, const std::string& /*label*/, EventRecord& record,
+                          std::span<float> elevation_m) {
   const RiftSection section{.half_width_m = 500.0 * rift.width_km,
                             .depth_m = rift.depth_m,
                             .shoulder_m = rift.shoulder_m,
@@ -273,8 +273,8 @@ void ReliefEvents::apply(const Rift& rift, const std::string& /*label*/, EventRe
   record.path = rift.path;
 }
 
-void ReliefEvents::apply(const OceanShift& shift, const std::string& label, EventRecord& record,
-                         std::span<float> elevation_m) {
+void SurfaceEvents::apply(const OceanShift& shift, const std::string& label, EventRecord& record,
+                          std::span<float> elevation_m) {
   const double before_m3 = water_m3(grid_, elevation_m);
   double rise_m = shift.rise_m;
   if (shift.water_km3 != 0.0) {
