@@ -12,7 +12,7 @@
 
 namespace terrane {
 
-/// Where the values of a run's parameters come from. Later ones win: preset, file, relief,
+/// Where the values of a run's parameters come from. Later ones win: preset, file, DEM,
 /// assignments, then what is named on its own. Empty: not given.
 struct ConfigurationSources {
   std::string preset;                    ///< name of a built-in configuration

@@ -64,27 +64,28 @@ void Objective::for_seeds(Work&& work) {
   for (const ParallelErrors& of_seed : errors) of_seed.rethrow();
 }
 
-void Objective::hold(std::size_t s, const PlanetSurface<double>& relief) {
+void Objective::hold(std::size_t s, const PlanetSurface<double>& surface) {
   const Grid& grid = planets_[s]->grid();
   const Target& target = problem_.target;
   Held& held = held_[s];
   held = {};
-  held.elevation.emplace(grid, relief.elevation_m);
+  held.elevation.emplace(grid, surface.elevation_m);
   for (std::size_t k = 0; k < target.share.size(); ++k) {
     held.windows.push_back(held.elevation->window(target.share[k], half_width(target.share, k)));
     held.quantile.push_back(held.elevation->quantile(target.share[k]));
     held.mean.push_back(
-        held.elevation->mean(held.windows[k], std::span<const double>(relief.elevation_m)));
+        held.elevation->mean(held.windows[k], std::span<const double>(surface.elevation_m)));
   }
   constexpr double kHalfWidth = 0.005;
   for (const Term& term : problem_.terms) {
     Held::OfTerm of;
     if (term.kind == Term::Kind::land_fraction) {
       const double sea =
-          area_sum<double>(grid, [&](Index c) { return relief.elevation_m[c] < 0.0 ? 1.0 : 0.0; }) /
+          area_sum<double>(grid,
+                           [&](Index c) { return surface.elevation_m[c] < 0.0 ? 1.0 : 0.0; }) /
           grid.total_area_m2();
       of.window = held.elevation->window(sea, kHalfWidth);
-      of.mean = held.elevation->mean(of.window, std::span<const double>(relief.elevation_m));
+      of.mean = held.elevation->mean(of.window, std::span<const double>(surface.elevation_m));
       of.value = 1.0 - sea;
       of.rate = held.elevation->density(sea, kHalfWidth);
     } else if (term.kind == Term::Kind::crust_thickness) {
@@ -92,10 +93,10 @@ void Objective::hold(std::size_t s, const PlanetSurface<double>& relief) {
         std::vector<std::uint8_t> continental(grid.size());
         const auto fraction = planets_[s]->continental_fraction();
         for (Index c = 0; c < grid.size(); ++c) continental[c] = fraction[c] >= 0.5F;
-        held.thickness.emplace(grid, relief.thickness_m, continental);
+        held.thickness.emplace(grid, surface.thickness_m, continental);
       }
       of.window = held.thickness->window(term.share, kHalfWidth);
-      of.mean = held.thickness->mean(of.window, std::span<const double>(relief.thickness_m));
+      of.mean = held.thickness->mean(of.window, std::span<const double>(surface.thickness_m));
       of.value = held.thickness->quantile(term.share);
     } else if (term.kind == Term::Kind::concavity && !planets_[s]->held().drainage.empty()) {
       constexpr double kCells = 10.0;  // that drain through a channel at least
@@ -104,7 +105,7 @@ void Objective::hold(std::size_t s, const PlanetSurface<double>& relief) {
         const Index to = drainage.graph.receiver[c];
         if (planets_[s]->held().outlets[c] != 0 || to == c) continue;
         if (drainage.area_m2[c] < kCells * grid.area_m2(grid.ny() / 2)) continue;
-        if (relief.elevation_m[c] - relief.elevation_m[to] > 1e-3) held.channels.push_back(c);
+        if (surface.elevation_m[c] - surface.elevation_m[to] > 1e-3) held.channels.push_back(c);
       }
     }
     held.terms.push_back(of);
@@ -136,9 +137,9 @@ V Objective::concavity(std::size_t s, const std::vector<V>& elevation_m) const {
 }
 
 template <class V>
-std::vector<V> Objective::statistics_of(std::size_t s, const PlanetSurface<V>& relief) const {
+std::vector<V> Objective::statistics_of(std::size_t s, const PlanetSurface<V>& surface) const {
   const Held& held = held_[s];
-  const std::span<const V> elevation_m(relief.elevation_m), thickness_m(relief.thickness_m);
+  const std::span<const V> elevation_m(surface.elevation_m), thickness_m(surface.thickness_m);
   std::vector<V> all;
   all.reserve(problem_.statistics());
   for (std::size_t k = 0; k < held.windows.size(); ++k) {
@@ -153,13 +154,13 @@ std::vector<V> Objective::statistics_of(std::size_t s, const PlanetSurface<V>& r
                       of.rate * (held.elevation->mean(of.window, elevation_m) - of.mean));
         break;
       case Term::Kind::water_volume:
-        all.push_back(1e-9 * relief.water_m3);
+        all.push_back(1e-9 * surface.water_m3);
         break;
       case Term::Kind::erosion_rate:
-        all.push_back(1e3 * relief.erosion_rate_m_yr);
+        all.push_back(1e3 * surface.erosion_rate_m_yr);
         break;
       case Term::Kind::concavity:
-        all.push_back(concavity(s, relief.elevation_m));
+        all.push_back(concavity(s, surface.elevation_m));
         break;
       case Term::Kind::crust_thickness:
         all.push_back(1e-3 * (of.value + (held.thickness->mean(of.window, thickness_m) - of.mean)));
@@ -235,9 +236,9 @@ Eigen::VectorXd Objective::evaluate(const Eigen::VectorXd& x) {
   statistics_.assign(planets_.size(), {});
   fine_bins_.assign(planets_.size(), {});
   for_seeds([&](std::size_t s) {
-    const PlanetSurface<double> relief = planets_[s]->reroute(problem_.model);
-    hold(s, relief);
-    statistics_[s] = statistics_of(s, relief);
+    const PlanetSurface<double> surface = planets_[s]->reroute(problem_.model);
+    hold(s, surface);
+    statistics_[s] = statistics_of(s, surface);
     fine_bins_[s] = held_[s].elevation->bin_means(kFineBins);
   });
   ++forward_runs_;

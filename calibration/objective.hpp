@@ -113,10 +113,10 @@ class Objective {
   };
   template <class Work>
   void for_seeds(Work&& work);
-  void hold(std::size_t seed, const PlanetSurface<double>& relief);
+  void hold(std::size_t seed, const PlanetSurface<double>& surface);
   template <class V>
   [[nodiscard]] std::vector<V> statistics_of(std::size_t seed,
-                                             const PlanetSurface<V>& relief) const;
+                                             const PlanetSurface<V>& surface) const;
   template <class V>
   [[nodiscard]] V concavity(std::size_t seed, const std::vector<V>& elevation_m) const;
   [[nodiscard]] Eigen::VectorXd residuals_of(const std::vector<std::vector<double>>& statistics,

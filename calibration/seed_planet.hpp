@@ -74,14 +74,14 @@ struct Ground {
         weakness(cells),
         density(cells),
         thickening(cells, V(0.0)) {
-    relief.elevation_m.resize(cells);
-    relief.thickness_m.resize(cells);
+    surface.elevation_m.resize(cells);
+    surface.thickness_m.resize(cells);
   }
-  PlanetSurface<V> relief;
+  PlanetSurface<V> surface;
   std::vector<V> convergent, divergent, transform, weakness, density, thickening;
 };
 
-/// Plates of one seed, and the relief that isostasy and erosion make of them.
+/// Plates of one seed, and the surface that isostasy and erosion make of them.
 class SeedPlanet {
  public:
   /// Grows the plates, with the settings of the configuration. `sea_in_gap`: the sea stands between
@@ -96,11 +96,11 @@ class SeedPlanet {
   }
   [[nodiscard]] const FrozenDrainage& held() const { return held_; }
 
-  /// The relief with everything rerouted, which is then frozen.
+  /// The surface with everything rerouted, which is then frozen.
   [[nodiscard]] PlanetSurface<double> reroute(const Model& model) {
     return evaluate<double>(model, {}, /*routes=*/true);
   }
-  /// The relief with all frozen as `reroute` left it: a smooth function of the parameters. V is
+  /// The surface with all frozen as `reroute` left it: a smooth function of the parameters. V is
   /// double, a dual number, or std::complex<double>.
   template <class V>
   [[nodiscard]] PlanetSurface<V> with_frozen_drainage(const Model& model,
@@ -119,7 +119,7 @@ class SeedPlanet {
   /// The erodibility of rock, to be held.
   template <class V>
   void freeze_rock(const Model& model, const Ground<V>& ground);
-  /// Cells that straits drown in a relief, to be held, and the relief with them.
+  /// Cells that straits drown in a surface, to be held, and the surface with them.
   std::vector<float> find_straits(const ErosionParameters& p, const std::vector<float>& before,
                                   FrozenDrainage::Straits& straits) const;
   template <class V>
@@ -132,7 +132,7 @@ class SeedPlanet {
   /// Rates and volumes over land and sea.
   template <class V>
   void sum_up(const ErosionParameters& p, const ActiveVariables<V>& active,
-              const Landscape<V>& landscape, PlanetSurface<V>& relief) const;
+              const Landscape<V>& landscape, PlanetSurface<V>& surface) const;
   template <class V>
   static std::vector<float> as_floats(std::span<const V> field) {
     std::vector<float> values(field.size());
@@ -196,18 +196,18 @@ void SeedPlanet::float_crust(const Model& model, const ActiveVariables<V>& activ
                        .divergent = ground.divergent,
                        .transform = ground.transform,
                        .weakness = ground.weakness,
-                       .thickness_m = ground.relief.thickness_m,
+                       .thickness_m = ground.surface.thickness_m,
                        .density = ground.density,
                        .rock = {},
                        .erodibility = {},
-                       .elevation_m = ground.relief.elevation_m,
+                       .elevation_m = ground.surface.elevation_m,
                        .thickening_m_yr = ground.thickening,
                        .run_myr = growth_of_belts_myr<V>(model.erosion, active),
                        .active = active,
                        .noise = &noise_};
   if (routes) hold_frame(model.isostasy, in);
   float_margins_crust(crust, coarse_, *held_.frame);
-  const std::span<V> z(ground.relief.elevation_m);
+  const std::span<V> z(ground.surface.elevation_m);
   if (routes) held_.settles = settles_continents(model.isostasy, model.planet);
   if (held_.settles) {
     for (FrozenDrainage::Settling& at : held_.settlings) {
@@ -278,16 +278,16 @@ void SeedPlanet::wear_along_routes(const ErosionParameters& p, std::span<const V
 
 template <class V>
 void SeedPlanet::sum_up(const ErosionParameters& p, const ActiveVariables<V>& active,
-                        const Landscape<V>& landscape, PlanetSurface<V>& relief) const {
+                        const Landscape<V>& landscape, PlanetSurface<V>& surface) const {
   const Grid& grid = this->grid();
-  const std::span<const V> z(relief.elevation_m);
+  const std::span<const V> z(surface.elevation_m);
   const auto is_land = [&](Index c) { return held_.outlets[c] == 0; };
   const double land_m2 = area_sum<double>(grid, [&](Index c) { return is_land(c) ? 1.0 : 0.0; });
   if (p.steps > 0 && land_m2 > 0.0) {
     const V time_yr = static_cast<double>(p.steps) * active(p.time_step_yr);
-    relief.erosion_rate_m_yr = landscape.rock().eroded / (land_m2 * time_yr);
+    surface.erosion_rate_m_yr = landscape.rock().eroded / (land_m2 * time_yr);
   }
-  relief.water_m3 = area_sum<V>(grid, [&](Index c) { return is_land(c) ? V(0.0) : V(-z[c]); });
+  surface.water_m3 = area_sum<V>(grid, [&](Index c) { return is_land(c) ? V(0.0) : V(-z[c]); });
 }
 
 template <class V>
@@ -297,7 +297,7 @@ PlanetSurface<V> SeedPlanet::evaluate(const Model& model, const ActiveVariables<
   const ErosionParameters& p = model.erosion;
   Ground<V> ground(static_cast<std::size_t>(grid.size()));
   float_crust<V>(model, active, routes, ground);
-  const std::span<V> z(ground.relief.elevation_m);
+  const std::span<V> z(ground.surface.elevation_m);
   double sea_share = 0.0;
   if (routes) {
     freeze_rock<V>(model, ground);
@@ -329,8 +329,8 @@ PlanetSurface<V> SeedPlanet::evaluate(const Model& model, const ActiveVariables<
         p.steps > 0 ? moved_sea_level_m(p, grid, as_floats<V>(z), sea_share) : 0.0F;
   }
   for (V& height_m : z) height_m -= V(held_.late_level_m);
-  sum_up<V>(p, active, landscape, ground.relief);
-  return std::move(ground.relief);
+  sum_up<V>(p, active, landscape, ground.surface);
+  return std::move(ground.surface);
 }
 
 }  // namespace geo::calibration

@@ -39,15 +39,15 @@ struct Accuracy {
 };
 
 /// Reads a target: "earth" (ETOPO5), "earth-statistical" (two normal distributions), a CSV file, or
-/// FILE.nc[:VARIABLE], any relief that `terrane run --dem` reads, of any planet.
+/// FILE.nc[:VARIABLE], any elevation model that `terrane run --dem` reads, of any planet.
 /// A CSV file (geo/io/table.hpp) has one of these headers:
 ///   quantile,elevation_m            shares strictly ascending within [0, 1]; elevations must not
 ///                                   fall; all rows are matched, and nothing beyond them
 ///   quantile,elevation_m,sigma_m    the same with the error of each, to which it is matched
 ///   lower_m,upper_m,fraction        bins side by side, upwards; fractions sum to 1
-/// A relief is averaged onto `grid` by area when it is finer and covers the sphere, so that both
-/// distributions are of cells of the same size. Other targets than rows of quantiles are matched
-/// at the middles of `bins` equal parts of the area; extremes (0 and 1) are never.
+/// An elevation model is averaged onto `grid` by area when it is finer and covers the sphere, so
+/// that both distributions are of cells of the same size. Other targets than rows of quantiles are
+/// matched at the middles of `bins` equal parts of the area; extremes (0 and 1) are never.
 /// Deviations and errors are those of `accuracy` for every kind of target but a table with sigma_m.
 /// Throws InputError that names file and line, IoError.
 Target read_target(const std::string& name_or_file, const Planet& planet, const Grid& grid,

@@ -247,7 +247,7 @@ class Sweep {
       jobs_.push_back(job);
       return;
     }
-    // A run that ends before there is a relief has nothing to be scored.
+    // A run that ends before there is an elevation has nothing to be scored.
     finish(job, job.step == Job::Step::run ? end.exit_code : 0);
   }
 

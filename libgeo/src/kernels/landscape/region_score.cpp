@@ -30,7 +30,8 @@ Reach reach_at(const Grid& planet, int row, double width_m, double height_m) {
               std::lround(std::clamp(rows, 0.0, static_cast<double>((planet.ny() - 1) / 2))))};
 }
 
-/// A window that is chosen by its shores and its relief is looked at with the cells around it.
+/// A window that is chosen by its shores and its local relief is looked at with the cells around
+/// it.
 Reach with_surroundings(const Reach& reach) {
   return {std::max(1, reach.columns), std::max(1, reach.rows)};
 }

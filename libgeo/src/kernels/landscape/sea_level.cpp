@@ -54,7 +54,7 @@ double sea_level_for_volume(const Grid& grid, std::span<const float> elevation_m
     throw InputError("sea level: a water volume of " + std::to_string(volume_m3) +
                      " m3 is not positive and finite");
   }
-  // Water over a relief that is nowhere dry would stand here; over any other it stands lower.
+  // Water over a surface that is nowhere dry would stand here; over any other it stands lower.
   double level_m = mean_m(grid, elevation_m) + volume_m3 / grid.total_area_m2();
   if (!std::isfinite(level_m)) throw InputError("sea level: an elevation is not finite");
   for (int step = 0; step < 200; ++step) {

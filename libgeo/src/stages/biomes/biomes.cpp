@@ -48,7 +48,7 @@ class Treeline {
       return nearest_biome(temperature_c, precipitation_mm, among.without(Biome::tundra));
     }
     // Treeless by height where what stands above the foothills cools by more than the sea level
-    // there lacks, else by latitude: the border of the two follows the relief, not a parallel.
+    // there lacks, else by latitude: the border of the two follows the terrain, not a parallel.
     const double at_sea_level_c = temperature_c + std::max(elevation_m, 0.0) * lapse_k_m_;
     const double lacking_k = std::max(0.0, treeline_deficit_k(at_sea_level_c, range_k));
     if (lacking_k > 0.0 && climate.warmest_c < 0.0) return Biome::tundra;  // or the ice on it

@@ -7,7 +7,7 @@
 
 namespace geo {
 
-/// What happens to a relief in the end, where it is asked for: smoothing of land, hypsometry,
+/// What happens to a surface in the end, where it is asked for: smoothing of land, hypsometry,
 /// detail noise (blueprint 4.6 to 4.9a). The sea then takes its level again if any of it moved the
 /// ground. Returns whether it did.
 class SurfaceFinish {

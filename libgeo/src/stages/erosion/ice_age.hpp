@@ -24,10 +24,10 @@ class IceAge {
 
   /// How much of a step that ends `before_today_yr` ago belongs to the ice, yr.
   [[nodiscard]] double years_of_step(double before_today_yr) const;
-  /// Lets the ice of `years_yr` work on a relief; see IceWork.
+  /// Lets the ice of `years_yr` work on a surface; see IceWork.
   [[nodiscard]] std::vector<double> work(const LandClimate& climate, double years_yr,
                                          std::span<float> elevation_m);
-  /// Ice on the land of today, once its relief is finished.
+  /// Ice on the land of today, once its surface is finished.
   void settle_today(const LandClimate& climate, std::span<const float> elevation_m);
 
   /// Of today, m; mean of the cell.

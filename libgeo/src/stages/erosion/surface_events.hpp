@@ -8,7 +8,7 @@
 
 namespace geo {
 
-/// The events of a run that change its relief, each at its time: at the beginning of the erosion
+/// The events of a run that change its surface, each at its time: at the beginning of the erosion
 /// step nearest to its age, or after the last. Each leaves its record with the context.
 class SurfaceEvents {
  public:
@@ -16,7 +16,7 @@ class SurfaceEvents {
   SurfaceEvents(const Grid& grid, Context& context, std::int64_t steps, double time_step_yr)
       : grid_(grid), context_(context), steps_(steps), time_step_yr_(time_step_yr) {}
 
-  /// Lets those that fall before `step` change the relief; `steps` is today. Returns whether any
+  /// Lets those that fall before `step` change the surface; `steps` is today. Returns whether any
   /// did. Throws ConfigurationError when the sea is to lose more water than it holds.
   bool strike(std::int64_t step, std::span<float> elevation_m);
 

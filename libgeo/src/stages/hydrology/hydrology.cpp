@@ -24,7 +24,7 @@ Bytes sea_cells(std::span<const float> z) {
   return sea;
 }
 
-/// Water and ways of a finished relief.
+/// Water and ways of a finished surface.
 struct Drainage {
   DepressionHierarchy hierarchy;
   Lakes lakes;
@@ -44,9 +44,9 @@ Drainage drain(const Grid& grid, std::span<const float> z, const Bytes& outlets,
 }
 
 /// Where water ends: outlets, and the bottoms of the basins that keep theirs before any dam is cut.
-/// Not those behind what a coarse relief has made of a gorge: basins smaller than `least_m2` when
-/// full to their sill, and those that so much water comes to that its valley would be as deep as
-/// the sill is high above the bottom.
+/// Not those behind what a coarse elevation model has made of a gorge: basins smaller than
+/// `least_m2` when full to their sill, and those that so much water comes to that its valley would
+/// be as deep as the sill is high above the bottom.
 Bytes with_closed_basins(const Grid& grid, std::span<const float> z, Bytes outlets,
                          std::span<const double> runoff, std::span<const float> loss,
                          double least_m2) {
@@ -101,7 +101,8 @@ void write_discharge(const Drainage& d, const Bytes& sea, std::span<const double
   }
 }
 
-/// Hollows that ice has scoured are no dams of a coarse relief: their pits keep their sills.
+/// Hollows that ice has scoured are no dams of a coarse elevation model: their pits keep their
+/// sills.
 Bytes with_scoured_basins(const Grid& grid, std::span<const float> z,
                           std::span<const float> scoured_m, Bytes outlets) {
   if (scoured_m.empty()) return outlets;

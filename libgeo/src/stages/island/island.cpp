@@ -16,7 +16,7 @@
 #include "geo/stages/erosion/erosion.hpp"
 #include "geo/stages/hydrology/hydrology.hpp"
 #include "island_climate.hpp"
-#include "island_relief.hpp"
+#include "island_surface.hpp"
 #include "stages/climate/climate_events.hpp"
 #include "stages/isostasy/guided_by_folds.hpp"
 
@@ -97,9 +97,9 @@ class IslandStage final : public Stage {
     const PlanetCells cells(io.grid(), state.grid());
     context.advance(0.1);
     std::vector<float> planets_m(state.grid().size());
-    shape_relief(io, context, cells, planets_m, state);
+    shape_surface(io, context, cells, planets_m, state);
     context.advance(0.6);
-    // What the air and the water do depends on each other's relief: climate before hydrology.
+    // What the air and the water do depends on each other's surface: climate before hydrology.
     make_climate(io, context, cells, planets_m, state);
     context.advance(0.75);
     make_water_and_life(context, state);
@@ -119,7 +119,7 @@ class IslandStage final : public Stage {
 
   [[nodiscard]] bool follows_exemplars() const { return p_.detail == "exemplars"; }
 
-  [[nodiscard]] PlanetRelief relief_of(const StageIo& io) const {
+  [[nodiscard]] PlanetTerrain terrain_of(const StageIo& io) const {
     const auto guide = [&]<class T>(const Field<T>& spec) {
       return follows_exemplars() ? io.read_optional(spec) : std::span<const T>{};
     };
@@ -138,12 +138,12 @@ class IslandStage final : public Stage {
     return std::make_shared<const ExemplarLibrary>(grow_exemplars());
   }
 
-  void shape_relief(const StageIo& io, Context& context, const PlanetCells& cells,
-                    std::span<float> planets_m, State& state) const {
+  void shape_surface(const StageIo& io, Context& context, const PlanetCells& cells,
+                     std::span<float> planets_m, State& state) const {
     ErosionParameters law;
     configure(law.declarations(), context.configuration);
     const Grid& fine = cells.fine();
-    const PlanetRelief planet = relief_of(io);
+    const PlanetTerrain planet = terrain_of(io);
     const auto z = state.update(field::elevation);
     const auto exemplars = exemplars_of(context);
     raise_island(cells, planet, p_, exemplars.get(), context.seed, planets_m, z);

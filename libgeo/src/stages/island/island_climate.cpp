@@ -64,7 +64,7 @@ Grid air_grid(const Grid& fine, double spacing_m) {
   return Grid::plane(nx, ny, width_m / nx, height_m / ny, Edges::open);
 }
 
-/// How much higher the fine relief lifts the air than the interpolated one, m, on the air grid.
+/// How much higher the fine surface lifts the air than the interpolated one, m, on the air grid.
 std::vector<float> extra_lift(const Grid& fine, const ConservativeRemapping& remapping,
                               const IslandHeights& heights, std::span<const float> wind_east,
                               std::span<const float> wind_north, double reach_m) {
@@ -123,7 +123,7 @@ class PlaceLaw {
     return blueprint_temperature_c(model_, at.latitude_deg, at.elevation_m, 1e-3 * at.coast_m,
                                    air_.pressure_bar);
   }
-  /// Precipitation of the place with the interpolated moisture and lift over the planet's relief.
+  /// Precipitation of the place with the interpolated moisture and lift over the planet's surface.
   [[nodiscard]] double precipitation_mm_yr(const Place& at, double moisture_mm_yr, double lift_m,
                                            double lift_height_m) const {
     if (!closed_) return moisture_mm_yr * std::exp(std::clamp(lift_m / lift_height_m, -1.0, 1.0));

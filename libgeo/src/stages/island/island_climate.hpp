@@ -16,7 +16,7 @@ struct ClimateFields {
       wind_north, distance_to_coast, potential_evapotranspiration;
 };
 
-/// The island's relief: the planet's interpolated, and its own.
+/// The island's surface: the planet's interpolated, and its own.
 struct IslandHeights {
   std::span<const float> planet_elevation_m;  ///< on the planet
   std::span<const float> interpolated_m;      ///< on the island
@@ -29,13 +29,13 @@ struct IslandAir {
   double aerosol = 0.0;  ///< as in blueprint_precipitation_mm_yr
 };
 
-/// The planet's climate at the island's true places, adapted to its relief.
+/// The planet's climate at the island's true places, adapted to its surface.
 ///
 /// Temperature: what the run's model makes of a place itself (height by the lapse rate; the
 /// blueprint: latitude, sea and distance to it as well, eqs 5.1-5.3a) is taken off, the rest
 /// interpolated, and the island's own put on.
 /// Precipitation: interpolated, times exp(lift difference / lift height), where lift is that of the
-/// fine relief less that of the interpolated one (`upwind_lift`), so that both join at the edge.
+/// fine surface less that of the interpolated one (`upwind_lift`), so that both join at the edge.
 /// With the blueprint's climate, what wind and relief add (5.5-5.8) is interpolated, with 5.7 of
 /// the lift difference, and eq. 5.10 holds at the island's own heights and distances to the coast.
 /// Potential evapotranspiration: interpolated, in proportion to what the formula of Oudin et al.

@@ -10,7 +10,7 @@ namespace geo {
 /// Declarations of what orders places by height.
 [[nodiscard]] std::vector<Parameter> hypsography_parameters(PlatesParameters& parameters);
 
-/// plates.model = "hypsography": a relief that has a given distribution of heights, by the order
+/// plates.model = "hypsography": a surface that has a given distribution of heights, by the order
 /// that a scalar field gives (tectonics.js), and the crust that belongs to such heights.
 /// One plate that does not move.
 void draw_hypsography(const PlatesParameters& parameters, StageIo& io, Context& context);

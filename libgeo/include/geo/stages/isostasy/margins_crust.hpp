@@ -229,11 +229,11 @@ class Columns {
     const Tectonics<V>& row = along.from_afar;
     const Number tilt_m =
         p_.margin_tilt_m * exp(-static_cast<double>(along.inland_km[i]) / p_.margin_tilt_km);
-    const Number relief_m = p_.land_roughness_m *
-                            (1.0 + kBeltRoughness * at.belt + kRelictRoughness * row.relict[i]) *
-                            at.rough;
+    const Number bumps_m = p_.land_roughness_m *
+                           (1.0 + kBeltRoughness * at.belt + kRelictRoughness * row.relict[i]) *
+                           at.rough;
     const Number on_land_m =
-        kMadeSwell * Number(row.swell_m[i]) - tilt_m + relief_m + kHotLand * at.hot;
+        kMadeSwell * Number(row.swell_m[i]) - tilt_m + bumps_m + kHotLand * at.hot;
     Number at_sea_m(0.0);
     if (at.share < 1.0) {
       at_sea_m = floor_cover_m(i, along, crust_.in.age_myr[cell]) + at.hot - kMeanHeat * p_.heat_m;
@@ -270,12 +270,12 @@ class Columns {
     const Number valley_m = Number(row.divergent[i]) *
                             (-kValley_m * bell(along.rift_km[i], 0.0, kValley_km) +
                              kShoulder_m * bell(along.rift_km[i], kShoulderAway_km, kShoulder_km));
-    const Number relief_m =
+    const Number rise_m =
         p_.land_roughness_m * (1.0 + kBeltRoughness * belt + kRelictRoughness * relict);
     const Number elevation_m =
         balanced(
             datum_.dry_elevation_m(1e3 * thickness_km, density_.continental_crust, lithosphere)) +
-        Number(row.swell_m[i]) + valley_m + relief_m * rough + hot * kHotLand -
+        Number(row.swell_m[i]) + valley_m + rise_m * rough + hot * kHotLand -
         p_.margin_tilt_m * exp(-static_cast<double>(along.inland_km[i]) / p_.margin_tilt_km);
     return {thickness_km, elevation_m};
   }

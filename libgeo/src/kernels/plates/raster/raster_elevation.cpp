@@ -105,36 +105,36 @@ RasterElevation raster_elevation(const RasterTectonics& model, const RasterScale
   const double ocean_crust = model.settings().ocean_crust;
   const RasterMap map = model.map();
   const auto now = static_cast<double>(model.steps());
-  RasterElevation relief;
-  relief.world = world;
-  relief.plate = map.plate;
+  RasterElevation surface;
+  surface.world = world;
+  surface.plate = map.plate;
   const std::size_t n = map.crust.size();
-  for (auto* field : {&relief.height, &relief.elevation_m, &relief.thickness_m, &relief.age_myr,
-                      &relief.orogeny_age_myr}) {
+  for (auto* field : {&surface.height, &surface.elevation_m, &surface.thickness_m, &surface.age_myr,
+                      &surface.orogeny_age_myr}) {
     field->resize(n);
   }
-  relief.orogeny.resize(n);
+  surface.orogeny.resize(n);
   std::vector<std::uint8_t> folded(n), floor(n);
 #pragma omp parallel for schedule(static)
   for (std::size_t k = 0; k < n; ++k) {
     const RasterCrust& crust = map.crust[k];
     const double age = raster_age_myr(now - crust.born, scale);
-    relief.height[k] = crust.height;
-    relief.age_myr[k] = static_cast<float>(age);
-    relief.elevation_m[k] =
+    surface.height[k] = crust.height;
+    surface.age_myr[k] = static_cast<float>(age);
+    surface.elevation_m[k] =
         static_cast<float>(raster_elevation_m(crust.height, age, ocean_crust, scale));
-    relief.thickness_m[k] =
+    surface.thickness_m[k] =
         static_cast<float>(raster_thickness_m(crust.height, ocean_crust, scale));
     const bool land = crust.height >= scale.sea_height;
     const RasterOrogeny orogeny = raster_orogeny(crust, now, scale);
-    relief.orogeny_age_myr[k] = static_cast<float>(orogeny.age_myr);
-    relief.orogeny[k] = static_cast<std::int8_t>(orogeny.type);
+    surface.orogeny_age_myr[k] = static_cast<float>(orogeny.age_myr);
+    surface.orogeny[k] = static_cast<std::int8_t>(orogeny.type);
     folded[k] = orogeny.type == OrogenyType::none ? 0 : 1;
     floor[k] = land ? 0 : 1;
   }
-  along_contours(world, relief.elevation_m, folded, relief.fold_x, relief.fold_y);
-  along_contours(world, relief.age_myr, floor, relief.ridge_x, relief.ridge_y);
-  return relief;
+  along_contours(world, surface.elevation_m, folded, surface.fold_x, surface.fold_y);
+  along_contours(world, surface.age_myr, floor, surface.ridge_x, surface.ridge_y);
+  return surface;
 }
 
 RasterVelocity raster_velocity(const RasterPlate& plate, const RasterWorld& world, double column,

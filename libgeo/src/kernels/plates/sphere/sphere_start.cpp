@@ -40,7 +40,7 @@ class InitialConditions {
   SphereState make() {
     cut_plates();
     draw_continents();
-    draw_relief();
+    draw_elevation();
     return std::move(state_);
   }
 
@@ -208,19 +208,19 @@ class InitialConditions {
   }
 
   /// Low, worn continents; floor that ages away from the borders of its plate.
-  void draw_relief() {
-    if (!start_.elevation_m.empty()) return take_relief();
+  void draw_elevation() {
+    if (!start_.elevation_m.empty()) return take_elevation();
     SphereCrust& crust = state_.crust;
     const std::vector<float> boundary_km = distance_to_boundary_km();
     const Noise noise(seed_, "plates.first_relief");
-    const auto relief =
+    const auto lift =
         fbm_at(noise, mesh_.samples().positions(), settings_.radius_km / 1800.0, 5, 0.5);
     const std::vector<double> kept = shares_kept_at_edges();
     constexpr double kHalfRate_mm_yr = 35.0, kLow_m = 350.0, kAmplitude_m = 900.0;
 #pragma omp parallel for schedule(static)
     for (std::int32_t i = 0; i < mesh_.size(); ++i) {
       if (crust.continental[i] != 0) {
-        const double lift_m = std::max(10.0, kLow_m + kAmplitude_m * relief[i]);
+        const double lift_m = std::max(10.0, kLow_m + kAmplitude_m * lift[i]);
         const double whole_m = 1e3 * start_.continental_km + settings_.rebound * (lift_m - kLow_m);
         const double lost_m = (1.0 - kept[i]) * whole_m;
         crust.elevation_m[i] =
@@ -242,8 +242,8 @@ class InitialConditions {
     }
   }
 
-  /// A relief that was given, and the crust under it.
-  void take_relief() {
+  /// An elevation that was given, and the crust under it.
+  void take_elevation() {
     SphereCrust& crust = state_.crust;
     constexpr float kNotFolded_myr = 1000.0F;
 #pragma omp parallel for schedule(static)

@@ -18,11 +18,11 @@ struct Contact {
 class TorusBoundaries {
  public:
   TorusBoundaries(const PlatesParameters& p, const RasterTectonics& model,
-                  const RasterElevation& relief, const RasterScale& scale)
-      : p_(p), model_(model), relief_(relief), mm_yr_(scale.cell_km / scale.step_myr) {
+                  const RasterElevation& surface, const RasterScale& scale)
+      : p_(p), model_(model), surface_(surface), mm_yr_(scale.cell_km / scale.step_myr) {
     reach_ = std::max(2, static_cast<int>(std::lround(p.boundary_smoothing_km / scale.cell_km)));
-    contact_.resize(relief.plate.size());
-    const RasterWorld& world = relief.world;
+    contact_.resize(surface.plate.size());
+    const RasterWorld& world = surface.world;
 #pragma omp parallel for schedule(static)
     for (int j = 0; j < world.rows; ++j) {
       for (int i = 0; i < world.columns; ++i) find(i, j);
@@ -35,20 +35,20 @@ class TorusBoundaries {
 
  private:
   [[nodiscard]] std::size_t cell(int i, int j) const {
-    const RasterWorld& world = relief_.world;
+    const RasterWorld& world = surface_.world;
     return static_cast<std::size_t>(world.row(j)) * world.columns + world.column(i);
   }
   void find(int i, int j) {
-    const std::int16_t own = relief_.plate[cell(i, j)];
+    const std::int16_t own = surface_.plate[cell(i, j)];
     std::int16_t other = own;
     for (int k = 1; k < kDirections && other == own; k += 2) {
-      other = relief_.plate[cell(i + kColumnStep[k - 1], j + kRowStep[k - 1])];
+      other = surface_.plate[cell(i + kColumnStep[k - 1], j + kRowStep[k - 1])];
     }
     if (other == own) return;
     Vector3 towards{};
     for (int dy = -reach_; dy <= reach_; ++dy) {
       for (int dx = -reach_; dx <= reach_; ++dx) {
-        const std::int16_t plate = relief_.plate[cell(i + dx, j + dy)];
+        const std::int16_t plate = surface_.plate[cell(i + dx, j + dy)];
         const double side = plate == other ? 1.0 : plate == own ? -1.0 : 0.0;
         towards = add(towards, {static_cast<double>(dx), static_cast<double>(dy), 0.0}, side);
       }
@@ -56,7 +56,7 @@ class TorusBoundaries {
     towards = normalised(towards);
     const auto velocity = [&](std::int16_t plate) {
       const RasterVelocity v =
-          raster_velocity(model_.plates()[plate], relief_.world, i + 0.5, j + 0.5);
+          raster_velocity(model_.plates()[plate], surface_.world, i + 0.5, j + 0.5);
       return Vector3{mm_yr_ * v.x, mm_yr_ * v.y, 0.0};
     };
     const RelativeMotion motion =
@@ -70,7 +70,7 @@ class TorusBoundaries {
 
   const PlatesParameters& p_;
   const RasterTectonics& model_;
-  const RasterElevation& relief_;
+  const RasterElevation& surface_;
   double mm_yr_;
   int reach_ = 2;
   std::vector<Contact> contact_;
@@ -84,9 +84,9 @@ void lay_on_torus(const PlatesParameters& parameters, const RasterTectonics& mod
   std::vector<float> heights;
   for (const RasterCrust& crust : model.map().crust) heights.push_back(crust.height);
   fit_scale(std::move(heights), wanted_ocean(context), parameters.raster.median_land_m, scale);
-  const RasterElevation relief = raster_elevation(model, scale);
-  const RasterWorld& world = relief.world;
-  const TorusBoundaries boundaries(parameters, model, relief, scale);
+  const RasterElevation surface = raster_elevation(model, scale);
+  const RasterWorld& world = surface.world;
+  const TorusBoundaries boundaries(parameters, model, surface, scale);
   const auto plate = io.write(field::plate_id);
   const auto fraction = io.write(field::continental_fraction);
   const auto east = io.write(field::plate_velocity_east);
@@ -116,28 +116,28 @@ void lay_on_torus(const PlatesParameters& parameters, const RasterTectonics& mod
         return static_cast<float>(smooth_value(world, values, column, row));
       };
       const RasterVelocity v =
-          raster_velocity(model.plates()[relief.plate[of]], world, column, row);
+          raster_velocity(model.plates()[surface.plate[of]], world, column, row);
       const double mm_yr = scale.cell_km / scale.step_myr;
-      plate[cell] = relief.plate[of];
+      plate[cell] = surface.plate[of];
       east[cell] = static_cast<float>(mm_yr * v.x);
       north[cell] = static_cast<float>(mm_yr * v.y);
       type[cell] = static_cast<std::int8_t>(boundaries.at(of).type);
       strength[cell] = static_cast<float>(boundaries.at(of).strength);
-      const double height = value(relief.height), floor = model.settings().ocean_crust;
+      const double height = value(surface.height), floor = model.settings().ocean_crust;
       elevation[cell] =
-          static_cast<float>(raster_elevation_m(height, value(relief.age_myr), floor, scale));
+          static_cast<float>(raster_elevation_m(height, value(surface.age_myr), floor, scale));
       thickness[cell] = static_cast<float>(raster_thickness_m(height, floor, scale));
       fraction[cell] = static_cast<float>(
           std::clamp((thickness[cell] - 1e3 * scale.oceanic_km) / 15e3, 0.0, 1.0));
       const bool land = fraction[cell] >= 0.5F;
-      orogeny_age[cell] = land ? value(relief.orogeny_age_myr) : 0.0F;
-      age[cell] = land ? orogeny_age[cell] : value(relief.age_myr);
-      orogeny[cell] = land ? relief.orogeny[of] : std::int8_t{0};
+      orogeny_age[cell] = land ? value(surface.orogeny_age_myr) : 0.0F;
+      age[cell] = land ? orogeny_age[cell] : value(surface.age_myr);
+      orogeny[cell] = land ? surface.orogeny[of] : std::int8_t{0};
       heat[cell] = kBackgroundHeat;
-      fold_east[cell] = relief.fold_x[of];
-      fold_north[cell] = relief.fold_y[of];
-      ridge_east[cell] = relief.ridge_x[of];
-      ridge_north[cell] = relief.ridge_y[of];
+      fold_east[cell] = surface.fold_x[of];
+      fold_north[cell] = surface.fold_y[of];
+      ridge_east[cell] = surface.ridge_x[of];
+      ridge_north[cell] = surface.ridge_y[of];
     }
   }
 }

@@ -117,7 +117,7 @@ std::vector<float> means_at_samples(const GivenElevation& given, const std::vect
   return mean;
 }
 
-void take_relief(const SphereMesh& mesh, const Context& context, SphereStart& start) {
+void take_elevation(const SphereMesh& mesh, const Context& context, SphereStart& start) {
   if (!context.initial_elevation) {
     throw InputError(
         "plates: plates.sphere.initial_elevation = given needs fields.initial_elevation, a NetCDF "
@@ -171,7 +171,7 @@ SphereStart sphere_start(const PlatesParameters& parameters, const SphereMesh& m
   if (parameters.initial_elevation == "hypsography") {
     start.elevation_m = hypsographic_heights_m(parameters, io, context, mesh.samples().positions());
   } else if (parameters.initial_elevation == "given") {
-    take_relief(mesh, context, start);
+    take_elevation(mesh, context, start);
   }
   if (parameters.initial_elevation != "given" && context.initial_elevation) {
     context.warnings.push_back(

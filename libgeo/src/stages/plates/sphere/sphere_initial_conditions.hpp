@@ -5,9 +5,9 @@
 
 namespace geo {
 
-/// Where the drift begins: plates and relief drawn from the seed, or those that the context holds.
-/// Warns of given plates that are too small for a sample. Throws InputError when a relief is asked
-/// for and none is there.
+/// Where the drift begins: plates and elevation drawn from the seed, or those that the context
+/// holds. Warns of given plates that are too small for a sample. Throws InputError when an
+/// elevation is asked for and none is there.
 [[nodiscard]] SphereStart sphere_start(const PlatesParameters& parameters, const SphereMesh& mesh,
                                        const StageIo& io, Context& context);
 

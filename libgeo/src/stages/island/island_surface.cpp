@@ -1,4 +1,4 @@
-#include "island_relief.hpp"
+#include "island_surface.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -60,10 +60,11 @@ int octaves_down_to(double cell_m, double wavelength_m) {
                     16);
 }
 
-/// The planet's relief at a place from Catmull-Rom, whose swings make no land between cells of sea,
-/// and no sea between cells of land: where all four cells round the place are on one side of the
-/// level of the sea, the cubic is bent where it has come half-way to that level from the nearest of
-/// them, so that it never gets there. With h the height half-way, h^2 / (2 h - z) joins z smoothly.
+/// The planet's surface at a place from Catmull-Rom, whose swings make no land between cells of
+/// sea, and no sea between cells of land: where all four cells round the place are on one side of
+/// the level of the sea, the cubic is bent where it has come half-way to that level from the
+/// nearest of them, so that it never gets there. With h the height half-way, h^2 / (2 h - z) joins
+/// z smoothly.
 double planet_height_m(const Grid& planet, std::span<const float> elevation_m, Centre place) {
   const CatmullRom cubic(planet, place);
   const double height_m = cubic.of(elevation_m);
@@ -76,7 +77,7 @@ double planet_height_m(const Grid& planet, std::span<const float> elevation_m, C
   return height_m;
 }
 
-/// The planet's relief from Catmull-Rom. Next to a shore, which would follow the sides of the
+/// The planet's surface from Catmull-Rom. Next to a shore, which would follow the sides of the
 /// planet's cells, it is read from a place nearby: bays and headlands shorter than two cells,
 /// with as much land in each.
 void read_planet(const PlanetCells& cells, std::span<const float> planet_elevation_m,
@@ -115,7 +116,7 @@ void read_planet(const PlanetCells& cells, std::span<const float> planet_elevati
 
 /// Unit detail of exemplars. Waves that they do not hold, too long for a piece of them or too short
 /// for their cells, are noise of the same law.
-std::vector<float> exemplary_detail(const PlanetCells& cells, const PlanetRelief& planet,
+std::vector<float> exemplary_detail(const PlanetCells& cells, const PlanetTerrain& planet,
                                     const IslandParameters& p, const DetailLaw& law,
                                     const ExemplarLibrary& library, std::uint64_t seed) {
   const Grid& fine = cells.fine();
@@ -154,9 +155,9 @@ std::vector<float> exemplary_detail(const PlanetCells& cells, const PlanetRelief
 }
 
 /// Makes unit detail on land that of exemplars, and likewise what of it is there near the edge.
-void take_exemplars(const PlanetCells& cells, const PlanetRelief& planet, const IslandParameters& p,
-                    const DetailLaw& law, const ExemplarLibrary& library, std::uint64_t seed,
-                    std::span<const float> planet_m, std::span<float> detail,
+void take_exemplars(const PlanetCells& cells, const PlanetTerrain& planet,
+                    const IslandParameters& p, const DetailLaw& law, const ExemplarLibrary& library,
+                    std::uint64_t seed, std::span<const float> planet_m, std::span<float> detail,
                     std::span<float> near_edge) {
   constexpr double kShallow_m = -200.0;
   const std::vector<float> exemplary = exemplary_detail(cells, planet, p, law, library, seed);
@@ -171,7 +172,7 @@ void take_exemplars(const PlanetCells& cells, const PlanetRelief& planet, const 
 }
 
 /// Detail that continues the planet's roughness, its mean over each planet cell taken out.
-void add_rough_detail(const PlanetCells& cells, const PlanetRelief& planet,
+void add_rough_detail(const PlanetCells& cells, const PlanetTerrain& planet,
                       const IslandParameters& p, const ExemplarLibrary* exemplars,
                       std::uint64_t seed, std::span<const float> planet_m, std::span<float> z) {
   const Grid& fine = cells.fine();
@@ -341,7 +342,7 @@ void add_ways_out(const Grid& fine, std::span<const float> z, std::span<std::uin
   }
 }
 
-void raise_island(const PlanetCells& cells, const PlanetRelief& planet, const IslandParameters& p,
+void raise_island(const PlanetCells& cells, const PlanetTerrain& planet, const IslandParameters& p,
                   const ExemplarLibrary* exemplars, std::uint64_t seed, std::span<float> planet_m,
                   std::span<float> elevation_m) {
   on_cells(cells.fine(), [&](int i, int j, Index c) {
@@ -359,7 +360,7 @@ void raise_island(const PlanetCells& cells, const PlanetRelief& planet, const Is
   if (p.edge_fade) sink_edges(cells.fine(), p, seed, elevation_m);
 }
 
-std::vector<float> island_erodibility(const PlanetCells& cells, const PlanetRelief& planet,
+std::vector<float> island_erodibility(const PlanetCells& cells, const PlanetTerrain& planet,
                                       const IslandParameters& p, const ErosionParameters& law) {
   const bool by_boundary = p.erodibility == "boundary";
   if (by_boundary && planet.boundary_type.empty()) {

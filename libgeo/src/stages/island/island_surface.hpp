@@ -11,8 +11,8 @@
 
 namespace geo {
 
-/// The planet's fields that an island's relief is made from.
-struct PlanetRelief {
+/// The planet's fields that an island's surface is made from.
+struct PlanetTerrain {
   std::span<const float> elevation_m;
   std::span<const std::int8_t> boundary_type;  ///< may be empty
   std::span<const float> erodibility;          ///< may be empty
@@ -25,16 +25,16 @@ struct PlanetRelief {
 /// that follows it.
 void add_ways_out(const Grid& fine, std::span<const float> z, std::span<std::uint8_t> outlets);
 
-/// Interpolated relief with detail, before any erosion.
+/// Interpolated surface with detail, before any erosion.
 /// @param exemplars what detail is made like; null unless `p.detail` asks for it
-/// @param planet_m  out: the interpolated relief alone
-void raise_island(const PlanetCells& cells, const PlanetRelief& planet, const IslandParameters& p,
+/// @param planet_m  out: the interpolated surface alone
+void raise_island(const PlanetCells& cells, const PlanetTerrain& planet, const IslandParameters& p,
                   const ExemplarLibrary* exemplars, std::uint64_t seed, std::span<float> planet_m,
                   std::span<float> elevation_m);
 
 /// Erodibility of each fine cell, or one for all: by boundary as given, else the planet's resolved
 /// for the fine cells by the law of its own erosion.
-std::vector<float> island_erodibility(const PlanetCells& cells, const PlanetRelief& planet,
+std::vector<float> island_erodibility(const PlanetCells& cells, const PlanetTerrain& planet,
                                       const IslandParameters& p, const ErosionParameters& law);
 
 /// What the fine steps start from and what holds them.

@@ -33,7 +33,7 @@ Made planet(int nx, std::uint64_t seed, IsostasyParameters isostasy = {},
   return made;
 }
 
-TEST(PlanetRelief, SeaLevelCanFollowAVolumeOfWater) {
+TEST(PlanetSurface, SeaLevelCanFollowAVolumeOfWater) {
   Planet body;
   body.sea_level = "volume";
   IsostasyParameters p;
@@ -48,7 +48,7 @@ TEST(PlanetRelief, SeaLevelCanFollowAVolumeOfWater) {
   EXPECT_NEAR(volume, 1.334e18, 1e-5 * 1.334e18);
 }
 
-TEST(PlanetRelief, ReliefHasTwoModesAndShelves) {
+TEST(PlanetSurface, ReliefHasTwoModesAndShelves) {
   const Made made = planet(512, 2);
   const auto share = [&](float low, float high) {
     const auto z = made.state.read(field::elevation);
@@ -61,7 +61,7 @@ TEST(PlanetRelief, ReliefHasTwoModesAndShelves) {
 }
 
 // The choice matters for either crust, and stiffness moves no weight of the whole planet.
-TEST(PlanetRelief, EachCompensationMakesAnotherRelief) {
+TEST(PlanetSurface, EachCompensationMakesAnotherRelief) {
   for (const std::string crust : {"margins", "blueprint"}) {
     std::vector<std::vector<float>> reliefs;
     for (const std::string compensation : {"airy-dry", "airy", "flexural"}) {
