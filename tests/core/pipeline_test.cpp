@@ -48,6 +48,40 @@ TestStage::Work fills(const Field<float>& spec, float value) {
   };
 }
 
+TEST(Pipeline, AReleasedFieldLeavesAtOnceUnlessALaterStageReadsIt) {
+  for (const bool is_read_later : {false, true}) {
+    bool is_there = false;
+    const Pipeline pipeline = pipeline_of(
+        stage({.name = "first", .writes = {&field::crust_age}}, fills(field::crust_age, 7.0F)),
+        stage({.name = "second", .reads = {&field::crust_age}, .writes = {&field::elevation}},
+              [&](StageIo& io, Context&) {
+                io.write(field::elevation)[0] = io.read(field::crust_age)[0];
+                io.release(field::crust_age);
+                is_there = !io.read_optional(field::crust_age).empty();
+              }),
+        stage({.name = "third",
+               .reads = is_read_later ? std::vector<const FieldSpec*>{&field::crust_age}
+                                      : std::vector<const FieldSpec*>{&field::elevation},
+               .writes = {&field::slope}},
+              fills(field::slope, 1.0F)));
+    State state = empty_state();
+    Context context;
+    pipeline.run(state, context, 0, 2, {});
+    EXPECT_EQ(is_there, is_read_later);
+  }
+}
+
+TEST(Pipeline, AStageReleasesNothingThatItWritesOrDoesNotDeclare) {
+  const StageInfo info{.name = "made", .reads = {&field::crust_age}, .writes = {&field::elevation}};
+  State state = empty_state();
+  (void)state.update(field::crust_age);
+  StageIo io(state, info);
+  EXPECT_THROW(io.release(field::elevation), Bug);
+  EXPECT_THROW(io.release(field::slope), Bug);
+  io.release(field::crust_age);  // nobody says that it is not wanted
+  EXPECT_TRUE(state.has(field::crust_age));
+}
+
 TEST(Pipeline, DropsAFieldThatALaterStageMakesAnewUnread) {
   // The second stage makes elevation anew and reads the age alone.
   std::vector<std::string> there;

@@ -30,6 +30,14 @@ void StageIo::check_writable(const FieldSpec& spec) const {
   throw Bug(fmt::format("stage {} writes {} without declaring it", info_.name, spec.name));
 }
 
+void StageIo::release(const FieldSpec& spec) {
+  check_readable(spec);
+  if (lists(info_.writes, spec)) {
+    throw Bug(fmt::format("stage {} releases {}, which it writes", info_.name, spec.name));
+  }
+  if (wanted_later_ && !wanted_later_(spec)) state_.erase(spec);
+}
+
 void StageIo::hand_over(State result) {
   for (const FieldSpec* spec : result.present()) {
     if (info_.own_grid && lists(info_.writes, *spec)) continue;
@@ -110,7 +118,7 @@ void Pipeline::run(State& state, Context& context, int first, int last,
     context.tables.clear();
     context.event_records.clear();
     context.advance(0.0);
-    StageIo io(state, info);
+    StageIo io(state, info, [&](const FieldSpec& spec) { return is_read_after(spec, at, last); });
     stages_[at]->run(io, context);
     for (const FieldSpec* spec : info.writes) {
       if (!io.result().has(*spec)) {

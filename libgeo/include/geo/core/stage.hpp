@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "geo/core/checkpoint.hpp"
@@ -113,7 +114,11 @@ struct Context {
 /// A stage's only door to the state. Reading or writing what the stage did not declare throws Bug.
 class StageIo {
  public:
-  StageIo(State& state, const StageInfo& info) : state_(state), info_(info) {}
+  /// `wanted_later`: whether somebody reads the values that a field has now once the stage has run;
+  /// empty: fields stay.
+  StageIo(State& state, const StageInfo& info,
+          std::function<bool(const FieldSpec&)> wanted_later = {})
+      : state_(state), info_(info), wanted_later_(std::move(wanted_later)) {}
 
   [[nodiscard]] const Grid& grid() const noexcept { return state_.grid(); }
 
@@ -134,6 +139,9 @@ class StageIo {
     check_writable(spec);
     return state_.update(spec);
   }
+  /// The stage reads a field no more: it leaves memory at once unless it is wanted later. What
+  /// `read` gave of it ends. Throws Bug where the stage writes it.
+  void release(const FieldSpec& spec);
   /// The result of a stage with a grid of its own. Throws Bug unless it holds exactly the fields
   /// that the stage declared.
   void hand_over(State result);
@@ -146,6 +154,7 @@ class StageIo {
   void check_writable(const FieldSpec& spec) const;
   State& state_;
   const StageInfo& info_;
+  std::function<bool(const FieldSpec&)> wanted_later_;
   std::optional<State> handed_over_;
 };
 

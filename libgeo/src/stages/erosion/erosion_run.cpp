@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
 #include "climate_of_land.hpp"
 #include "finish_surface.hpp"
@@ -84,6 +85,14 @@ ErosionRun::ErosionRun(const ErosionParameters& parameters, StageIo& io, Context
       scoured_m_(unscoured(p_, io)),
       sea_share_(share_of_sea(grid_, elevation_m_)) {
   if (p_.freezes() && follows_rain_) ice_.emplace(p_, grid_, context.planet);
+  // What rates and resistance were made from is needed no more.
+  for (const FieldSpec* spec : std::initializer_list<const FieldSpec*>{
+           &field::erodibility, &field::boundary_type, &field::boundary_strength,
+           &field::convergent_deformation, &field::divergent_deformation,
+           &field::transform_deformation}) {
+    io.release(*spec);
+  }
+  if (thickening_m_yr_.empty()) io.release(field::thickening_rate);
 }
 
 /// Changes elevation at will; land and sea are then told apart again.
