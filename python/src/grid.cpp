@@ -51,12 +51,10 @@ py::array_t<double> over(const Grid& grid, const Function& value) {
   return array_on(grid, std::move(values));
 }
 
-}  // namespace
+using GridClass = py::class_<Grid, std::shared_ptr<Grid>>;
 
-void add_grid(py::module_& module) {
-  py::class_<Grid, std::shared_ptr<Grid>>(module, "Grid",
-                                          "Cell-centred raster; row 0 is the southernmost.")
-      .def_static(
+void add_topologies(GridClass& grid) {
+  grid.def_static(
           "sphere",
           [](int nx, int ny, double radius_m, double flattening) {
             return std::make_shared<Grid>(Grid::sphere(nx, ny, {radius_m, flattening}));
@@ -76,8 +74,11 @@ void add_grid(py::module_& module) {
             return std::make_shared<Grid>(Grid::torus(nx, ny, dx_m, dy_m));
           },
           py::arg("nx"), py::arg("ny"), py::arg("dx_m"), py::arg("dy_m"),
-          "A flat rectangle whose opposite edges meet.")
-      .def_property_readonly("nx", &Grid::nx)
+          "A flat rectangle whose opposite edges meet.");
+}
+
+void add_figures(GridClass& grid) {
+  grid.def_property_readonly("nx", &Grid::nx)
       .def_property_readonly("ny", &Grid::ny)
       .def_property_readonly("shape", [](const Grid& g) { return py::make_tuple(g.ny(), g.nx()); })
       .def_property_readonly("topology", &topology_of)
@@ -92,12 +93,13 @@ void add_grid(py::module_& module) {
                                return py::make_tuple(g.centre()->latitude_deg,
                                                      g.centre()->longitude_deg);
                              })
-      .def_property_readonly("cell_size_m",
-                             [](const Grid& g) {
-                               return py::make_tuple(g.spacing_east_m(g.ny() / 2),
-                                                     g.step_north_m());
-                             })
-      .def_property_readonly(
+      .def_property_readonly("cell_size_m", [](const Grid& g) {
+        return py::make_tuple(g.spacing_east_m(g.ny() / 2), g.step_north_m());
+      });
+}
+
+void add_arrays(GridClass& grid) {
+  grid.def_property_readonly(
           "row_area_m2",
           [](const Grid& g) { return along(g.ny(), [&](int j) { return g.area_m2(j); }); },
           "Area of each cell of a row, m2.")
@@ -124,6 +126,15 @@ void add_grid(py::module_& module) {
       .def("__repr__", [](const Grid& g) {
         return fmt::format("<Grid {} of {} x {} cells>", topology_of(g), g.nx(), g.ny());
       });
+}
+
+}  // namespace
+
+void add_grid(py::module_& module) {
+  GridClass grid(module, "Grid", "Cell-centred raster; row 0 is the southernmost.");
+  add_topologies(grid);
+  add_figures(grid);
+  add_arrays(grid);
 }
 
 }  // namespace terrane::python

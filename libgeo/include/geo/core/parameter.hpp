@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
 #include <limits>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -67,6 +69,17 @@ Parameter text(std::string_view name, std::string& member, std::string_view doc,
 /// Entries with commas between; in TOML an array of them.
 Parameter list(std::string_view name, std::string& member, std::string_view doc,
                std::string_view source);
+
+/// The rows of several tables of one struct, in their order.
+template <class Settings>
+std::vector<Parameter> joined(Settings& settings,
+                              std::initializer_list<std::vector<Parameter> (*)(Settings&)> tables) {
+  std::vector<Parameter> all;
+  for (const auto& table : tables) {
+    for (Parameter& row : table(settings)) all.push_back(std::move(row));
+  }
+  return all;
+}
 
 /// A value as TOML writes it; real numbers keep every bit.
 std::string to_toml(const ParameterValue& value);

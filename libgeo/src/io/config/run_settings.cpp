@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <charconv>
-#include <iterator>
 #include <limits>
 
 #include "geo/core/error.hpp"
@@ -145,11 +143,7 @@ std::vector<Parameter> output_rows(RunSettings& s) {
 }  // namespace
 
 std::vector<Parameter> RunSettings::parameters() {
-  std::vector<Parameter> all;
-  for (const auto rows : {run_rows, dem_rows, fields_rows, output_rows}) {
-    std::ranges::move(rows(*this), std::back_inserter(all));
-  }
-  return all;
+  return joined(*this, {run_rows, dem_rows, fields_rows, output_rows});
 }
 
 MapView RunSettings::map_view() const {

@@ -76,6 +76,32 @@ class TorusBoundaries {
   std::vector<Contact> contact_;
 };
 
+/// The fields that plates and their crust are told by.
+struct PlateFields {
+  explicit PlateFields(StageIo& io)
+      : plate(io.write(field::plate_id)),
+        type(io.write(field::boundary_type)),
+        orogeny(io.write(field::orogeny_type)),
+        fraction(io.write(field::continental_fraction)),
+        east(io.write(field::plate_velocity_east)),
+        north(io.write(field::plate_velocity_north)),
+        strength(io.write(field::boundary_strength)),
+        age(io.write(field::crust_age)),
+        heat(io.write(field::heat_anomaly)),
+        elevation(io.write(field::crust_elevation)),
+        thickness(io.write(field::crust_thickness)),
+        orogeny_age(io.write(field::orogeny_age)),
+        fold_east(io.write(field::fold_direction_east)),
+        fold_north(io.write(field::fold_direction_north)),
+        ridge_east(io.write(field::ridge_direction_east)),
+        ridge_north(io.write(field::ridge_direction_north)) {}
+
+  std::span<std::int16_t> plate;
+  std::span<std::int8_t> type, orogeny;
+  std::span<float> fraction, east, north, strength, age, heat, elevation, thickness, orogeny_age,
+      fold_east, fold_north, ridge_east, ridge_north;
+};
+
 }  // namespace
 
 void lay_on_torus(const PlatesParameters& parameters, const RasterTectonics& model,
@@ -87,22 +113,7 @@ void lay_on_torus(const PlatesParameters& parameters, const RasterTectonics& mod
   const RasterElevation surface = raster_elevation(model, scale);
   const RasterWorld& world = surface.world;
   const TorusBoundaries boundaries(parameters, model, surface, scale);
-  const auto plate = io.write(field::plate_id);
-  const auto fraction = io.write(field::continental_fraction);
-  const auto east = io.write(field::plate_velocity_east);
-  const auto north = io.write(field::plate_velocity_north);
-  const auto type = io.write(field::boundary_type);
-  const auto strength = io.write(field::boundary_strength);
-  const auto age = io.write(field::crust_age);
-  const auto orogeny = io.write(field::orogeny_type);
-  const auto heat = io.write(field::heat_anomaly);
-  const auto elevation = io.write(field::crust_elevation);
-  const auto thickness = io.write(field::crust_thickness);
-  const auto orogeny_age = io.write(field::orogeny_age);
-  const auto fold_east = io.write(field::fold_direction_east);
-  const auto fold_north = io.write(field::fold_direction_north);
-  const auto ridge_east = io.write(field::ridge_direction_east);
-  const auto ridge_north = io.write(field::ridge_direction_north);
+  const PlateFields f(io);
   constexpr float kBackgroundHeat = 0.2F;
 #pragma omp parallel for schedule(static)
   for (int j = 0; j < grid.ny(); ++j) {
@@ -118,26 +129,26 @@ void lay_on_torus(const PlatesParameters& parameters, const RasterTectonics& mod
       const RasterVelocity v =
           raster_velocity(model.plates()[surface.plate[of]], world, column, row);
       const double mm_yr = scale.cell_km / scale.step_myr;
-      plate[cell] = surface.plate[of];
-      east[cell] = static_cast<float>(mm_yr * v.x);
-      north[cell] = static_cast<float>(mm_yr * v.y);
-      type[cell] = static_cast<std::int8_t>(boundaries.at(of).type);
-      strength[cell] = static_cast<float>(boundaries.at(of).strength);
+      f.plate[cell] = surface.plate[of];
+      f.east[cell] = static_cast<float>(mm_yr * v.x);
+      f.north[cell] = static_cast<float>(mm_yr * v.y);
+      f.type[cell] = static_cast<std::int8_t>(boundaries.at(of).type);
+      f.strength[cell] = static_cast<float>(boundaries.at(of).strength);
       const double height = value(surface.height), floor = model.settings().ocean_crust;
-      elevation[cell] =
+      f.elevation[cell] =
           static_cast<float>(raster_elevation_m(height, value(surface.age_myr), floor, scale));
-      thickness[cell] = static_cast<float>(raster_thickness_m(height, floor, scale));
-      fraction[cell] = static_cast<float>(
-          std::clamp((thickness[cell] - 1e3 * scale.oceanic_km) / 15e3, 0.0, 1.0));
-      const bool land = fraction[cell] >= 0.5F;
-      orogeny_age[cell] = land ? value(surface.orogeny_age_myr) : 0.0F;
-      age[cell] = land ? orogeny_age[cell] : value(surface.age_myr);
-      orogeny[cell] = land ? surface.orogeny[of] : std::int8_t{0};
-      heat[cell] = kBackgroundHeat;
-      fold_east[cell] = surface.fold_x[of];
-      fold_north[cell] = surface.fold_y[of];
-      ridge_east[cell] = surface.ridge_x[of];
-      ridge_north[cell] = surface.ridge_y[of];
+      f.thickness[cell] = static_cast<float>(raster_thickness_m(height, floor, scale));
+      f.fraction[cell] = static_cast<float>(
+          std::clamp((f.thickness[cell] - 1e3 * scale.oceanic_km) / 15e3, 0.0, 1.0));
+      const bool land = f.fraction[cell] >= 0.5F;
+      f.orogeny_age[cell] = land ? value(surface.orogeny_age_myr) : 0.0F;
+      f.age[cell] = land ? f.orogeny_age[cell] : value(surface.age_myr);
+      f.orogeny[cell] = land ? surface.orogeny[of] : std::int8_t{0};
+      f.heat[cell] = kBackgroundHeat;
+      f.fold_east[cell] = surface.fold_x[of];
+      f.fold_north[cell] = surface.fold_y[of];
+      f.ridge_east[cell] = surface.ridge_x[of];
+      f.ridge_north[cell] = surface.ridge_y[of];
     }
   }
 }
