@@ -636,6 +636,24 @@ TEST(Island, FadingEdgeSinksBelowTheSea) {
   EXPECT_GT(highest, 0.0F);
 }
 
+/// Rivers end at the level of the sea, however deep it is beside the coast: land that were cut
+/// towards its floor would be a plain at sea level.
+TEST(Island, CoastsBesideDeepWaterAreNoPlainAtSeaLevel) {
+  IslandParameters p = coarse_look();
+  p.edge_fade = true;
+  p.keep_means = false;
+  const State island = make(p).island;
+  const auto z = island.read(field::elevation);
+  int land = 0, planed = 0;
+  for (const float height : z) {
+    if (height < 0.0F) continue;
+    ++land;
+    if (height < 0.01F) ++planed;
+  }
+  ASSERT_GT(land, 1000);
+  EXPECT_LT(planed, land / 100);
+}
+
 TEST(Island, IsTheSameOnAnyNumberOfThreads) {
   const int usual = omp_get_max_threads();
   omp_set_num_threads(1);
