@@ -14,7 +14,7 @@
 namespace geo {
 
 std::span<const StageEntry> stage_table() {
-  static constexpr std::array<StageEntry, 7> kStages{{
+  static constexpr auto kStages = std::to_array<StageEntry>({
       {1, "plates", [] { return make_plates_stage(); }},
       {2, "isostasy", [] { return make_isostasy_stage(); }},
       {3, "erosion", [] { return make_erosion_stage(); }},
@@ -22,7 +22,7 @@ std::span<const StageEntry> stage_table() {
       {5, "hydrology", [] { return make_hydrology_stage(); }},
       {6, "biomes", [] { return make_biomes_stage(); }},
       {7, "island", [] { return make_island_stage(); }},
-  }};
+  });
   return kStages;
 }
 
