@@ -66,7 +66,7 @@ struct Neighbourhood {
 };
 
 Neighbourhood neighbourhood_of(const Grid& planet, const TerrainGuide& guide, const Vector3& unit,
-                             double spacing_m) {
+                               double spacing_m) {
   Neighbourhood around;
   around.frame = tangent_frame(unit);
   const double step = spacing_m / planet.figure().radius_m;
