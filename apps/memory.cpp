@@ -23,15 +23,6 @@
 #include "geo/core/parallel_errors.hpp"
 #include "log.hpp"
 
-// Sanitizers bring a heap of their own, which ends the program by itself.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define TERRANE_FOREIGN_HEAP 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define TERRANE_FOREIGN_HEAP 1
-#endif
-#endif
-
 namespace terrane {
 namespace {
 
@@ -137,7 +128,7 @@ std::string want_of_memory() {
 
 }  // namespace terrane
 
-#ifdef TERRANE_FOREIGN_HEAP
+#ifdef TERRANE_SANITIZED  // by a sanitizer, whose heap ends the program by itself
 
 namespace {
 void* allocate(std::size_t size) { return std::malloc(size); }

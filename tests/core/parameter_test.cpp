@@ -2,10 +2,14 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "geo/core/error.hpp"
 #include "geo/core/event.hpp"
+#include "geo/core/random.hpp"
 
 namespace geo {
 namespace {
@@ -64,6 +68,69 @@ TEST(Parameter, SuggestsTheNearestChoice) {
   EXPECT_THAT(complaint([&] { p.set_text("river"); }), HasSubstr("did you mean \"rivers\"?"));
   p.set_text("\"land\"");
   EXPECT_EQ(word, "land");
+}
+
+TEST(NearestWord, CountsLettersThatAreMissingAddedOtherOrSwapped) {
+  const std::vector<std::string_view> words{"rivers", "height", "land"};
+  for (const char* misspelt : {"river", "riverss", "rixers", "rievrs", "rivers"}) {
+    EXPECT_EQ(nearest_word(misspelt, words), "rivers") << misspelt;
+  }
+  // A swap of neighbours is one mistake, not two: "ab" is as near to "ba" as to "b".
+  EXPECT_EQ(nearest_word("ba", std::vector<std::string_view>{"ab", "b"}), "ab");
+  EXPECT_EQ(nearest_word("ba", std::vector<std::string_view>{"b", "ab"}), "b");
+}
+
+TEST(NearestWord, TakesTheFirstOfThoseThatAreEquallyNear) {
+  EXPECT_EQ(nearest_word("bat", std::vector<std::string_view>{"cat", "rat", "bats"}), "cat");
+  EXPECT_EQ(nearest_word("bat", std::vector<std::string_view>{"rat", "cat", "bat"}), "bat");
+}
+
+TEST(NearestWord, IsNoneWhereAllAreFurtherThanAThirdOfTheWordAndOne) {
+  const std::vector<std::string_view> words{"elevation"};
+  EXPECT_EQ(nearest_word("elev", words), "");                // 5 letters are missing, 2 may
+  EXPECT_EQ(nearest_word("elevxxxxn", words), "elevation");  // 4 others of 9
+  EXPECT_EQ(nearest_word("elexxxxxn", words), "");
+  EXPECT_EQ(nearest_word("", words), "");
+  EXPECT_EQ(nearest_word("elevation", {}), "");
+  EXPECT_EQ(nearest_word("", std::vector<std::string_view>{"x"}), "x");
+}
+
+/// Optimal string alignment by its recursion, as the definition has it.
+int alignment(std::string_view a, std::string_view b) {
+  if (a.empty() || b.empty()) return static_cast<int>(a.size() + b.size());
+  const auto without = [](std::string_view word, std::size_t letters) {
+    return word.substr(0, word.size() - letters);
+  };
+  int least = std::min({alignment(without(a, 1), b) + 1, alignment(a, without(b, 1)) + 1,
+                        alignment(without(a, 1), without(b, 1)) + (a.back() == b.back() ? 0 : 1)});
+  if (a.size() > 1 && b.size() > 1 && a.back() == b[b.size() - 2] && a[a.size() - 2] == b.back()) {
+    least = std::min(least, alignment(without(a, 2), without(b, 2)) + 1);
+  }
+  return least;
+}
+
+TEST(NearestWord, IsTheNearestByItsDefinition) {
+  const RandomStream random(7, "nearest_word_test");
+  std::uint64_t at = 0;
+  const auto word = [&] {
+    std::string letters(random.uniform(at++) * 6.0, ' ');
+    for (char& letter : letters) letter = static_cast<char>('a' + random.uniform(at++) * 3.0);
+    return letters;
+  };
+  for (int trial = 0; trial < 300; ++trial) {
+    const std::string given = word();
+    const std::vector<std::string> words{word(), word(), word(), word()};
+    const std::vector<std::string_view> candidates(words.begin(), words.end());
+    std::string nearest;
+    int least = static_cast<int>(given.size() / 3) + 2;
+    for (const std::string& candidate : words) {
+      if (const int distance = alignment(given, candidate); distance < least) {
+        least = distance;
+        nearest = candidate;
+      }
+    }
+    EXPECT_EQ(nearest_word(given, candidates), nearest) << "trial " << trial << ": " << given;
+  }
 }
 
 TEST(Parameter, IsWrittenSoThatEveryBitReturns) {

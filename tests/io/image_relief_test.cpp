@@ -155,6 +155,9 @@ TEST(ImageRelief, RefusesInOneLineWhatIsDamagedOrSaysTooLittle) {
   EXPECT_THAT(refusal("ncols 4\nnrows 3\n1 2 3"), HasSubstr("xllcorner"));
   EXPECT_THAT(refusal("ncols 1\nfloors 2\n"), HasSubstr("floors"));
   EXPECT_THAT(refusal("ncols 1\nfl\x88ors 2\n"), HasSubstr("fl?ors"));
+  // Once taken for three rows, the last of them from beyond the values.
+  EXPECT_THAT(refusal("ncols 4\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3 4 5 6 7 8"),
+              HasSubstr("at least 4 x 3"));
   EXPECT_THAT(refusal("\x89PNG\r\n\x1a\n and no more", {"0,1", ""}), HasSubstr("PNG"));
   const std::vector<std::uint8_t> grey(16 * 8);
   write_grey_png(folder / "b.png", grey, 16, 8);

@@ -16,7 +16,7 @@
 
 #include "geo/core/parallel_errors.hpp"
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#ifndef TERRANE_SANITIZED  // sanitizers bring a heap of their own
 
 namespace {
 

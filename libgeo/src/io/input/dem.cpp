@@ -141,18 +141,21 @@ Dem global_dem(DemAxis rows, const Longitudes& longitudes, Rows registered,
 Dem window_dem(const DemAxis& rows, const DemAxis& columns, std::vector<float> values,
                const Planet& planet) {
   const double south = std::max(rows.low(), -90.0), north = std::min(rows.high(), 90.0);
-  const int ny = std::max(3, static_cast<int>(std::lround((north - south) / rows.step)));
+  const double slack = kSlack * rows.step;
+  const bool beyond_poles = rows.low() < -90.0 - slack || rows.high() > 90.0 + slack;
+  const int ny = beyond_poles
+                     ? std::max(3, static_cast<int>(std::lround((north - south) / rows.step)))
+                     : rows.size;
   // A full circle may exceed itself by rounding.
   const double east = std::min(columns.high(), columns.low() + 360.0);
   Dem dem{{}, Grid::window(columns.size, ny, {south, north, columns.low(), east}, planet.figure()),
           {}, {},
           {}, {}};
-  // A row of nodes at the pole is half as tall as the others.
-  const double slack = kSlack * rows.step;
-  if (rows.low() >= -90.0 - slack && rows.high() <= 90.0 + slack) {
+  if (!beyond_poles) {
     dem.elevation_m = std::move(values);
     return dem;
   }
+  // A row of nodes at the pole is half as tall as the others.
   dem.raster = {latitude_axis(rows), even_axis(columns.first, columns.step, columns.size), true};
   dem.raster_m = std::move(values);
   dem.elevation_m = resample(dem, dem.grid);

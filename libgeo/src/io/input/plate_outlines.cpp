@@ -87,7 +87,7 @@ class Feature {
   [[nodiscard]] bool take_known_motion(PlateOutline& plate) const {
     const auto code = text("Code");
     if (!code) return false;
-    const Table poles = embedded_table("plates/pb2002_poles.csv");
+    static const Table poles = embedded_table("plates/pb2002_poles.csv");
     for (std::size_t row = 0; row < poles.rows(); ++row) {
       if (poles.text(row, 0) != *code) continue;
       plate.pole = {poles.number(row, 1), poles.number(row, 2)};

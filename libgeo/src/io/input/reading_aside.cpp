@@ -211,7 +211,7 @@ void limit_this_process(const std::filesystem::path& path) {
   const auto bytes = std::filesystem::file_size(path, error);
   constexpr double kLeast_s = 20.0, kPerByte_s = 1e-6;
   set_limit(RLIMIT_CPU, kLeast_s + kPerByte_s * (error ? 0.0 : static_cast<double>(bytes)));
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#ifndef TERRANE_SANITIZED  // sanitizers reserve more address space than any machine has memory
   const double memory_bytes =
       static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
   struct rlimit present {};

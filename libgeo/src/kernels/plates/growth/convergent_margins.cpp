@@ -213,7 +213,7 @@ struct Subduction {
 /// Floor goes below a continent, of two floors the older, of two continents the faster.
 Subduction subduction_of(const std::array<Side, 2>& sides) {
   constexpr double kContinental = 0.45;
-  const auto& [first, second] = sides;
+  const Side &first = sides[0], &second = sides[1];
   const auto subducts = [&](bool is_first, Convergence kind) {
     return Subduction{kind, is_first ? first.plate : second.plate};
   };
