@@ -83,8 +83,7 @@ TEST(Ice, BudgetsOfIceRockAndSedimentClose) {
     EXPECT_GT(budget.at("ice_melt_m3_yr") + budget.at("ice_calving_m3_yr"), 0.0);
     for (const auto& [name, value] : budget) {
       if (name.ends_with("closing_error"))
-        EXPECT_LT(std::abs(value), name == "rock_closing_error" ? test::kHeightRounding : 1e-12)
-            << model << ' ' << name;
+        EXPECT_LT(std::abs(value), 1e-12) << model << ' ' << name;
     }
   }
 }

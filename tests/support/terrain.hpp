@@ -10,8 +10,8 @@
 
 namespace geo::test {
 
-/// Rock closes to how floats round heights, which sums of rates and loads do not see: each write
-/// moves a height by up to 2^-24 of it, this way or that. Seen: 5e-8 of the rock that moves.
+/// Each write moves a height in single precision by up to 2^-24 of it, this way or that: at most so
+/// much of the rock that moves. Seen: 5e-8.
 inline constexpr double kHeightRounding = 1e-7;
 
 /// Rough random terrain, pits and all: independent values at cells plus a broad random tilt.

@@ -283,6 +283,7 @@ void ErosionRun::report() const {
   budget["rock_eroded_m3"] = rock.eroded + rock.laid_on_land;
   budget["rock_reshaped_m3"] = rock.reshaped;
   budget["rock_stored_m3"] = stored;
+  budget["rock_rounded_m3"] = rock.rounded;
   if (growth_of_belts_myr<float>(p_, {}) > 0.0) {
     const double grown = area_sum<double>(landscape_.grid(),
                                           [&](Index c) { return landscape_.crust_change_m()[c]; });
@@ -291,9 +292,9 @@ void ErosionRun::report() const {
     budget["crust_closing_error"] =
         (rock.shortened + rock.laid_at_sea - rock.eroded - grown) / scale;
   }
-  budget["rock_closing_error"] =
-      (rock.uplifted + rock.rebound + rock.reshaped + rock.laid_at_sea - rock.eroded - stored) /
-      scale;
+  budget["rock_closing_error"] = (rock.uplifted + rock.rebound + rock.reshaped + rock.laid_at_sea +
+                                  rock.rounded - rock.eroded - stored) /
+                                 scale;
   if (landscape_.deposits()) {
     const double unsettled = landscape_.unsettled_m3();
     budget["sediment_laid_on_land_m3"] = rock.laid_on_land;

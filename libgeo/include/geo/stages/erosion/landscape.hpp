@@ -26,7 +26,7 @@ namespace geo {
 
 /// Rock volumes that pass through a landscape, m3. Uplift and rebound are summed from rates and
 /// loads, the rest from what processes did to the surface: with `stored_m3`, which is the surface
-/// at the end less that at the beginning, they close to the rounding of heights.
+/// at the end less that at the beginning, they close to the rounding of sums in double precision.
 template <class Number>
 struct RockVolumes {
   Number uplifted{0.0}, eroded{0.0}, rebound{0.0}, reshaped{0.0};
@@ -34,6 +34,7 @@ struct RockVolumes {
   Number laid_on_land{0.0};  ///< of what was eroded
   Number laid_at_sea{0.0};
   Number over_edges{0.0};  ///< by rivers, out of the world
+  Number rounded{0.0};     ///< what heights in single precision differ from those sums
 };
 
 /// What rivers have laid down: thickness now, what was laid in all, and what left each cell in the
@@ -121,18 +122,21 @@ class Landscape {
 
   /// Rock that sinks under a load that is none of its own, m per cell, as a part of the rebound.
   void sink(std::span<const float> by_m) {
+    before_.assign(z_.begin(), z_.end());
     on_land([&](Index cell) { z_[cell] -= V(by_m[cell]); });
-    rock_.rebound -= land_sum([&](Index cell) { return Number(by_m[cell]); });
+    book_land(rock_.rebound, [&](Index cell) { return Number(-Number(by_m[cell])); });
   }
 
   /// Blueprint 4.6: part of the way back to the isostatic elevation.
   void relax() {
     if (p_.relaxation_fraction <= 0.0) return;
     const V share(active_(p_.relaxation_fraction));
-    rock_.rebound += land_sum([&](Index cell) {
-      return Number(active_(p_.relaxation_fraction)) * (Number(initial_[cell]) - Number(z_[cell]));
-    });
+    before_.assign(z_.begin(), z_.end());
     on_land([&](Index cell) { z_[cell] += share * (initial_[cell] - z_[cell]); });
+    book_land(rock_.rebound, [&](Index cell) {
+      return Number(Number(active_(p_.relaxation_fraction)) *
+                    (Number(initial_[cell]) - Number(before_[cell])));
+    });
   }
 
   /// Lets `reshape` change elevation at will. Returns whether it did; land and sea are then to be
@@ -205,18 +209,32 @@ class Landscape {
       if (outlets_[cell] != 0 && value_of(z_[cell]) < 0.0) change(cell);
     }
   }
-  /// Volume of what a process adds to the land, m per cell.
+  /// Books what a process has added to the land since `before_`, m per cell.
   template <class Height>
-  [[nodiscard]] Number land_sum(Height&& height_m) const {
-    return area_sum<Number>(grid_,
-                            [&](Index c) { return outlets_[c] == 0 ? height_m(c) : Number(0.0); });
+  void book_land(Number& volume, Height&& rise_m) {
+    book(volume, rise_m, [&](Index c) { return outlets_[c] == 0; });
   }
-  /// And to the floor of the sea, which stood at `before_`.
+  /// And to the floor of the sea.
   template <class Height>
-  [[nodiscard]] Number sea_floor_sum(Height&& height_m) const {
-    return area_sum<Number>(grid_, [&](Index c) {
-      return outlets_[c] != 0 && value_of(before_[c]) < 0.0 ? height_m(c) : Number(0.0);
-    });
+  void book_sea_floor(Number& volume, Height&& rise_m) {
+    book(volume, rise_m, [&](Index c) { return outlets_[c] != 0 && value_of(before_[c]) < 0.0; });
+  }
+  template <class Height, class Where>
+  void book(Number& volume, Height&& rise_m, Where&& where) {
+    volume += area_sum<Number>(grid_, [&](Index c) { return where(c) ? rise_m(c) : Number(0.0); });
+    if constexpr (kRecords) {
+      rock_.rounded += area_sum<double>(
+          grid_, [&](Index c) { return where(c) ? rounding_m(c, rise_m(c)) : 0.0; });
+    }
+  }
+  /// What the height of a cell misses of the sum of the one before and a rise: nothing if that is
+  /// more than a few roundings of single precision, so that a process that does something else than
+  /// what is booked shows as an error in the budget.
+  [[nodiscard]] double rounding_m(Index cell, double rise_m) const {
+    constexpr double kFew = 0x1p-21;
+    const double now_m = z_[cell], before_m = before_[cell], missed_m = now_m - before_m - rise_m;
+    return std::abs(missed_m) <= kFew * std::max(std::abs(now_m), std::abs(before_m)) ? missed_m
+                                                                                      : 0.0;
   }
   /// How far land rises that is to rise so far: subsidence ends at the sea.
   [[nodiscard]] Number rise_of_land(Index cell, const Number& by_m) const {
@@ -242,7 +260,7 @@ class Landscape {
       // routing.
       z_[cell] = greater(V(0.0F), V(Number(z_[cell]) + uplift_m(cell)));
     });
-    rock_.uplifted += land_sum([&](Index cell) { return rise_of_land(cell, uplift_m(cell)); });
+    book_land(rock_.uplifted, [&](Index cell) { return rise_of_land(cell, uplift_m(cell)); });
     if (!thickening_m_yr_.empty()) thicken(dt);
     record_raising();
   }
@@ -257,8 +275,9 @@ class Landscape {
     at_sea_floor([&](Index cell) {
       z_[cell] = lesser(V(Number(z_[cell]) + Number(uplift_m_yr_[cell]) * dt), V(-kShallowest_m));
     });
-    rock_.uplifted += sea_floor_sum(
-        [&](Index cell) { return rise_of_sea_floor(cell, Number(uplift_m_yr_[cell]) * dt); });
+    book_sea_floor(rock_.uplifted, [&](Index cell) {
+      return rise_of_sea_floor(cell, Number(uplift_m_yr_[cell]) * dt);
+    });
     rock_.shortened +=
         area_sum<Number>(grid_, [&](Index cell) { return Number(thickening_m_yr_[cell]) * dt; });
     if constexpr (kRecords) {
@@ -465,14 +484,14 @@ class Landscape {
       z_[cell] = greater(V(0.0F), V(z_[cell] + V(comes_m(cell))));
       owed_m_[cell] -= V(part) * owed_m_[cell];
     });
-    rock_.rebound += land_sum([&](Index cell) { return rise_of_land(cell, comes_m(cell)); });
+    book_land(rock_.rebound, [&](Index cell) { return rise_of_land(cell, comes_m(cell)); });
     if (deposits()) {
       at_sea_floor([&](Index cell) {
         z_[cell] = lesser(V(z_[cell] + V(comes_m(cell))), greater(z_[cell], V(-kShallowest_m)));
         owed_m_[cell] -= V(part) * owed_m_[cell];
       });
-      rock_.rebound +=
-          sea_floor_sum([&](Index cell) { return rise_of_sea_floor(cell, comes_m(cell)); });
+      book_sea_floor(rock_.rebound,
+                     [&](Index cell) { return rise_of_sea_floor(cell, comes_m(cell)); });
     }
     record_raising();
   }
