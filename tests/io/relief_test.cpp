@@ -197,7 +197,9 @@ TEST(Dem, UnitsOfLengthAreConverted) {
                                                    {"", 1.0}}) {
     SCOPED_TRACE(units);
     file.units = units;
-    file.elevation = [&](double row, double column) { return per_metre * metres(row, column); };
+    file.elevation = [&, per_metre = per_metre](double row, double column) {
+      return per_metre * metres(row, column);
+    };
     expect_planet(read(file), 2e-3);
   }
 }

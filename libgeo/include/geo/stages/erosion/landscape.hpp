@@ -275,8 +275,10 @@ class Landscape {
     at_sea_floor([&](Index cell) {
       z_[cell] = lesser(V(Number(z_[cell]) + Number(uplift_m_yr_[cell]) * dt), V(-kShallowest_m));
     });
+    // Floor that stood a hair below the sea is let down to where it stays sea.
     book_sea_floor(rock_.uplifted, [&](Index cell) {
-      return rise_of_sea_floor(cell, Number(uplift_m_yr_[cell]) * dt);
+      return lesser(Number(Number(uplift_m_yr_[cell]) * dt),
+                    Number(Number(-kShallowest_m) - Number(before_[cell])));
     });
     rock_.shortened +=
         area_sum<Number>(grid_, [&](Index cell) { return Number(thickening_m_yr_[cell]) * dt; });
