@@ -18,32 +18,32 @@ struct EnergyBalance {
   Orbit orbit;
   double outgoing_w_m2 = 198;              ///< A at 0 degC
   double outgoing_slope_w_m2_k = 2.4;      ///< B
-  double diffusivity_w_m2_k = 0.54;        ///< D at 15 degC, on the unit sphere
-  double moist_transport = 0.696;          ///< share of latent heat in D's change with temperature
-  double advected_heat_j_m2_k = 5.86e+06;  ///< of the air that winds move
-  double coalbedo = 0.679;                 ///< mean absorbed share without snow and ice
-  double coalbedo_p2 = -0.133;             ///< its second Legendre coefficient in latitude
+  double diffusivity_w_m2_k = 0.545;       ///< D at 15 degC, on the unit sphere
+  double moist_transport = 0.774;          ///< share of latent heat in D's change with temperature
+  double advected_heat_j_m2_k = 5.82e+06;  ///< of the air that winds move
+  double coalbedo = 0.68;                  ///< mean absorbed share without snow and ice
+  double coalbedo_p2 = -0.135;             ///< its second Legendre coefficient in latitude
   double snow_coalbedo = 0.7;              ///< of snow that melts in summer
-  double ice_coalbedo = 0.2;               ///< of land whose snow stays
+  double ice_coalbedo = 0.203;             ///< of land whose snow stays
   double sea_ice_coalbedo = 0.75;          ///< of sea ice, broken and wet in summer
-  double snow_temperature_c = -3.4;        ///< monthly mean at which half the land is under snow
+  double snow_temperature_c = -3.06;       ///< monthly mean at which half the land is under snow
   double ice_temperature_c = -1;           ///< annual mean at which half the sea is ice
   double ice_width_k = 2.45;               ///< width of both transitions; 0: no ice and snow at all
-  double land_heat_capacity_w_yr_m2_k = 0.182;
-  double ocean_heat_capacity_w_yr_m2_k = 7.58;
-  double ice_heat_capacity_w_yr_m2_k = 1.22;  ///< of sea ice that does not melt
-  double melt_w_m2_k = 16.1;     ///< heat that melting sea ice takes for each kelvin above -1 degC
-  double gyre_heat_w_m2 = 14.8;  ///< heat that gyres release along a western coast of an ocean
-  double gyre_reach_km = 1.38e+03;  ///< e-folding distance of a coast's influence
+  double land_heat_capacity_w_yr_m2_k = 0.19;
+  double ocean_heat_capacity_w_yr_m2_k = 8.02;
+  double ice_heat_capacity_w_yr_m2_k = 1.16;  ///< of sea ice that does not melt
+  double melt_w_m2_k = 15.6;     ///< heat that melting sea ice takes for each kelvin above -1 degC
+  double gyre_heat_w_m2 = 12.1;  ///< heat that gyres release along a western coast of an ocean
+  double gyre_reach_km = 1.58e+03;  ///< e-folding distance of a coast's influence
   double blocking_height_m =
-      2.08e+03;  ///< mean height of topography that halves the heat passing over
+      2.33e+03;  ///< mean height of topography that halves the heat passing over
   double lapse_k_m = 0.005;
-  double heat_wind_share = 0.0863;  ///< of the zonal wind in mid-troposphere that carries heat
-  double heat_wave_share = 0.385;   ///< of the winds about warm and cold ground that carries it
-  double upwelling_w_m2 = 90;       ///< heat that water welling up along the equator takes
-  double upwelling_reach_km = 6.51e+03;  ///< to the west of a coast, over which that falls by e
-  double dry_warming_k_m2_w = 0.0479;  ///< by which dry ground is warmer for each W m-2 of sunlight
-  double dry_warming_from_w_m2 = 258;  ///< above this
+  double heat_wind_share = 0.0723;      ///< of the zonal wind in mid-troposphere that carries heat
+  double heat_wave_share = 0.391;       ///< of the winds about warm and cold ground that carries it
+  double upwelling_w_m2 = 90;           ///< heat that water welling up along the equator takes
+  double upwelling_reach_km = 6.8e+03;  ///< to the west of a coast, over which that falls by e
+  double dry_warming_k_m2_w = 0.0485;  ///< by which dry ground is warmer for each W m-2 of sunlight
+  double dry_warming_from_w_m2 = 262;  ///< above this
 };
 
 /// Share of the heat carried over level ground that passes over a cell of a mean height:
