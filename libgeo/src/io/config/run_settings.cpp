@@ -30,12 +30,11 @@ std::vector<Parameter> run_rows(RunSettings& s) {
              "a whole planet, or a tile as wide as the planet's girth whose opposite sides meet, "
              "for plates.model = raster",
              "design"),
-      text(
-          "run.turn", s.turn,
-          "LAT,LON,ANGLE, degrees: lays the planet, and what is given of it as files, out with its "
-          "place LAT,LON at the north pole and the prime meridian ANGLE further east; empty turns "
-          "nothing",
-          "design"),
+      text("run.turn", s.turn,
+           "LAT,LON,ANGLE, degrees: lays the planet, and what is given of it as files, out with "
+           "its place LAT,LON at the north pole and the prime meridian ANGLE further east; empty "
+           "turns nothing",
+           "design"),
       text("run.from", s.from, "first stage to run; empty is the first there is", "design"),
       text("run.to", s.to, "last stage to run; empty is the last there is", "design"),
   };
@@ -76,12 +75,11 @@ std::vector<Parameter> fields_rows(RunSettings& s) {
            "what plates.model = hypsography and erosion.hypsometry = rank aim at: earth, "
            "earth-statistical, or a CSV file with columns quantile,elevation_m",
            "design"),
-      choice(
-          "fields.hypsography_ocean", s.hypsography_ocean, {"planet", "curve"},
-          "its parts below and above 0 are mixed so that planet.ocean_fraction lies below (where "
-          "planet.sea_level is fraction), or it is taken as it stands and its 0 is the sea of all "
-          "stages",
-          "davidson2013"),
+      choice("fields.hypsography_ocean", s.hypsography_ocean, {"planet", "curve"},
+             "its parts below and above 0 are mixed so that planet.ocean_fraction lies below "
+             "(where planet.sea_level is fraction), or it is taken as it stands and its 0 is the "
+             "sea of all stages",
+             "davidson2013"),
       text("fields.ranking", s.ranking,
            "FILE[:VARIABLE] of any unit, a mask or a DEM, that orders places by height where "
            "plates follow a hypsography",
@@ -95,15 +93,16 @@ std::vector<Parameter> fields_rows(RunSettings& s) {
            "CSV file with the motions of plates that fields.plates gives by number: plate_id, "
            "pole_latitude_deg, pole_longitude_deg, rate_deg_myr; the last row of a plate counts",
            "design"),
-      text("fields.initial_elevation", s.initial_elevation,
-           "FILE[:VARIABLE] of a planet's elevation from which drift begins where "
-           "plates.sphere.initial_elevation "
-           "is given",
-           "cortial2019"),
-      text("fields.initial_age", s.initial_age,
-           "FILE[:VARIABLE] of the age of its sea floor, Myr, missing on land; empty tells it by "
-           "depth",
-           "muller2008"),
+      renamed(text("fields.initial_elevation", s.initial_elevation,
+                   "FILE[:VARIABLE] of a planet's elevation from which drift begins where "
+                   "plates.sphere.initial_elevation is given",
+                   "cortial2019"),
+              "fields.first_relief"),
+      renamed(text("fields.initial_age", s.initial_age,
+                   "FILE[:VARIABLE] of the age of its sea floor, Myr, missing on land; empty tells "
+                   "it by depth",
+                   "muller2008"),
+              "fields.first_age"),
       text("fields.start_frame", s.start_frame,
            "frame of an earlier run, from which drifting plates go on, bit for bit", "design"),
       text(

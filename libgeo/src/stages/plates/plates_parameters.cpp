@@ -13,9 +13,9 @@ namespace {
 std::vector<Parameter> shared_rows(PlatesParameters& p) {
   return {
       choice("plates.model", p.model, {"growth", "sphere", "raster", "hypsography"},
-             "how plates come about: they grow as they stand today; drift, subduct, "
-             "collide and break on a sphere through time; drift and collide as height maps on a "
-             "torus; or there is one at rest whose heights follow a hypsography",
+             "how plates come about: they grow as they stand today; drift, subduct, collide and "
+             "break on a sphere through time; drift and collide as height maps on a torus; or "
+             "there is one at rest whose heights follow a hypsography",
              "cortial2019"),
       integer("plates.count", p.growth.count, "1", 1, 100, "number of plates", "tectonica2026"),
       real("plates.speed_cm_yr", p.growth.speed_cm_yr, "cm yr-1", 0.1, 50.0,
@@ -52,11 +52,10 @@ std::vector<Parameter> growth_rows(PlatesParameters& p) {
            "tectonica2026"),
       real("plates.growth.polar_resistance", p.growth.polar_resistance, "1", 0.0, 1.0,
            "extra cost of growth at the poles", "tectonica2026"),
-      integer(
-          "plates.growth.centre_candidates", p.growth.centre_candidates, "1", 1, 1000,
-          "places drawn for each plate, of which it begins at the one farthest from its elders; "
-          "1: anywhere",
-          "tectonica2026"),
+      integer("plates.growth.centre_candidates", p.growth.centre_candidates, "1", 1, 1000,
+              "places drawn for each plate, of which it begins at the one farthest from its "
+              "elders; 1: anywhere",
+              "tectonica2026"),
       real("plates.growth.smallest_part_km2", p.growth.smallest_part_km2, "km2", 0.0, 1e8,
            "smaller detached pieces of a plate join a neighbour at once, larger ones when all "
            "plates "
@@ -143,8 +142,8 @@ std::vector<Parameter> sphere_subduction_rows(PlatesParameters& p) {
              "uplift over the distance from the trench, by two cubics or by Driftworld's one",
              "cortial2019"),
       choice("plates.sphere.overlap", p.overlap, {"crust", "score"},
-             "what stays up where plates overlap: continents and the younger floor, or, as "
-             "in Driftworld, the whole plate that has more continent",
+             "what stays up where plates overlap: continents and the younger floor, or, as in "
+             "Driftworld, the whole plate that has more continent",
              "cortial2019"),
       choice("plates.sphere.collisions", p.collisions, {"terranes", "plates"},
              "continents that collide leave their plate behind, or, as in Driftworld, their "
@@ -187,8 +186,7 @@ std::vector<Parameter> sphere_force_rows(PlatesParameters& p) {
       real("plates.sphere.slab_share", p.sphere.force.slab_share, "1", 0.0, 1.0,
            "share of a slab's weight that reaches its plate, with forces", "forsyth1975"),
       real("plates.sphere.suction_share", p.sphere.force.suction_share, "1", 0.0, 1.0,
-           "share of a slab's weight that draws the plate above it to the trench, with "
-           "forces",
+           "share of a slab's weight that draws the plate above it to the trench, with forces",
            "conrad2002"),
       real("plates.sphere.slab_km", p.sphere.force.slab_km, "km", 0.0, 3000.0,
            "length of the slab that pulls, with forces", "turcotte2002"),
@@ -236,12 +234,10 @@ std::vector<Parameter> sphere_surface_rows(PlatesParameters& p) {
            "sinking of the sea floor, with damping", "cortial2019"),
       real("plates.sphere.continental_erosion_mm_yr", p.sphere.law.erosion_mm_yr, "mm yr-1", 0.0,
            10.0, "erosion of the highest continents", "cortial2019"),
-      choice(
-          "plates.sphere.erosion", p.erosion, {"height", "land", "rivers"},
-          "continents wear down by their height, and what lies below the sea fills up; "
-          "the same on land alone; or rivers carve them between the steps and lay down what they "
-          "carry",
-          "cortial2019"),
+      choice("plates.sphere.erosion", p.erosion, {"height", "land", "rivers"},
+             "continents wear down by their height, and what lies below the sea fills up; the same "
+             "on land alone; or rivers carve them between the steps and lay down what they carry",
+             "cortial2019"),
       real("plates.sphere.river_erodibility_yr", p.sphere.rivers.erodibility_yr, "yr-1", 0.0, 1.0,
            "erodibility K for the square root of the drained area, with rivers", "whipple1999"),
       real("plates.sphere.settling_km", p.sphere.rivers.settling_km, "km", 1.0, 5000.0,
@@ -275,8 +271,8 @@ std::vector<Parameter> sphere_volcano_rows(PlatesParameters& p) {
            "time in which volcanic islands wear down to 1/e of their height; 0 keeps them",
            "ramalho2013"),
       real("plates.sphere.swell_decay_myr", p.sphere.swell_decay_myr, "Myr", 0.0, 1000.0,
-           "time in which the sea floor sinks back to 1/e of what lifted it above the depth "
-           "of its age, by age alone; 0 keeps it",
+           "time in which the sea floor sinks back to 1/e of what lifted it above the depth of its "
+           "age, by age alone; 0 keeps it",
            "detrick1978"),
       real("plates.sphere.plume_top_km", p.sphere.plume_top_km, "km", -5.0, 10.0,
            "height that those volcanoes reach", "design"),
@@ -309,16 +305,20 @@ std::vector<Parameter> sphere_rifting_rows(PlatesParameters& p) {
            "time in which they come to it; 0: at once", "brune2016"),
       real("plates.sphere.rift_warp_km", p.sphere.rift_warp_km, "km", 0.0, 5000.0,
            "how far the borders of fragments are warped", "cortial2019"),
-      real("plates.sphere.subduction_initiation_myr", p.sphere.initiation_per_myr, "Myr-1", 0.0,
-           1.0,
-           "rate at which each 1000 km of a passive margin with old floor become a "
-           "subduction zone",
-           "bradley2008"),
-      real("plates.sphere.subduction_initiation_age_myr", p.sphere.initiation_age_myr, "Myr", 0.0,
-           5000.0, "age from which floor at a passive margin is so old", "bradley2008"),
-      real("plates.sphere.subduction_initiation_speed_mm_yr", p.sphere.initiation_speed_mm_yr,
-           "mm yr-1", 0.0, 1000.0, "speed at which floor begins to subduct below its own continent",
-           "stern2004"),
+      renamed(real("plates.sphere.subduction_initiation_myr", p.sphere.initiation_per_myr, "Myr-1",
+                   0.0, 1.0,
+                   "rate at which each 1000 km of a passive margin with old floor become a "
+                   "subduction zone",
+                   "bradley2008"),
+              "plates.foundering_myr"),
+      renamed(
+          real("plates.sphere.subduction_initiation_age_myr", p.sphere.initiation_age_myr, "Myr",
+               0.0, 5000.0, "age from which floor at a passive margin is so old", "bradley2008"),
+          "plates.foundering_age_myr"),
+      renamed(real("plates.sphere.subduction_initiation_speed_mm_yr",
+                   p.sphere.initiation_speed_mm_yr, "mm yr-1", 0.0, 1000.0,
+                   "speed at which floor begins to subduct below its own continent", "stern2004"),
+              "plates.foundering_speed_mm_yr"),
   };
 }
 
