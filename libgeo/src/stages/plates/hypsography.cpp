@@ -186,8 +186,8 @@ std::vector<Parameter> hypsography_parameters(PlatesParameters& p) {
   return {
       renamed(choice("plates.sphere.initial_elevation", p.initial_elevation,
                      {"noise", "hypsography", "given"},
-                     "the first continents from noise, the first crust as the model hypsography "
-                     "has it, or the elevation of fields.initial_elevation",
+                     "initial elevation: continents from noise, crust as the model hypsography "
+                     "makes it, or that of fields.initial_elevation",
                      "davidson2013"),
               "plates.first_relief"),
       choice("plates.hypsography.ranking", p.ranking.by, {"great-circles", "fbm"},
