@@ -40,7 +40,7 @@ struct Accuracy {
 
 /// Reads a target: "earth" (ETOPO5), "earth-statistical" (two normal distributions), a CSV file, or
 /// FILE.nc[:VARIABLE], any elevation model that `terrane run --dem` reads, of any planet.
-/// A CSV file (geo/io/table.hpp) has one of these headers:
+/// A CSV file (geo/io/input/table.hpp) has one of these headers:
 ///   quantile,elevation_m            shares strictly ascending within [0, 1]; elevations must not
 ///                                   fall; all rows are matched, and nothing beyond them
 ///   quantile,elevation_m,sigma_m    the same with the error of each, to which it is matched

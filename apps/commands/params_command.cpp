@@ -60,6 +60,9 @@ Rows chosen_rows(const Rows& all, std::vector<std::string> words) {
   }
   if (rows.empty()) {
     const std::string sought = fmt::format("{}", fmt::join(words, " "));
+    if (const geo::Parameter* today = geo::find_renamed(all, sought)) {
+      throw geo::ConfigurationError(fmt::format("{} is now {}", sought, today->name));
+    }
     throw geo::ConfigurationError(
         section.empty()
             ? fmt::format(

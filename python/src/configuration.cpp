@@ -32,6 +32,9 @@ std::optional<double> finite(double value) {
 const geo::Parameter& row_of(const Configuration& configuration, const std::string& name) {
   const auto& rows = configuration.all_parameters();
   if (const geo::Parameter* row = geo::find_parameter(rows, name)) return *row;
+  if (const geo::Parameter* today = geo::find_renamed(rows, name)) {
+    throw geo::ConfigurationError(name + " is now " + std::string(today->name));
+  }
   std::vector<std::string_view> names;
   for (const geo::Parameter& row : rows) names.push_back(row.name);
   throw geo::ConfigurationError("unknown parameter " + name + geo::io::suggestion(name, names));

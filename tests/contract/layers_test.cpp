@@ -90,7 +90,8 @@ TEST(Layers, FilesKnowNoStageByItsName) {
   std::string names;
   const Pipeline pipeline = make_pipeline();
   for (const auto& stage : pipeline.stages()) {
-    names += (names.empty() ? "" : "|") + std::string(stage->info().name);
+    if (!names.empty()) names += '|';
+    names += stage->info().name;
   }
   const std::regex name("[^=]\"(" + names + ")(\\.(?!pvd)[a-z_.]+)?\"");
   std::vector<std::string> folders;

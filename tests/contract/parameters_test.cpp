@@ -85,6 +85,26 @@ TEST_F(EveryParameter, HasANameOfItsOwnInTheSectionOfItsOwner) {
   }
 }
 
+TEST_F(EveryParameter, IsFoundByItsFormerNameWhichNoOtherHas) {
+  std::set<std::string_view> former;
+  for (const Parameter& p : all) {
+    if (p.former_name.empty()) continue;
+    EXPECT_TRUE(former.insert(p.former_name).second) << p.former_name << " is two parameters now";
+    EXPECT_EQ(find_parameter(all, p.former_name), nullptr) << p.former_name << " is there today";
+    EXPECT_EQ(find_renamed(all, p.former_name)->name, p.name);
+  }
+  EXPECT_GE(former.size(), 7U);
+  // What moved from a stage's section into those of its models has one home.
+  for (const Parameter& p : all) {
+    const std::string_view stage = p.section().substr(0, p.section().find('.'));
+    if (stage != "plates" || p.section() == stage) continue;
+    const std::string moved = std::string(stage) + "." + std::string(p.key());
+    EXPECT_EQ(find_parameter(all, moved), nullptr) << moved << " is there today";
+    ASSERT_NE(find_renamed(all, moved), nullptr) << moved;
+    EXPECT_EQ(find_renamed(all, moved)->name, p.name) << moved << " is two parameters now";
+  }
+}
+
 TEST_F(EveryParameter, HasUnitsThatUdunitsReadsAndNoneForWords) {
   const test::Units units;
   for (const Parameter& p : all) {

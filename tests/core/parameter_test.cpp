@@ -70,6 +70,29 @@ TEST(Parameter, SuggestsTheNearestChoice) {
   EXPECT_EQ(word, "land");
 }
 
+TEST(Parameter, IsFoundByTheNameThatItOnceHad) {
+  std::string model = "fast", other = "slow";
+  double value = 1.0;
+  const std::vector<Parameter> all{
+      choice("rivers.model", model, {"fast", "slow"}, "how rivers flow", "design"),
+      choice("rivers.bed.model", other, {"fast", "slow"}, "how beds wear", "design"),
+      real("rivers.fast.depth_m", value, "m", 0.0, 9.0, "how deep they are", "design"),
+      real("rivers.bed.grain_m", value, "m", 0.0, 9.0, "how coarse it is", "design"),
+      renamed(real("lakes.area_m2", value, "m2", 0.0, 9.0, "how large they are", "design"),
+              "ponds.size_m2")};
+  const auto today = [&](std::string_view name) {
+    const Parameter* found = find_renamed(all, name);
+    return found == nullptr ? std::string() : std::string(found->name);
+  };
+  EXPECT_EQ(today("ponds.size_m2"), "lakes.area_m2");
+  EXPECT_EQ(today("rivers.depth_m"), "rivers.fast.depth_m");
+  EXPECT_EQ(today("lakes.depth_m"), "");
+  EXPECT_EQ(today("rivers.grain_m"), "") << "a process is no model: its keys were always its own";
+  EXPECT_EQ(today("rivers.area_m2"), "");
+  EXPECT_EQ(today("depth_m"), "");
+  EXPECT_EQ(today(""), "");
+}
+
 TEST(NearestWord, CountsLettersThatAreMissingAddedOtherOrSwapped) {
   const std::vector<std::string_view> words{"rivers", "height", "land"};
   for (const char* misspelt : {"river", "riverss", "rixers", "rievrs", "rivers"}) {

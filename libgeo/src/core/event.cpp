@@ -40,7 +40,7 @@ std::vector<Parameter> Rift::declarations() {
       real("event.shoulder_km", shoulder_km, "km", 1.0, 1000.0,
            "flexural parameter of the plate, over which the uplift fades", "turcotte2002"),
       real("event.roughness", roughness, "1", 0.0, 1.0,
-           "how far its walls and floor stray from an even trough, as a share of width and depth",
+           "deviation of its walls and floor from an even trough, as a share of width and depth",
            "design"),
       real("event.age_yr", age_yr, "yr", 0.0, 1e10,
            "how long ago; half a time step and more: erosion has worked on it since", "design"),

@@ -67,12 +67,13 @@ const Field<float> plate_velocity_north{{.name = "plate_velocity_north",
                                          .units = "mm yr-1",
                                          .doc = "northward velocity of the plate",
                                          .type = Type::float32}};
-const Field<std::int8_t> boundary_type{{.name = "boundary_type",
-                                        .units = "",
-                                        .doc = "what adjacent plates do to each other",
-                                        .type = Type::int8,
-                                        .flags = kBoundaryFlags,
-                                        .cell_methods = "area: point"}};
+const Field<std::int8_t> boundary_type{
+    {.name = "boundary_type",
+     .units = "",
+     .doc = "relative motion of adjacent plates at their boundary",
+     .type = Type::int8,
+     .flags = kBoundaryFlags,
+     .cell_methods = "area: point"}};
 const Field<float> boundary_strength{
     {.name = "boundary_strength",
      .units = "1",
@@ -83,7 +84,7 @@ const Field<float> boundary_strength{
 const Field<std::int8_t> subduction_polarity{
     {.name = "subduction_polarity",
      .units = "",
-     .doc = "at convergent boundaries, whether the plate here goes above or below the other",
+     .doc = "at convergent boundaries, whether the plate here overrides the other or subducts",
      .type = Type::int8,
      .flags = kPolarityFlags,
      .cell_methods = "area: point"}};
@@ -108,7 +109,7 @@ const Field<float> heat_anomaly{{.name = "heat_anomaly",
                                  .most = 1.0}};
 const Field<float> crust_elevation{{.name = "crust_elevation",
                                     .units = "m",
-                                    .doc = "height of the crust that the plates' history has made",
+                                    .doc = "elevation of the crust after the plates' history",
                                     .type = Type::float32}};
 const Field<float> orogeny_age{{.name = "orogeny_age",
                                 .units = "Myr",
@@ -117,33 +118,33 @@ const Field<float> orogeny_age{{.name = "orogeny_age",
                                 .least = 0.0}};
 const Field<float> fold_direction_east{{.name = "fold_direction_east",
                                         .units = "1",
-                                        .doc = "eastward part of the direction of folds",
+                                        .doc = "eastward component of the direction of folds",
                                         .type = Type::float32,
                                         .least = -1.0,
                                         .most = 1.0}};
 const Field<float> fold_direction_north{{.name = "fold_direction_north",
                                          .units = "1",
-                                         .doc = "northward part of the direction of folds",
+                                         .doc = "northward component of the direction of folds",
                                          .type = Type::float32,
                                          .least = -1.0,
                                          .most = 1.0}};
 const Field<float> ridge_direction_east{
     {.name = "ridge_direction_east",
      .units = "1",
-     .doc = "eastward part of the direction of the ridge that made the floor",
+     .doc = "eastward component of the direction of the ridge that made the floor",
      .type = Type::float32,
      .least = -1.0,
      .most = 1.0}};
 const Field<float> ridge_direction_north{
     {.name = "ridge_direction_north",
      .units = "1",
-     .doc = "northward part of the direction of the ridge that made the floor",
+     .doc = "northward component of the direction of the ridge that made the floor",
      .type = Type::float32,
      .least = -1.0,
      .most = 1.0}};
 const Field<float> ranking{{.name = "ranking",
                             .units = "1",
-                            .doc = "what orders places by height, in any unit",
+                            .doc = "quantity that ranks places by height, in any unit",
                             .type = Type::float32}};
 const Field<float> convergent_deformation{
     {.name = "convergent_deformation",
@@ -191,7 +192,7 @@ const Field<std::int8_t> rock_type{{.name = "rock_type",
                                     .cell_methods = "area: point"}};
 const Field<float> thickening_rate{{.name = "thickening_rate",
                                     .units = "m yr-1",
-                                    .doc = "crust that the shortening of belts adds",
+                                    .doc = "rate at which shortening thickens the crust of belts",
                                     .type = Type::float32,
                                     .least = 0.0}};
 const Field<float> elevation{{.name = "elevation",
@@ -208,24 +209,23 @@ const Field<float> erosion_rate{{.name = "erosion_rate",
 const Field<float> sediment_thickness{
     {.name = "sediment_thickness",
      .units = "m",
-     .doc = "sediment that rivers have laid on land and at sea, as rock without pores",
+     .doc = "sediment deposited on land and at sea, as rock without pores",
      .type = Type::float32,
      .least = 0.0}};
-const Field<float> crust_thickness_change{
-    {.name = "crust_thickness_change",
-     .units = "m",
-     .doc = "what shortening and deposition have added to the crust and erosion has taken from it "
-            "since isostasy gave its thickness",
-     .type = Type::float32}};
+const Field<float> crust_thickness_change{{.name = "crust_thickness_change",
+                                           .units = "m",
+                                           .doc = "change of the crust's thickness by shortening, "
+                                                  "deposition and erosion since stage isostasy",
+                                           .type = Type::float32}};
 const Field<float> deposition_rate{{.name = "deposition_rate",
                                     .units = "m yr-1",
-                                    .doc = "rate at which rivers and the sea lay down sediment",
+                                    .doc = "deposition rate of sediment on land and at sea",
                                     .type = Type::float32,
                                     .least = 0.0}};
 const Field<float> sediment_flux{{.name = "sediment_flux",
                                   .units = "m3 yr-1",
-                                  .doc = "sediment that leaves the cell with its river, or comes "
-                                         "to the sea there, as rock without pores",
+                                  .doc = "sediment that leaves the cell with its river, or reaches "
+                                         "the sea there, as rock without pores",
                                   .type = Type::float32,
                                   .cell_methods = "area: point",
                                   .least = 0.0}};
@@ -239,7 +239,7 @@ const Field<float> ice_thickness{
 const Field<float> glacial_erosion{
     {.name = "glacial_erosion",
      .units = "m",
-     .doc = "rock that ice has taken from the bed, less what it has laid down there",
+     .doc = "rock that ice has eroded from the bed, less what it has deposited there",
      .type = Type::float32}};
 const Field<float> erodibility{{.name = "erodibility",
                                 .units = "yr-1",

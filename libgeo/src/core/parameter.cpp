@@ -165,6 +165,11 @@ Parameter list(std::string_view name, std::string& member, std::string_view doc,
   return parameter;
 }
 
+Parameter renamed(Parameter parameter, std::string_view former_name) {
+  parameter.former_name = former_name;
+  return parameter;
+}
+
 std::string to_toml(const ParameterValue& value) {
   struct Writer {
     std::string operator()(double number) const {
@@ -195,6 +200,21 @@ std::string to_toml(const ParameterValue& value) {
 const Parameter* find_parameter(std::span<const Parameter> parameters, std::string_view name) {
   const auto at = std::find_if(parameters.begin(), parameters.end(),
                                [&](const Parameter& p) { return p.name == name; });
+  return at == parameters.end() ? nullptr : &*at;
+}
+
+const Parameter* find_renamed(std::span<const Parameter> parameters, std::string_view name) {
+  const std::string_view stage = section_of(name);
+  const Parameter* model = find_parameter(parameters, fmt::format("{}.model", stage));
+  const auto is_models_key = [&](const Parameter& p) {
+    if (model == nullptr || p.key() != name.substr(name.rfind('.') + 1)) return false;
+    return std::any_of(model->choices.begin(), model->choices.end(), [&](std::string_view word) {
+      return p.section() == fmt::format("{}.{}", stage, word);
+    });
+  };
+  const auto at = std::find_if(parameters.begin(), parameters.end(), [&](const Parameter& p) {
+    return !name.empty() && (p.former_name == name || is_models_key(p));
+  });
   return at == parameters.end() ? nullptr : &*at;
 }
 

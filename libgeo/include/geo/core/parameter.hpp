@@ -39,6 +39,7 @@ struct Parameter {
   std::variant<double*, std::int64_t*, bool*, std::string*> storage;
   ParameterValue default_value;
   bool takes_list = false;  ///< a text of entries with commas between, in TOML also an array
+  std::string_view former_name = {};  ///< what earlier versions called it; empty: as today
 
   /// All before the last dot of the name, and what follows it.
   [[nodiscard]] std::string_view section() const { return section_of(name); }
@@ -70,6 +71,9 @@ Parameter text(std::string_view name, std::string& member, std::string_view doc,
 Parameter list(std::string_view name, std::string& member, std::string_view doc,
                std::string_view source);
 
+/// A declaration that earlier versions had under another name.
+Parameter renamed(Parameter parameter, std::string_view former_name);
+
 /// The rows of several tables of one struct, in their order.
 template <class Settings>
 std::vector<Parameter> joined(Settings& settings,
@@ -86,6 +90,9 @@ std::string to_toml(const ParameterValue& value);
 
 /// The parameter of that name, or nullptr.
 const Parameter* find_parameter(std::span<const Parameter> parameters, std::string_view name);
+/// The parameter that earlier versions called `name`, or nullptr: the one that was renamed so, or
+/// the one with that key in the section of a model, as those stood in their stage's own section.
+const Parameter* find_renamed(std::span<const Parameter> parameters, std::string_view name);
 /// The candidate nearest to a misspelt word (Damerau-Levenshtein), or empty if none is near.
 std::string nearest_word(std::string_view word, std::span<const std::string_view> candidates);
 

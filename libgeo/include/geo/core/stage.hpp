@@ -59,7 +59,7 @@ struct Hypsography {
   std::vector<double> fraction, elevation_m;
 };
 
-struct ExemplarLibrary;  // kernels/exemplar.hpp
+struct ExemplarLibrary;  // kernels/exemplars/exemplar.hpp
 
 /// What a stage takes: processor time of one thread of the machine that costs were measured on
 /// (an Intel Xeon at 2.5 GHz, planets of 128 x 64 to 1024 x 512 cells), and memory.

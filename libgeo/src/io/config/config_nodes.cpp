@@ -58,6 +58,9 @@ std::optional<ParameterValue> plain_value(const toml::node& node) {
 
 void refuse_unknown(const std::string& where, std::string_view name,
                     std::span<const Parameter> parameters) {
+  if (const Parameter* today = find_renamed(parameters, name)) {
+    throw ConfigurationError(fmt::format("{}{} is now {}", where, name, today->name));
+  }
   const auto section = section_of(name);
   const auto sections = sections_of(parameters);
   if (std::find(sections.begin(), sections.end(), section) == sections.end()) {

@@ -20,7 +20,8 @@ namespace geo::io {
 /// The value of a node, or nothing where it is no plain value (array, table, date).
 [[nodiscard]] std::optional<ParameterValue> plain_value(const toml::node& node);
 
-/// Throws the ConfigurationError of a section or key that no parameter has, with the nearest one.
+/// Throws the ConfigurationError of a section or key that no parameter has: with its name of today
+/// where earlier versions had it, otherwise with the nearest one.
 /// `where` is "file:line: ".
 [[noreturn]] void refuse_unknown(const std::string& where, std::string_view name,
                                  std::span<const Parameter> parameters);

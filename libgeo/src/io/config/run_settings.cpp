@@ -27,15 +27,14 @@ std::vector<Parameter> run_rows(RunSettings& s) {
            "1024x1024",
            "design"),
       choice("run.topology", s.topology, {"sphere", "torus"},
-             "a whole planet, or a tile as wide as the planet's girth whose opposite sides meet, "
-             "for plates.model = raster",
+             "a whole planet, or a tile as wide as the planet's circumference whose opposite sides "
+             "meet, for plates.model = raster",
              "design"),
-      text(
-          "run.turn", s.turn,
-          "LAT,LON,ANGLE, degrees: lays the planet, and what is given of it as files, out with its "
-          "place LAT,LON at the north pole and the prime meridian ANGLE further east; empty turns "
-          "nothing",
-          "design"),
+      text("run.turn", s.turn,
+           "LAT,LON,ANGLE, degrees: turns the planet, and the files given for it, so that LAT,LON "
+           "becomes the north pole and the prime meridian lies ANGLE further east; empty: not "
+           "turned",
+           "design"),
       text("run.from", s.from, "first stage to run; empty is the first there is", "design"),
       text("run.to", s.to, "last stage to run; empty is the last there is", "design"),
   };
@@ -49,10 +48,11 @@ std::vector<Parameter> dem_rows(RunSettings& s) {
            "design"),
       text("dem.variable", s.dem_variable,
            "variable of that file; empty is the one that looks like an elevation", "design"),
-      text("dem.range", s.dem_range,
-           "MIN,MAX, values of black and white in an image, of elevations in m; empty is what the "
-           "JSON beside it says; without dem.file it is that of images in fields.* that have none",
-           "design"),
+      text(
+          "dem.range", s.dem_range,
+          "MIN,MAX, values of black and white in an image (of elevations, in m); empty takes those "
+          "of the JSON beside it; without dem.file they hold for images in fields.* without a JSON",
+          "design"),
       text("dem.window", s.dem_window,
            "W,S,E,N, where the edges of images lie, degrees; empty is the whole planet, or what "
            "the JSON beside them says",
@@ -73,15 +73,14 @@ std::vector<Parameter> fields_rows(RunSettings& s) {
       text("fields.uplift_rate", s.uplift_rate,
            "FILE[:VARIABLE] with the rock uplift of each place, as a velocity", "design"),
       text("fields.hypsography", s.hypsography,
-           "what plates.model = hypsography and erosion.hypsometry = rank aim at: earth, "
+           "target of plates.model = hypsography and erosion.hypsometry = rank: earth, "
            "earth-statistical, or a CSV file with columns quantile,elevation_m",
            "design"),
-      choice(
-          "fields.hypsography_ocean", s.hypsography_ocean, {"planet", "curve"},
-          "its parts below and above 0 are mixed so that planet.ocean_fraction lies below (where "
-          "planet.sea_level is fraction), or it is taken as it stands and its 0 is the sea of all "
-          "stages",
-          "davidson2013"),
+      choice("fields.hypsography_ocean", s.hypsography_ocean, {"planet", "curve"},
+             "its parts below and above 0 are weighted so that planet.ocean_fraction lies below "
+             "(where planet.sea_level is fraction), or it is used unchanged and its 0 is the sea "
+             "level of all stages",
+             "davidson2013"),
       text("fields.ranking", s.ranking,
            "FILE[:VARIABLE] of any unit, a mask or a DEM, that orders places by height where "
            "plates follow a hypsography",
@@ -95,22 +94,22 @@ std::vector<Parameter> fields_rows(RunSettings& s) {
            "CSV file with the motions of plates that fields.plates gives by number: plate_id, "
            "pole_latitude_deg, pole_longitude_deg, rate_deg_myr; the last row of a plate counts",
            "design"),
-      text("fields.initial_elevation", s.initial_elevation,
-           "FILE[:VARIABLE] of a planet's elevation from which drift begins where "
-           "plates.sphere.initial_elevation "
-           "is given",
-           "cortial2019"),
-      text("fields.initial_age", s.initial_age,
-           "FILE[:VARIABLE] of the age of its sea floor, Myr, missing on land; empty tells it by "
-           "depth",
-           "muller2008"),
+      renamed(text("fields.initial_elevation", s.initial_elevation,
+                   "FILE[:VARIABLE] of a planet's elevation from which drift begins where "
+                   "plates.sphere.initial_elevation is given",
+                   "cortial2019"),
+              "fields.first_relief"),
+      renamed(text("fields.initial_age", s.initial_age,
+                   "FILE[:VARIABLE] of the age of its sea floor, Myr, missing on land; empty "
+                   "derives it from depth",
+                   "muller2008"),
+              "fields.first_age"),
       text("fields.start_frame", s.start_frame,
-           "frame of an earlier run, from which drifting plates go on, bit for bit", "design"),
-      text(
-          "fields.exemplars", s.exemplars,
-          "folder of NetCDF or GeoTIFF files, elevations in m, that terrain is made like where "
-          "island.detail or isostasy.detail is exemplars; empty is those that terrane grows itself",
-          "cortial2019"),
+           "frame of an earlier run from which the drift continues, bit for bit", "design"),
+      text("fields.exemplars", s.exemplars,
+           "folder of NetCDF or GeoTIFF files with elevations in m, the exemplars of terrain where "
+           "island.detail or isostasy.detail is exemplars; empty uses those that terrane grows",
+           "cortial2019"),
   };
 }
 
@@ -121,7 +120,7 @@ std::vector<Parameter> output_rows(RunSettings& s) {
            "write each stage of the planet also as a closed surface that ParaView shows as a globe",
            "design"),
       real("output.globe_exaggeration", s.globe_exaggeration, "1", 0.0, 1000.0,
-           "by what heights are multiplied on those surfaces; 0 is a smooth globe", "design"),
+           "factor of heights on those surfaces; 0 is a smooth globe", "design"),
       flag("output.maps", s.maps, "draw the maps and the report", "design"),
       integer("output.map_width_px", s.map_width_px, "1", 300, 20000, "width of the maps in pixels",
               "design"),
@@ -134,9 +133,9 @@ std::vector<Parameter> output_rows(RunSettings& s) {
       flag("output.monthly", s.monthly,
            "also write temperature, precipitation and winds of the twelve months", "design"),
       integer("output.compression", s.compression, "1", 0, 9,
-              "how hard NetCDF files are compressed; 0 stores them as they are", "design"),
+              "compression level of NetCDF files; 0 stores them uncompressed", "design"),
       integer("output.vtk_compression", s.vtk_compression, "1", 0, 9,
-              "how hard VTK files are compressed; 0 stores them as they are", "design"),
+              "compression level of VTK files; 0 stores them uncompressed", "design"),
   };
 }
 

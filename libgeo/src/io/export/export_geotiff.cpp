@@ -8,8 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <limits>
 #include <memory>
 #include <type_traits>
@@ -17,6 +15,7 @@
 #include "export_source.hpp"
 #include "geo/core/error.hpp"
 #include "geo/io/files/atomic_file.hpp"
+#include "io/files/tiff_file.hpp"
 #include "io/maps/map_field.hpp"
 
 namespace geo::io {
@@ -25,27 +24,11 @@ namespace {
 constexpr int kTile = 512;
 constexpr std::uint32_t kMetadata = 42112, kNoData = 42113;  // GDAL's own tags
 
-int keep_reason(TIFF*, void* reason, const char*, const char* format, va_list arguments) {
-  std::array<char, 256> text;
-  std::vsnprintf(text.data(), text.size(), format, arguments);
-  auto& kept = *static_cast<std::string*>(reason);
-  if (kept.empty()) kept = text.data();
-  return 1;
-}
-
-int ignore(TIFF*, void*, const char*, const char*, va_list) { return 1; }
-
 /// A file of libtiff that is being written.
 class Output {
  public:
-  Output(const AtomicFile& file, const char* mode) : file_(file) {
-    XTIFFInitialize();
-    const std::unique_ptr<TIFFOpenOptions, decltype(&TIFFOpenOptionsFree)> options(
-        TIFFOpenOptionsAlloc(), TIFFOpenOptionsFree);
-    TIFFOpenOptionsSetErrorHandlerExtR(options.get(), keep_reason, &reason_);
-    TIFFOpenOptionsSetWarningHandlerExtR(options.get(), ignore, nullptr);
-    tiff_.reset(TIFFOpenExt(file.temporary().c_str(), mode, options.get()));
-    check(tiff_ != nullptr);
+  Output(const AtomicFile& file, const char* mode) : file_(file), tiff_(file.temporary(), mode) {
+    check(get() != nullptr);
     know_tags();
   }
   /// Makes GDAL's tags known, for one directory.
@@ -59,7 +42,7 @@ class Output {
   }
   [[nodiscard]] TIFF* get() const { return tiff_.get(); }
   void check(bool good) const {
-    if (!good) file_.fail(reason_.empty() ? "libtiff refused" : reason_);
+    if (!good) file_.fail(tiff_.reason().empty() ? "libtiff refused" : tiff_.reason());
   }
   template <class... T>
   void set(std::uint32_t tag, T... value) const {
@@ -68,8 +51,7 @@ class Output {
 
  private:
   const AtomicFile& file_;
-  std::string reason_;
-  std::unique_ptr<TIFF, decltype(&TIFFClose)> tiff_{nullptr, TIFFClose};
+  TiffFile tiff_;
 };
 
 /// A raster with rows from the north.

@@ -11,6 +11,7 @@
 #include "geo/core/error.hpp"
 #include "geo/io/files/atomic_file.hpp"
 #include "geo/kernels/remapping/healpix.hpp"
+#include "io/netcdf/grid_description.hpp"
 #include "io/netcdf/netcdf_file.hpp"
 #include "zarr_store.hpp"
 
@@ -110,12 +111,7 @@ void define_mapping(const nc::File& file, const Healpix& pixels, const Ellipsoid
   // The names that tools used before the convention had any.
   put("healpix_nside", pixels.nside());
   file.put(crs, "healpix_order", "nest");
-  if (figure.flattening == 0.0) {
-    file.put(crs, "earth_radius", figure.radius_m);
-  } else {
-    file.put(crs, "semi_major_axis", figure.radius_m);
-    file.put(crs, "inverse_flattening", 1.0 / figure.flattening);
-  }
+  put_figure(file, crs, figure);
 }
 
 void write_positions(const nc::File& file, const Healpix& pixels, const Ellipsoid& figure) {

@@ -5,13 +5,10 @@
 #include <geotiff.h>
 #include <geovalues.h>
 #include <tiffio.h>
-#include <xtiffio.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <limits>
@@ -20,40 +17,25 @@
 
 #include "geo/core/error.hpp"
 #include "io/files/packed_size.hpp"
+#include "io/files/tiff_file.hpp"
 #include "questions.hpp"
 
 namespace geo::io {
 namespace {
 
-/// Why libtiff gave up, in its own words; the first reason is the best.
-int keep_reason(TIFF*, void* reason, const char*, const char* format, va_list arguments) {
-  std::array<char, 256> text;
-  std::vsnprintf(text.data(), text.size(), format, arguments);
-  auto& kept = *static_cast<std::string*>(reason);
-  if (kept.empty()) kept = text.data();
-  return 1;
-}
-
-int ignore(TIFF*, void*, const char*, const char*, va_list) { return 1; }
-
 class Image {
  public:
-  explicit Image(const std::filesystem::path& path) {
-    XTIFFInitialize();
-    const std::unique_ptr<TIFFOpenOptions, decltype(&TIFFOpenOptionsFree)> options(
-        TIFFOpenOptionsAlloc(), TIFFOpenOptionsFree);
-    TIFFOpenOptionsSetErrorHandlerExtR(options.get(), keep_reason, &reason_);
-    TIFFOpenOptionsSetWarningHandlerExtR(options.get(), ignore, nullptr);
-    tiff_.reset(TIFFOpenExt(path.c_str(), "r", options.get()));
-    if (!tiff_) fail();
+  explicit Image(const std::filesystem::path& path) : tiff_(path, "r") {
+    if (get() == nullptr) fail();
     std::error_code error;
     const std::uintmax_t bytes = std::filesystem::file_size(path, error);
     bytes_ = error ? 0 : bytes;
   }
   [[nodiscard]] TIFF* get() const { return tiff_.get(); }
   [[noreturn]] void fail() const {
-    throw InputError(fmt::format("is no sound TIFF file ({})",
-                                 reason_.empty() ? "libtiff does not say why" : reason_));
+    throw InputError(fmt::format("is no sound TIFF file ({})", tiff_.reason().empty()
+                                                                   ? "libtiff does not say why"
+                                                                   : tiff_.reason()));
   }
   /// Before memory is asked for.
   void check_size(int nx, int ny) const {
@@ -74,9 +56,8 @@ class Image {
   }
 
  private:
-  std::string reason_;
+  TiffFile tiff_;
   std::uintmax_t bytes_ = 0;
-  std::unique_ptr<TIFF, decltype(&TIFFClose)> tiff_{nullptr, TIFFClose};
 };
 
 /// How the samples of an image are stored.

@@ -72,12 +72,7 @@ void define_mapping(const nc::File& file, const Grid& grid) {
     file.put(crs, "grid_mapping_name", "latitude_longitude");
   }
   file.put(crs, "longitude_of_prime_meridian", 0.0);
-  if (figure.flattening == 0.0) {
-    file.put(crs, "earth_radius", figure.radius_m);
-  } else {
-    file.put(crs, "semi_major_axis", figure.radius_m);
-    file.put(crs, "inverse_flattening", 1.0 / figure.flattening);
-  }
+  put_figure(file, crs, figure);
 }
 
 constexpr std::size_t kCorners = 4, kCornerRows = 64;  // of a cell; written and compressed together
@@ -252,6 +247,15 @@ void write_coordinates(const nc::File& file, const Grid& grid) {
   if (const auto mapping = file.find_variable(kMapping)) {
     constexpr int kNoMeaning = 0;  // its attributes tell; left out, every reader would find another
     nc::check(nc_put_var_int(file.id(), *mapping, &kNoMeaning));
+  }
+}
+
+void put_figure(const nc::File& file, int mapping, const Ellipsoid& figure) {
+  if (figure.flattening == 0.0) {
+    file.put(mapping, "earth_radius", figure.radius_m);
+  } else {
+    file.put(mapping, "semi_major_axis", figure.radius_m);
+    file.put(mapping, "inverse_flattening", 1.0 / figure.flattening);
   }
 }
 

@@ -18,6 +18,8 @@ struct GridVariables {
 GridVariables define_grid(const nc::File& file, const Grid& grid);
 /// Writes the values of those variables; cell areas are left to `cell_areas`.
 void write_coordinates(const nc::File& file, const Grid& grid);
+/// Gives a grid mapping the figure of its planet, a sphere or an ellipsoid.
+void put_figure(const nc::File& file, int mapping, const Ellipsoid& figure);
 /// Area of each cell, m2.
 std::vector<double> cell_areas(const Grid& grid);
 

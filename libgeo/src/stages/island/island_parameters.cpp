@@ -23,9 +23,9 @@ std::vector<Parameter> place_rows(IslandParameters& p) {
 std::vector<Parameter> detail_rows(IslandParameters& p) {
   return {
       choice("island.detail", p.detail, {"roughness", "height", "exemplars"},
-             "fractal detail whose amplitude follows the roughness of the planet's surface around, "
-             "whose spectrum it continues, or the height itself; or terrain of exemplars, by kind "
-             "and along folds, as high as that roughness",
+             "fractal detail that continues the spectrum and the roughness of the planet's surface "
+             "around it, or whose amplitude follows height; or terrain of exemplars, chosen by "
+             "kind, aligned with folds and as rough",
              "cortial2019"),
       real("island.detail_amplitude", p.detail_amplitude, "1", 0.0, 10.0,
            "standard deviation of detail over the roughness of the planet's cells", "huang1989"),

@@ -140,12 +140,14 @@ std::vector<Parameter> sea_floor_rows(IsostasyParameters& p) {
 std::vector<Parameter> land_rows(IsostasyParameters& p) {
   return {
       real("isostasy.land_roughness_m", p.land_roughness_m, "m", 0.0, 5000.0,
-           "standard deviation of the noise from which rivers find their ways", "huang1989"),
-      real("isostasy.noise_factor", p.noise_factor, "1", 0.0, 100.0,
-           "factor of the blueprint's noise overlay, blueprint crust alone", "tectonica2026"),
+           "standard deviation of the noise on which drainage first forms", "huang1989"),
+      renamed(
+          real("isostasy.noise_factor", p.noise_factor, "1", 0.0, 100.0,
+               "factor of the blueprint's noise overlay, blueprint crust alone", "tectonica2026"),
+          "isostasy.noise_m"),
       choice("isostasy.detail", p.detail, {"noise", "exemplars"},
-             "what continents have below the wavelengths that plates make: noise, or terrain like "
-             "exemplars (fields.exemplars), turned to the folds",
+             "terrain of continents at wavelengths shorter than those of the plates: noise, or "
+             "terrain like exemplars (fields.exemplars), aligned with the folds",
              "cortial2019"),
       real("isostasy.detail_longest_km", p.detail_longest_km, "km", 10.0, 1000.0,
            "longest waves of detail made of exemplars; longer ones are the plates' work", "design"),

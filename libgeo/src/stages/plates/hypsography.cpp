@@ -184,11 +184,12 @@ float seen_at(const Grid& grid, std::span<const float> values, const Vector3& pl
 
 std::vector<Parameter> hypsography_parameters(PlatesParameters& p) {
   return {
-      choice("plates.sphere.initial_elevation", p.initial_elevation,
-             {"noise", "hypsography", "given"},
-             "the first continents from noise, the first crust as the model hypsography "
-             "has it, or the elevation of fields.initial_elevation",
-             "davidson2013"),
+      renamed(choice("plates.sphere.initial_elevation", p.initial_elevation,
+                     {"noise", "hypsography", "given"},
+                     "initial elevation: continents from noise, crust as the model hypsography "
+                     "makes it, or that of fields.initial_elevation",
+                     "davidson2013"),
+              "plates.first_relief"),
       choice("plates.hypsography.ranking", p.ranking.by, {"great-circles", "fbm"},
              "the noise that orders places by height, unless fields.ranking does", "davidson2013"),
       integer("plates.hypsography.circles", p.ranking.cuts.circles, "1", 1, 100'000,

@@ -13,15 +13,15 @@ namespace {
 std::vector<Parameter> shared_rows(PlatesParameters& p) {
   return {
       choice("plates.model", p.model, {"growth", "sphere", "raster", "hypsography"},
-             "how plates come about: they grow as they stand today; drift, subduct, "
-             "collide and break on a sphere through time; drift and collide as height maps on a "
-             "torus; or there is one at rest whose heights follow a hypsography",
+             "origin of the plates: grown as they are today; drifting, subducting, colliding and "
+             "rifting on a sphere through time; drifting and colliding as height maps; or one "
+             "plate at rest whose elevations follow a hypsography",
              "cortial2019"),
       integer("plates.count", p.growth.count, "1", 1, 100, "number of plates", "tectonica2026"),
       real("plates.speed_cm_yr", p.growth.speed_cm_yr, "cm yr-1", 0.1, 50.0,
            "middle of the plates' speeds", "tectonica2026"),
-      flag("plates.no_net_rotation", p.no_net_rotation,
-           "take the common rotation of all plates away", "bird2003"),
+      flag("plates.no_net_rotation", p.no_net_rotation, "remove the net rotation of all plates",
+           "bird2003"),
       real("plates.boundary_smoothing_km", p.boundary_smoothing_km, "km", 50.0, 2000.0,
            "length over which direction and motion of a boundary are taken", "design"),
       real("plates.boundary_width_km", p.boundary_width_km, "km", 10.0, 200.0,
@@ -52,11 +52,10 @@ std::vector<Parameter> growth_rows(PlatesParameters& p) {
            "tectonica2026"),
       real("plates.growth.polar_resistance", p.growth.polar_resistance, "1", 0.0, 1.0,
            "extra cost of growth at the poles", "tectonica2026"),
-      integer(
-          "plates.growth.centre_candidates", p.growth.centre_candidates, "1", 1, 1000,
-          "places drawn for each plate, of which it begins at the one farthest from its elders; "
-          "1: anywhere",
-          "tectonica2026"),
+      integer("plates.growth.centre_candidates", p.growth.centre_candidates, "1", 1, 1000,
+              "candidate places drawn for each plate, which starts at the one farthest from "
+              "earlier plates; 1: anywhere",
+              "tectonica2026"),
       real("plates.growth.smallest_part_km2", p.growth.smallest_part_km2, "km2", 0.0, 1e8,
            "smaller detached pieces of a plate join a neighbour at once, larger ones when all "
            "plates "
@@ -65,7 +64,9 @@ std::vector<Parameter> growth_rows(PlatesParameters& p) {
       integer("plates.growth.evolution_steps", p.evolution_steps, "1", 0, 100,
               "steps of 0.9 to 3.4 Myr in which the grown plates move", "tectonica2026"),
       real("plates.growth.outline_bending_km", p.outline_bending_km, "km", 0.0, 200.0,
-           "how far the outlines of plates bend below the resolution they grow at", "design"),
+           "amplitude by which outlines of plates are warped below the resolution at which they "
+           "grow",
+           "design"),
   };
 }
 
@@ -113,7 +114,7 @@ std::vector<Parameter> sphere_drift_rows(PlatesParameters& p) {
            "smaller seas that the first continents' noise encloses are land; 0 closes none",
            "design"),
       real("plates.sphere.first_crust_km", p.start.continental_km, "km", 5.0, 80.0,
-           "thickness of the first continents", "laske2013"),
+           "initial thickness of continents", "laske2013"),
       real("plates.sphere.fastest_mm_yr", p.sphere.law.speed_mm_yr, "mm yr-1", 1.0, 1000.0,
            "speed of the fastest plate", "cortial2019"),
       real("plates.sphere.ridge_elevation_km", p.sphere.law.ridge_km, "km", -20.0, 0.0,
@@ -143,8 +144,8 @@ std::vector<Parameter> sphere_subduction_rows(PlatesParameters& p) {
              "uplift over the distance from the trench, by two cubics or by Driftworld's one",
              "cortial2019"),
       choice("plates.sphere.overlap", p.overlap, {"crust", "score"},
-             "what stays up where plates overlap: continents and the younger floor, or, as "
-             "in Driftworld, the whole plate that has more continent",
+             "what overrides where plates overlap: continents and the younger floor, or, as in "
+             "Driftworld, the whole plate that has more continent",
              "cortial2019"),
       choice("plates.sphere.collisions", p.collisions, {"terranes", "plates"},
              "continents that collide leave their plate behind, or, as in Driftworld, their "
@@ -155,14 +156,14 @@ std::vector<Parameter> sphere_subduction_rows(PlatesParameters& p) {
              "subducting plates",
              "cortial2019"),
       choice("plates.sphere.accretion", p.accretion, {"wedge", "abyss"},
-             "sediment piles in the wedge behind trenches, or, as in Driftworld, on all floor "
+             "sediment accretes in the wedge behind trenches, or, as in Driftworld, on all floor "
              "below plates.sphere.accretion_top_km",
              "cortial2019"),
       choice("plates.sphere.rifting", p.rifting, {"any", "largest"},
              "any plate may rift, or, as in Driftworld, the largest alone, into two",
              "cortial2019"),
       real("plates.sphere.uplift_control_km", p.sphere.uplift_control_km, "km", 1.0, 5000.0,
-           "distance from the trench at which subduction raises most", "cortial2019"),
+           "distance from the trench at which uplift by subduction is greatest", "cortial2019"),
       real("plates.sphere.arc_reach_km", p.sphere.arc_reach_km, "km", 10.0, 10000.0,
            "distance from the trench over which subduction raises an overriding plate of ocean "
            "floor",
@@ -187,7 +188,7 @@ std::vector<Parameter> sphere_force_rows(PlatesParameters& p) {
       real("plates.sphere.slab_share", p.sphere.force.slab_share, "1", 0.0, 1.0,
            "share of a slab's weight that reaches its plate, with forces", "forsyth1975"),
       real("plates.sphere.suction_share", p.sphere.force.suction_share, "1", 0.0, 1.0,
-           "share of a slab's weight that draws the plate above it to the trench, with "
+           "share of a slab's weight that pulls the overriding plate towards the trench, with "
            "forces",
            "conrad2002"),
       real("plates.sphere.slab_km", p.sphere.force.slab_km, "km", 0.0, 3000.0,
@@ -218,7 +219,7 @@ std::vector<Parameter> sphere_collision_rows(PlatesParameters& p) {
       real("plates.sphere.collision_coefficient_km", p.sphere.law.collision_per_km, "km-1", 0.0,
            1.0, "height of a collision's surge per area of the terrane", "cortial2019"),
       real("plates.sphere.surge_km", p.sphere.surge_km, "km", 0.0, 20.0,
-           "most that one collision lifts", "christensen1995"),
+           "greatest uplift by one collision", "christensen1995"),
       real("plates.sphere.thickest_km", p.sphere.thickest_km, "km", 0.0, 200.0,
            "thickest continental crust: lower-crustal flow spreads what would be thicker; 0 "
            "sets no limit",
@@ -229,23 +230,23 @@ std::vector<Parameter> sphere_collision_rows(PlatesParameters& p) {
 std::vector<Parameter> sphere_surface_rows(PlatesParameters& p) {
   return {
       choice("plates.sphere.ocean_floor", p.ocean_floor, {"damping", "age"},
-             "sea floor that sinks by damping, or as deep as its age", "stein1992"),
+             "subsidence of the sea floor, by damping or to the depth of its age", "stein1992"),
       real("plates.sphere.ridge_falloff", p.sphere.ridge_falloff, "1", 0.001, 1.0,
            "distance over which a ridge's profile halves, in radii of the planet", "cortial2019"),
       real("plates.sphere.ocean_damping_mm_yr", p.sphere.law.damping_mm_yr, "mm yr-1", 0.0, 10.0,
-           "sinking of the sea floor, with damping", "cortial2019"),
+           "subsidence of the sea floor, with damping", "cortial2019"),
       real("plates.sphere.continental_erosion_mm_yr", p.sphere.law.erosion_mm_yr, "mm yr-1", 0.0,
            10.0, "erosion of the highest continents", "cortial2019"),
       choice(
           "plates.sphere.erosion", p.erosion, {"height", "land", "rivers"},
-          "continents wear down by their height, and what lies below the sea fills up; "
-          "the same on land alone; or rivers carve them between the steps and lay down what they "
-          "carry",
+          "continents erode according to their height, and basins below the sea fill up; the same "
+          "on land alone; or rivers erode them between the steps and deposit what they carry",
           "cortial2019"),
       real("plates.sphere.river_erodibility_yr", p.sphere.rivers.erodibility_yr, "yr-1", 0.0, 1.0,
            "erodibility K for the square root of the drained area, with rivers", "whipple1999"),
       real("plates.sphere.settling_km", p.sphere.rivers.settling_km, "km", 1.0, 5000.0,
-           "length over which the sea lays down most of what rivers bring, with rivers", "design"),
+           "length over which most of the rivers' sediment is deposited at sea, with rivers",
+           "design"),
       real("plates.sphere.sediment_accretion_mm_yr", p.sphere.law.accretion_mm_yr, "mm yr-1", 0.0,
            10.0, "growth of the wedge of sediment at trenches", "cortial2019"),
       real("plates.sphere.accretion_top_km", p.sphere.accretion_top_km, "km", -10.0, 0.0,
@@ -270,13 +271,13 @@ std::vector<Parameter> sphere_volcano_rows(PlatesParameters& p) {
            "of a sample's spacing at least",
            "tenbrink1991"),
       real("plates.sphere.volcano_spacing_km", p.sphere.volcano_spacing_km, "km", 1.0, 5000.0,
-           "mean way of a plate from one volcano of a plume to the next", "tenbrink1991"),
+           "mean distance on a plate from one volcano of a plume to the next", "tenbrink1991"),
       real("plates.sphere.island_wear_myr", p.sphere.island_wear_myr, "Myr", 0.0, 1000.0,
-           "time in which volcanic islands wear down to 1/e of their height; 0 keeps them",
+           "time in which volcanic islands erode to 1/e of their height; 0 keeps them",
            "ramalho2013"),
       real("plates.sphere.swell_decay_myr", p.sphere.swell_decay_myr, "Myr", 0.0, 1000.0,
-           "time in which the sea floor sinks back to 1/e of what lifted it above the depth "
-           "of its age, by age alone; 0 keeps it",
+           "time in which uplift of the sea floor above the depth of its age decays to 1/e, by age "
+           "alone; 0 keeps it",
            "detrick1978"),
       real("plates.sphere.plume_top_km", p.sphere.plume_top_km, "km", -5.0, 10.0,
            "height that those volcanoes reach", "design"),
@@ -306,19 +307,23 @@ std::vector<Parameter> sphere_rifting_rows(PlatesParameters& p) {
       real("plates.sphere.rift_speed_mm_yr", p.sphere.rift_speed_mm_yr, "mm yr-1", 0.0, 1000.0,
            "speed at which fragments leave the middle of their plate", "design"),
       real("plates.sphere.rift_onset_myr", p.sphere.rift_onset_myr, "Myr", 0.0, 1000.0,
-           "time in which they come to it; 0: at once", "brune2016"),
+           "time in which they reach it; 0: at once", "brune2016"),
       real("plates.sphere.rift_warp_km", p.sphere.rift_warp_km, "km", 0.0, 5000.0,
            "how far the borders of fragments are warped", "cortial2019"),
-      real("plates.sphere.subduction_initiation_myr", p.sphere.initiation_per_myr, "Myr-1", 0.0,
-           1.0,
-           "rate at which each 1000 km of a passive margin with old floor become a "
-           "subduction zone",
-           "bradley2008"),
-      real("plates.sphere.subduction_initiation_age_myr", p.sphere.initiation_age_myr, "Myr", 0.0,
-           5000.0, "age from which floor at a passive margin is so old", "bradley2008"),
-      real("plates.sphere.subduction_initiation_speed_mm_yr", p.sphere.initiation_speed_mm_yr,
-           "mm yr-1", 0.0, 1000.0, "speed at which floor begins to subduct below its own continent",
-           "stern2004"),
+      renamed(real("plates.sphere.subduction_initiation_myr", p.sphere.initiation_per_myr, "Myr-1",
+                   0.0, 1.0,
+                   "rate at which each 1000 km of a passive margin with old floor become a "
+                   "subduction zone",
+                   "bradley2008"),
+              "plates.foundering_myr"),
+      renamed(
+          real("plates.sphere.subduction_initiation_age_myr", p.sphere.initiation_age_myr, "Myr",
+               0.0, 5000.0, "age from which floor at a passive margin is so old", "bradley2008"),
+          "plates.foundering_age_myr"),
+      renamed(real("plates.sphere.subduction_initiation_speed_mm_yr",
+                   p.sphere.initiation_speed_mm_yr, "mm yr-1", 0.0, 1000.0,
+                   "speed at which floor begins to subduct below its own continent", "stern2004"),
+              "plates.foundering_speed_mm_yr"),
   };
 }
 

@@ -210,7 +210,7 @@ struct Subduction {
   std::int16_t down;
 };
 
-/// Floor goes below a continent, of two floors the older, of two continents the faster.
+/// Sea floor subducts below a continent, the older of two floors, the faster of two continents.
 Subduction subduction_of(const std::array<Side, 2>& sides) {
   constexpr double kContinental = 0.45;
   const Side &first = sides[0], &second = sides[1];

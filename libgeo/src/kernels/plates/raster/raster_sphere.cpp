@@ -91,15 +91,8 @@ void RasterSphere::divide(std::vector<RasterCrust> crust) {
 }
 
 RasterCycle::Motion RasterSphere::motion() const {
-  RasterCycle::Motion motion;
-  for (const RasterSpherePlate& plate : plates_) {
-    if (!plate.alive) continue;
-    const double cells = plate.speed() / cell_rad_;
-    motion.speed += cells;
-    motion.momentum += cells * plate.mass;
-    ++motion.plates;
-  }
-  return motion;
+  return RasterCycle::motion_of(
+      plates_, [&](const RasterSpherePlate& plate) { return plate.speed() / cell_rad_; });
 }
 
 bool RasterSphere::advance() {

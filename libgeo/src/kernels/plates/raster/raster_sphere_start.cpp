@@ -4,9 +4,9 @@
 #include <string>
 
 #include "geo/core/error.hpp"
-#include "geo/core/random.hpp"
 #include "geo/kernels/noise/noise.hpp"
 #include "geo/kernels/plates/raster/raster_sphere.hpp"
+#include "raster_growth.hpp"
 
 namespace geo {
 namespace {
@@ -47,37 +47,10 @@ std::vector<std::int16_t> grow_raster_sphere_plates(const FibonacciSphere& sampl
   }
   const FibonacciSphere places(std::max(kPlaces, kPlacesOfAPlate * plates));
   const SphereMesh mesh(places);
-  const RandomStream random(seed, "raster.growth");
-  std::uint64_t draw = 0;
-  const auto below = [&](std::size_t count) {
-    return static_cast<std::size_t>((std::uint64_t{random.words(draw++, round)[0]} * count) >> 32);
-  };
-  std::vector<std::int16_t> plate(places.size(), -1);
-  std::vector<std::vector<std::int32_t>> border(plates);
-  for (int p = 0; p < plates; ++p) {
-    std::int32_t place = 0;
-    do {
-      place = static_cast<std::int32_t>(below(plate.size()));
-    } while (plate[place] >= 0);
-    plate[place] = static_cast<std::int16_t>(p);
-    border[p].push_back(place);
-  }
-  for (bool grows = true; grows;) {
-    grows = false;
-    for (int p = 0; p < plates; ++p) {
-      if (border[p].empty()) continue;
-      grows = true;
-      const std::size_t pick = below(border[p].size());
-      const std::int32_t place = border[p][pick];
-      border[p][pick] = border[p].back();
-      border[p].pop_back();
-      for (const std::int32_t next : mesh.neighbours(place)) {
-        if (plate[next] >= 0) continue;
-        plate[next] = static_cast<std::int16_t>(p);
-        border[p].push_back(next);
-      }
-    }
-  }
+  const std::vector<std::int16_t> plate =
+      grow_over(places.size(), plates, seed, round, [&](std::int32_t place, auto&& take) {
+        for (const std::int32_t next : mesh.neighbours(place)) take(next);
+      });
   // Outlines bend at scales below that lattice's.
   constexpr double kMost = 2.2, kWavelength = 9.0;  // spacings of the lattice
   constexpr int kOctaves = 6;

@@ -6,6 +6,7 @@
 
 #include "geo/core/error.hpp"
 #include "geo/core/random.hpp"
+#include "raster_growth.hpp"
 
 namespace geo {
 namespace {
@@ -104,42 +105,14 @@ namespace {
 /// Grows plates on a lattice from random places of it.
 std::vector<std::int16_t> grow(const RasterWorld& lattice, int plates, std::uint64_t seed,
                                std::uint64_t round) {
-  const RandomStream random(seed, "raster.growth");
-  std::uint64_t draw = 0;
-  const auto below = [&](std::size_t count) {
-    return static_cast<std::size_t>((std::uint64_t{random.words(draw++, round)[0]} * count) >> 32);
-  };
-  std::vector<std::int16_t> plate(lattice.size(), -1);
-  std::vector<std::vector<std::int32_t>> border(plates);
-  for (int p = 0; p < plates; ++p) {
-    std::int32_t cell = 0;
-    do {
-      cell = static_cast<std::int32_t>(below(plate.size()));
-    } while (plate[cell] >= 0);
-    plate[cell] = static_cast<std::int16_t>(p);
-    border[p].push_back(cell);
-  }
-  for (bool grows = true; grows;) {
-    grows = false;
-    for (int p = 0; p < plates; ++p) {
-      if (border[p].empty()) continue;
-      grows = true;
-      const std::size_t pick = below(border[p].size());
-      const std::int32_t cell = border[p][pick];
-      border[p][pick] = border[p].back();
-      border[p].pop_back();
-      const int x = cell % lattice.columns, y = cell / lattice.columns;
-      const std::int32_t row = y * lattice.columns;
-      for (const std::int32_t next :
-           {lattice.row(y + 1) * lattice.columns + x, lattice.row(y - 1) * lattice.columns + x,
-            row + lattice.column(x - 1), row + lattice.column(x + 1)}) {
-        if (plate[next] >= 0) continue;
-        plate[next] = static_cast<std::int16_t>(p);
-        border[p].push_back(next);
-      }
-    }
-  }
-  return plate;
+  return grow_over(lattice.size(), plates, seed, round, [&](std::int32_t cell, auto&& take) {
+    const int x = cell % lattice.columns, y = cell / lattice.columns;
+    const std::int32_t row = y * lattice.columns;
+    take(lattice.row(y + 1) * lattice.columns + x);
+    take(lattice.row(y - 1) * lattice.columns + x);
+    take(row + lattice.column(x - 1));
+    take(row + lattice.column(x + 1));
+  });
 }
 
 }  // namespace

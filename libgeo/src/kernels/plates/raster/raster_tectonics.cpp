@@ -96,15 +96,8 @@ void RasterTectonics::divide(std::vector<RasterCrust> crust) {
 }
 
 RasterCycle::Motion RasterTectonics::motion() const {
-  RasterCycle::Motion motion;
-  for (const RasterPlate& plate : plates_) {
-    if (!plate.alive) continue;
-    const double speed = std::hypot(plate.east, plate.north);
-    motion.speed += speed;
-    motion.momentum += speed * plate.mass;
-    ++motion.plates;
-  }
-  return motion;
+  return RasterCycle::motion_of(
+      plates_, [](const RasterPlate& plate) { return std::hypot(plate.east, plate.north); });
 }
 
 bool RasterTectonics::advance() {

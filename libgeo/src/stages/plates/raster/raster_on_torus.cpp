@@ -5,6 +5,7 @@
 
 #include "geo/kernels/plates/plate_boundaries.hpp"
 #include "raster.hpp"
+#include "stages/plates/drifted_fields.hpp"
 
 namespace geo {
 namespace {
@@ -76,32 +77,6 @@ class TorusBoundaries {
   std::vector<Contact> contact_;
 };
 
-/// The fields that plates and their crust are told by.
-struct PlateFields {
-  explicit PlateFields(StageIo& io)
-      : plate(io.write(field::plate_id)),
-        type(io.write(field::boundary_type)),
-        orogeny(io.write(field::orogeny_type)),
-        fraction(io.write(field::continental_fraction)),
-        east(io.write(field::plate_velocity_east)),
-        north(io.write(field::plate_velocity_north)),
-        strength(io.write(field::boundary_strength)),
-        age(io.write(field::crust_age)),
-        heat(io.write(field::heat_anomaly)),
-        elevation(io.write(field::crust_elevation)),
-        thickness(io.write(field::crust_thickness)),
-        orogeny_age(io.write(field::orogeny_age)),
-        fold_east(io.write(field::fold_direction_east)),
-        fold_north(io.write(field::fold_direction_north)),
-        ridge_east(io.write(field::ridge_direction_east)),
-        ridge_north(io.write(field::ridge_direction_north)) {}
-
-  std::span<std::int16_t> plate;
-  std::span<std::int8_t> type, orogeny;
-  std::span<float> fraction, east, north, strength, age, heat, elevation, thickness, orogeny_age,
-      fold_east, fold_north, ridge_east, ridge_north;
-};
-
 }  // namespace
 
 void lay_on_torus(const PlatesParameters& parameters, const RasterTectonics& model,
@@ -113,7 +88,7 @@ void lay_on_torus(const PlatesParameters& parameters, const RasterTectonics& mod
   const RasterElevation surface = raster_elevation(model, scale);
   const RasterWorld& world = surface.world;
   const TorusBoundaries boundaries(parameters, model, surface, scale);
-  const PlateFields f(io);
+  const DriftedFields f(io);
   constexpr float kBackgroundHeat = 0.2F;
 #pragma omp parallel for schedule(static)
   for (int j = 0; j < grid.ny(); ++j) {

@@ -22,37 +22,6 @@ double continental_share(const SphereCrust& crust, std::int32_t sample, double w
 
 }  // namespace
 
-struct SphereOnGrid::Outputs {
-  Outputs(StageIo& io, bool knows_polarity)
-      : plate(io.write(field::plate_id)),
-        fraction(io.write(field::continental_fraction)),
-        east(io.write(field::plate_velocity_east)),
-        north(io.write(field::plate_velocity_north)),
-        type(io.write(field::boundary_type)),
-        strength(io.write(field::boundary_strength)),
-        age(io.write(field::crust_age)),
-        orogeny(io.write(field::orogeny_type)),
-        heat(io.write(field::heat_anomaly)),
-        polarity(knows_polarity ? io.write(field::subduction_polarity) : std::span<std::int8_t>()),
-        elevation(io.write(field::crust_elevation)),
-        thickness(io.write(field::crust_thickness)),
-        orogeny_age(io.write(field::orogeny_age)),
-        fold_east(io.write(field::fold_direction_east)),
-        fold_north(io.write(field::fold_direction_north)),
-        ridge_east(io.write(field::ridge_direction_east)),
-        ridge_north(io.write(field::ridge_direction_north)) {}
-
-  std::span<std::int16_t> plate;
-  std::span<float> fraction, east, north;
-  std::span<std::int8_t> type;
-  std::span<float> strength, age;
-  std::span<std::int8_t> orogeny;
-  std::span<float> heat;
-  std::span<std::int8_t> polarity;  // empty where the model does not know which plate subducts
-  std::span<float> elevation, thickness, orogeny_age;
-  std::span<float> fold_east, fold_north, ridge_east, ridge_north;
-};
-
 /// Places on the lattice for cells along a row: near plate boundaries and coasts, outlines bend at
 /// scales below the lattice's.
 class SphereOnGrid::Bends {
@@ -147,7 +116,7 @@ void SphereOnGrid::find_polarity() {
 }
 
 void SphereOnGrid::draw(StageIo& io) const {
-  const Outputs out(io, p_.model == "sphere");
+  const DriftedFields out(io, p_.model == "sphere");
   ParallelErrors errors;
 #pragma omp parallel
   {
@@ -174,7 +143,7 @@ void SphereOnGrid::draw(StageIo& io) const {
 }
 
 void SphereOnGrid::draw_crust(const Cell& at, Index cell, const Vector3& unit,
-                              const Outputs& out) const {
+                              const DriftedFields& out) const {
   const SphereCrust& crust = model_.state.crust;
   const std::int16_t plate = crust.plate[at.nearest];
   out.plate[cell] = model_.state.plates[plate].id;
@@ -216,7 +185,7 @@ void SphereOnGrid::draw_crust(const Cell& at, Index cell, const Vector3& unit,
 }
 
 void SphereOnGrid::draw_boundary(const Cell& at, Index cell, const Vector3& bent,
-                                 const Outputs& out) const {
+                                 const DriftedFields& out) const {
   out.type[cell] = static_cast<std::int8_t>(BoundaryType::interior);
   out.strength[cell] = 0.0F;
   if (!out.polarity.empty()) out.polarity[cell] = 0;

@@ -5,6 +5,7 @@
 #include "geo/kernels/plates/sphere/sphere_boundaries.hpp"
 #include "geo/kernels/plates/sphere/sphere_tectonics.hpp"
 #include "geo/stages/plates/plates.hpp"
+#include "stages/plates/drifted_fields.hpp"
 
 namespace geo {
 
@@ -22,16 +23,16 @@ class SphereOnGrid {
   [[nodiscard]] std::span<const SphereBoundary> boundaries() const { return boundaries_; }
 
  private:
-  struct Outputs;
   class Bends;
   struct Cell {
     SphereMesh::Place place;
     std::int32_t nearest;
   };
   void find_polarity();
-  void draw_crust(const Cell& at, Index cell, const Vector3& unit, const Outputs& out) const;
+  void draw_crust(const Cell& at, Index cell, const Vector3& unit, const DriftedFields& out) const;
   [[nodiscard]] double age(const Cell& at, std::int16_t plate, bool land) const;
-  void draw_boundary(const Cell& at, Index cell, const Vector3& bent, const Outputs& out) const;
+  void draw_boundary(const Cell& at, Index cell, const Vector3& bent,
+                     const DriftedFields& out) const;
   [[nodiscard]] float heat(const Vector3& unit) const;
 
   const PlatesParameters& p_;

@@ -97,6 +97,19 @@ class RasterCycle {
            now.momentum < limits.momentum * peak_momentum_ || quiet_ > limits.quiet ||
            steps_ >= limits.steps;
   }
+  /// The motion of all plates that live; `speed_of(plate)` in cells a step.
+  template <class Plates, class Speed>
+  [[nodiscard]] static Motion motion_of(const Plates& plates, Speed&& speed_of) {
+    Motion motion;
+    for (const auto& plate : plates) {
+      if (!plate.alive) continue;
+      const double speed = speed_of(plate);
+      motion.speed += speed;
+      motion.momentum += speed * plate.mass;
+      ++motion.plates;
+    }
+    return motion;
+  }
   void begin_step() { ++steps_; }
   void note(bool continents_met) { quiet_ = continents_met ? 0 : quiet_ + 1; }
   [[nodiscard]] int steps() const { return steps_; }
