@@ -153,16 +153,42 @@ TEST(EnergyBalance, HarmonicSolvesTheStoringPlanet) {
   EXPECT_NEAR(std::abs(temperature / expected - 1.0), 0.0, 1e-3);
 }
 
-TEST(EnergyBalance, HeightsOnlyMatterThroughSnowAndIce) {
+TEST(EnergyBalance, HeightsMatterThroughSnowIceAndTheHeatThatTheyHoldBack) {
   const Grid grid = Grid::sphere(60, 30);
-  const EnergyBalance model;
+  EnergyBalance open;
+  open.blocking_height_m = 1e12;
   const Index cell = grid.cell(0, 3);
-  EXPECT_LT(solve(grid, model, 1.0F, 3000.0F).mean_c(cell), solve(grid, model, 1.0F).mean_c(cell))
+  EXPECT_LT(solve(grid, open, 1.0F, 3000.0F).mean_c(cell), solve(grid, open, 1.0F).mean_c(cell))
       << "a high plateau near the pole is icier";
-  EnergyBalance without = model;
+  EnergyBalance without = open;
   without.ice_width_k = 0.0;
-  EXPECT_NEAR(solve(grid, without, 1.0F, 3000.0F).mean_c(cell),
-              solve(grid, without, 1.0F).mean_c(cell), 1e-6);
+  const double low_c = solve(grid, without, 1.0F).mean_c(cell);
+  EXPECT_NEAR(solve(grid, without, 1.0F, 3000.0F).mean_c(cell), low_c, 1e-6);
+  // Where the diffusivity is that of a fraction, so is the temperature.
+  EnergyBalance blocked = without, slow = without;
+  blocked.blocking_height_m = 3000.0;
+  slow.diffusivity_w_m2_k *= 0.5;
+  EXPECT_NEAR(solve(grid, blocked, 1.0F, 3000.0F).mean_c(cell),
+              solve(grid, slow, 1.0F).mean_c(cell), 1e-6);
+  EXPECT_LT(solve(grid, slow, 1.0F).mean_c(cell), low_c - 1.0);
+}
+
+// Behind a range that holds heat back the far side keeps its own climate.
+TEST(EnergyBalance, RangesKeepWarmGroundFromCold) {
+  const Grid grid = Grid::sphere(90, 45);
+  std::vector<double> latitude;
+  for (int j = 0; j < grid.ny(); ++j) latitude.push_back(grid.latitude_deg(j));
+  EnergyBalance model;
+  model.ice_width_k = 0.0;
+  std::vector<float> land(grid.size(), 1.0F), flat(grid.size(), 0.0F), range = flat;
+  for (Index c = 0; c < grid.size(); ++c) {
+    if (std::abs(grid.latitude_deg(grid.row(c)) - 32.0) < 3.0) range[c] = 5000.0F;
+  }
+  const auto contrast_k = [&](const std::vector<float>& height_m) {
+    const auto year = solve_energy_balance(grid, model, false, latitude, land, height_m);
+    return year.month_c(grid.cell(0, 29), 0) - year.month_c(grid.cell(0, 33), 0);
+  };
+  EXPECT_GT(contrast_k(range), 1.5 * contrast_k(flat));
 }
 
 TEST(EnergyBalance, SeaWindsMakeWesternCoastsMild) {
