@@ -10,7 +10,7 @@ namespace geo {
 struct SoilMoisture {
   double capacity_mm = 100;
   double stressed_share =
-      0.377;  ///< of the capacity, below which evaporation falls with the soil's water
+      0.373;  ///< of the capacity, below which evaporation falls with the soil's water
   double melt_mm_k_month = 90.0;  ///< snow that melts per kelvin above freezing
 };
 
