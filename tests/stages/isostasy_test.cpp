@@ -389,32 +389,6 @@ TEST(Isostasy, OldBeltsStandInLocalBalance) {
   }
 }
 
-TEST(Isostasy, DenseRootsOfOldBeltsHoldUpAsMuchLessAsTheyHaveLost) {
-  IsostasyParameters none, light, dense;
-  for (auto* p : {&none, &light, &dense}) p->ocean_depth_m = p->shelf_depth_m = 0.0;
-  none.relict_km = 0.0;
-  light.relict_heavy = 0.0;
-  dense.relict_heavy = 0.75;
-  const Planetary bare = planet(256, 3, none), high = planet(256, 3, light),
-                  low = planet(256, 3, dense);
-  const auto fraction = bare.state.read(field::continental_fraction);
-  const auto datum_m = [](const Planetary& p, Index c) {
-    return static_cast<double>(p.state.read(field::elevation)[c]) +
-           p.budget.at("sea_level_shift_m");
-  };
-  int belts = 0;
-  for (Index c = 0; c < bare.state.grid().size(); ++c) {
-    ASSERT_EQ(high.state.read(field::crust_thickness)[c],
-              low.state.read(field::crust_thickness)[c]);
-    const double light_m = datum_m(high, c) - datum_m(bare, c);
-    // Water loads what lies below the sea.
-    if (fraction[c] < 1.0F || datum_m(bare, c) < 0.0 || light_m < 200.0) continue;
-    ++belts;
-    ASSERT_NEAR(datum_m(low, c) - datum_m(bare, c), 0.25 * light_m, 0.01) << "cell " << c;
-  }
-  EXPECT_GT(belts, 100);
-}
-
 TEST(Isostasy, BudgetIsTheSumOverCells) {
   const Planetary p = planet(256, 4);
   const Grid& grid = p.state.grid();

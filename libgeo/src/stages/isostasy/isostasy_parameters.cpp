@@ -102,10 +102,6 @@ std::vector<Parameter> mantle_rows(IsostasyParameters& p) {
            "length over which they rise inland", "watts2001"),
       real("isostasy.relict_km", p.relict_km, "km", 0.0, 40.0, "thickening left in old orogens",
            "christensen1995"),
-      real("isostasy.relict_heavy", p.relict_heavy, "1", 0.0, 1.0,
-           "share of the buoyancy of that thickening which its root has lost as it cooled and its "
-           "minerals grew denser",
-           "fischer2002"),
       real("isostasy.heat_m", p.heat_m, "m", 0.0, 10000.0,
            "rise of the surface above the hottest mantle", "turcotte2002"),
       real("isostasy.thermal_coefficient", p.thermal_coefficient, "1", 0.0, 0.2,

@@ -46,7 +46,6 @@ struct IsostasyParameters {
   double margin_tilt_m = 660.0;
   double margin_tilt_km = 260.0;
   double relict_km = 9.2;
-  double relict_heavy = 0.6;
   double heat_m = 950.0;
   double thermal_coefficient = 0.02;
   double shelf_depth_m = 90.0;

@@ -164,7 +164,6 @@ class Columns {
           margin_tilt_m(active(p.margin_tilt_m)),
           margin_tilt_km(active(p.margin_tilt_km)),
           relict_km(active(p.relict_km)),
-          relict_heavy(active(p.relict_heavy)),
           heat_m(active(p.heat_m)),
           seamount_m(active(p.seamount_m)),
           seafloor_roughness_m(active(p.seafloor_roughness_m)),
@@ -173,8 +172,8 @@ class Columns {
                    active(p.sediment.rate_m_myr), active(p.sediment.apron_m),
                    active(p.sediment.apron_length_km)} {}
     Number continental_km, oceanic_km, collision_km, arc_km, rift_km, transpression_km, lithosphere,
-        craton_compensation, ocean_swell_m, margin_tilt_m, margin_tilt_km, relict_km, relict_heavy,
-        heat_m, seamount_m, seafloor_roughness_m, land_roughness_m;
+        craton_compensation, ocean_swell_m, margin_tilt_m, margin_tilt_km, relict_km, heat_m,
+        seamount_m, seafloor_roughness_m, land_roughness_m;
     BasicDeepSediment<Number> sediment;
   };
 
@@ -259,15 +258,15 @@ class Columns {
     const Number noise_km = row.thickness_noise_km[i];
     const double relict = row.relict[i];
     const double fabric = is_folded(value_of(belt), relict) ? along.ranges[i] : 0.0;
-    const Number relict_km = p_.relict_km * (relict * (1.0 + kRelictRanges * fabric));
     const Number thickness_km = p_.continental_km + noise_km +
                                 p_.collision_km * (belt * (1.0 + kRanges * fabric)) -
                                 to_come_km(p_.collision_km * belt, added_km_myr, crust_.run_myr) +
-                                relict_km + p_.transpression_km * Number(row.transform[i]) -
+                                p_.relict_km * (relict * (1.0 + kRelictRanges * fabric)) +
+                                p_.transpression_km * Number(row.transform[i]) -
                                 p_.rift_km * kYoungRift * Number(row.divergent[i]);
-    // Thick cratons have thick, heavy roots, old belts dense ones (Fischer 2002); belts are warm.
-    const Number lithosphere = p_.lithosphere + p_.craton_compensation * craton_slope_ * noise_km +
-                               p_.relict_heavy * craton_slope_ * relict_km - kWarmBelt * belt;
+    // Thick cratons have thick, heavy roots; belts are warm.
+    const Number lithosphere =
+        p_.lithosphere + p_.craton_compensation * craton_slope_ * noise_km - kWarmBelt * belt;
     const Number valley_m = Number(row.divergent[i]) *
                             (-kValley_m * bell(along.rift_km[i], 0.0, kValley_km) +
                              kShoulder_m * bell(along.rift_km[i], kShoulderAway_km, kShoulder_km));
