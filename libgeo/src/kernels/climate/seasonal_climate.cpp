@@ -23,6 +23,12 @@ constexpr double kDaysPerMonth = 365.25 / kMonths, kSecondsPerDay = 86400.0;
 constexpr double kWattsPerMillimetreADay = 28.9;  // latent heat of rain
 constexpr double kLatentOverHeat_k = 2.5e6 / 1004.0;
 
+/// How far a latitude is one where planetary rotation is weak: half at the edge.
+double weak_rotation(double latitude_deg, double edge_deg) {
+  const double turning = std::sin(latitude_deg * kRadians) / std::sin(edge_deg * kRadians);
+  return 1.0 / (1.0 + turning * turning * turning * turning);
+}
+
 /// One month's air and what it exchanges with the ground.
 struct Month {
   std::vector<float> temperature_c;  ///< at sea level
@@ -62,6 +68,9 @@ class SeasonalYear {
   [[nodiscard]] SeasonalFields fields() const;
 
  private:
+  [[nodiscard]] double thermal_pressure_hpa(double warmer_k) const;
+  void carry_heat(std::span<const float> month_c, std::span<const double> annual_mean_c,
+                  std::span<float> east, std::span<float> north) const;
   void begin_month(int m, const TemperatureCycle& temperature);
   void heat_air(Month& month) const;
   void activate(Month& month) const;
@@ -89,17 +98,44 @@ class SeasonalYear {
   bool has_sea_;
 };
 
+/// Pressure over ground that is warmer or colder than its parallel is through the year, hPa.
+double SeasonalYear::thermal_pressure_hpa(double warmer_k) const {
+  return -model_.circulation.thermal_low_hpa_k * warmer_k *
+         (warmer_k > 0.0 ? 1.0 : model_.circulation.cold_high_share);
+}
+
+/// Winds that carry heat: a share of the thermal wind, the same all along a parallel, and a share
+/// of the winds about heat lows and cold highs.
+void SeasonalYear::carry_heat(std::span<const float> month_c, std::span<const double> annual_mean_c,
+                              std::span<float> east, std::span<float> north) const {
+  std::vector<float> pressure_hpa(size_);
+  for (std::size_t cell = 0; cell < size_; ++cell) {
+    const int row = grid_.row(static_cast<Index>(cell));
+    pressure_hpa[cell] =
+        static_cast<float>(thermal_pressure_hpa(month_c[cell] - annual_mean_c[row]));
+  }
+  balanced_winds(grid_, model_.circulation, latitude_deg_, land_, pressure_hpa, east, north);
+  const auto mean_east = row_means<float>(grid_, east), mean_north = row_means<float>(grid_, north);
+  const std::vector<double> aloft =
+      thermal_wind_m_s(grid_, model_.circulation, latitude_deg_, row_means<float>(grid_, month_c));
+  const EnergyBalance& energy = model_.energy;
+  for (std::size_t cell = 0; cell < size_; ++cell) {
+    const int row = grid_.row(static_cast<Index>(cell));
+    east[cell] = static_cast<float>(energy.heat_wave_share * (east[cell] - mean_east[row]) +
+                                    energy.heat_wind_share * aloft[row]);
+    north[cell] = static_cast<float>(energy.heat_wave_share * (north[cell] - mean_north[row]));
+    const double open = open_to_heat(energy, height_m_[cell]);
+    east[cell] *= static_cast<float>(open);
+    north[cell] *= static_cast<float>(open);
+  }
+}
+
 /// Temperatures of the months, and all that follows from them alone.
 void SeasonalYear::warm() {
   const int ny = grid_.ny();
-  std::vector<double> zonal_wind(ny);
-  for (int j = 0; j < ny; ++j) {
-    zonal_wind[j] =
-        three_cell_zonal_wind_m_s(latitude_deg_[j], model_.circulation, grid_.figure().radius_m);
-  }
   const TemperatureCycle temperature =
       solve_energy_balance(grid_, model_.energy, model_.circulation.retrograde, latitude_deg_,
-                           zonal_wind, land_, height_m_);
+                           land_, height_m_, [this](auto... fields) { carry_heat(fields...); });
   // Evaporation in series with the energy that the sun gives through the year.
   constexpr double kWattsEvaporating = 28.36;
   most_evaporation_mm_d_.resize(ny);
@@ -152,15 +188,14 @@ void SeasonalYear::begin_month(int m, const TemperatureCycle& temperature) {
       const double warmer_k = at_sea_c - annual_mean_c[j];
       month.pressure_hpa[here] =
           static_cast<float>(three_cell_pressure_hpa(latitude_deg_[j], model_.circulation,
-                                                     model_.itcz_share * trough_deg[i]) -
-                             model_.circulation.thermal_low_hpa_k * warmer_k *
-                                 (warmer_k > 0.0 ? 1.0 : model_.circulation.cold_high_share));
+                                                     model_.itcz_share * trough_deg[i]) +
+                             thermal_pressure_hpa(warmer_k));
       const double relative = height_m_[here] / model_.blocking_height_m;
       month.open_flow[here] = static_cast<float>(1.0 / (1.0 + relative * relative));
       month.diffusivity[here] =
           static_cast<float>(month.open_flow[here] * (model_.base_diffusivity_m2_s +
                                                       model_.eddy_diffusivity_m2_s * eddies[here]));
-      month.eddies[here] = static_cast<float>(1.0 + model_.eddy_rain * eddies[here]);
+      month.eddies[here] = static_cast<float>(model_.eddy_rain * eddies[here]);
       const double lifted_c =
           at_sea_c - model_.energy.lapse_k_m * model_.orographic_share * height_m_[here];
       const double saturated = saturated_column_mm(lifted_c);
@@ -231,12 +266,11 @@ std::vector<float> SeasonalYear::convective_excess_k(const Month& month) const {
   }
   const std::vector<double> around_k =
       smooth_rows(latitude_deg_, row_means<float>(grid_, energy_k), kReach_deg);
-  const double edge = std::sin(model_.convection_latitude_deg * kRadians);
   for (std::size_t cell = 0; cell < size_; ++cell) {
     const int row = grid_.row(static_cast<Index>(cell));
-    const double turning = std::sin(latitude_deg_[row] * kRadians) / edge;
-    energy_k[cell] = static_cast<float>((energy_k[cell] - around_k[row]) /
-                                        (1.0 + turning * turning * turning * turning));
+    energy_k[cell] =
+        static_cast<float>((energy_k[cell] - around_k[row]) *
+                           weak_rotation(latitude_deg_[row], model_.convection_latitude_deg));
   }
   return energy_k;
 }
@@ -247,17 +281,19 @@ void SeasonalYear::activate(Month& month) const {
   constexpr double kMost = 2.0;
   std::vector<float> rising = convergence(grid_, month.wind_east, month.wind_north);
   for (std::size_t cell = 0; cell < size_; ++cell) {
-    rising[cell] =
-        static_cast<float>(kSecondsPerDay * (model_.ascent_time_d * rising[cell] -
-                                             model_.descent_time_d * month.descent_1_s[cell]));
+    const double deep = weak_rotation(latitude_deg_[grid_.row(static_cast<Index>(cell))],
+                                      model_.ascent_latitude_deg);
+    rising[cell] = static_cast<float>(
+        deep * kSecondsPerDay *
+        (model_.ascent_time_d * rising[cell] - model_.descent_time_d * month.descent_1_s[cell]));
   }
   smooth(grid_, rising, 1000.0 * model_.ascent_smoothing_km);
   const std::vector<float> excess_k = convective_excess_k(month);
   for (std::size_t cell = 0; cell < size_; ++cell) {
     const double lighter = model_.convection_1_k * excess_k[cell];
-    month.activity[cell] =
-        static_cast<float>(month.eddies[cell] * ascent_[cell] *
-                           std::exp(std::clamp(rising[cell] + lighter, -kMost, kMost)));
+    month.activity[cell] = static_cast<float>(
+        ascent_[cell] *
+        (month.eddies[cell] + std::exp(std::clamp(rising[cell] + lighter, -kMost, kMost))));
   }
 }
 
