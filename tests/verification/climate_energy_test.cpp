@@ -9,6 +9,7 @@
 #include "geo/kernels/climate/evaporation.hpp"
 #include "geo/kernels/climate/insolation.hpp"
 #include "geo/kernels/climate/ocean_heat.hpp"
+#include "geo/kernels/numerics/area_sum.hpp"
 
 namespace geo {
 namespace {
@@ -112,7 +113,7 @@ EnergyBalance constant_albedo() {
   model.coalbedo_p2 = 0.0;
   model.ice_width_k = 0.0;
   model.orbit = kCircle;
-  model.gyre_heat_w_m2 = 0.0;
+  model.gyre_heat_w_m2 = model.subpolar_heat_w_m2 = model.upwelling_w_m2 = 0.0;
   return model;
 }
 
@@ -199,7 +200,7 @@ TEST(EnergyBalance, SeaWindsMakeWesternCoastsMild) {
   for (Index c = 0; c < grid.size(); ++c) land[c] = grid.column(c) < 30 ? 1.0F : 0.0F;
   EnergyBalance model;
   model.advected_heat_j_m2_k = 9.5e6;
-  model.gyre_heat_w_m2 = model.upwelling_w_m2 = 0.0;
+  model.gyre_heat_w_m2 = model.subpolar_heat_w_m2 = model.upwelling_w_m2 = 0.0;
   const std::vector<float> flat(land.size(), 0.0F);
   const auto range = [&](bool retrograde, int column) {
     const auto year =
@@ -227,7 +228,7 @@ struct WindyPlanet {
   [[nodiscard]] TemperatureCycle year(float speed_m_s) const {
     EnergyBalance model = constant_albedo();
     model.advected_heat_j_m2_k = 5e6;
-    model.gyre_heat_w_m2 = model.upwelling_w_m2 = 0.0;
+    model.gyre_heat_w_m2 = model.subpolar_heat_w_m2 = model.upwelling_w_m2 = 0.0;
     return solve_energy_balance(
         grid, model, false, latitude, land, flat,
         [&](std::span<const float> month_c, auto, std::span<float> east, std::span<float> north) {
@@ -253,25 +254,64 @@ TEST(EnergyBalance, WindsMoveHeatAndMakeNone) {
   EXPECT_LT(windy.mean_c(inland), still.mean_c(inland) - 1.0);
 }
 
-TEST(OceanHeat, WellsUpAtTheEquatorOffTheCoastThatTradesLeave) {
-  const WindyPlanet planet;
-  EnergyBalance model;
-  model.gyre_heat_w_m2 = 0.0;
-  model.upwelling_w_m2 = 50.0;
-  const auto heat = [&](bool retrograde) {
-    std::vector<double> heat_w_m2(planet.land.size());
+/// Heat of currents on that planet, row 15 the first north of the equator.
+struct Currents {
+  WindyPlanet planet;
+  std::vector<double> heat_w_m2;
+  Currents(const EnergyBalance& model, bool retrograde, int land_columns = 20)
+      : heat_w_m2(planet.land.size()) {
+    for (Index c = 0; c < planet.grid.size(); ++c) {
+      planet.land[c] = planet.grid.column(c) < land_columns ? 1.0F : 0.0F;
+    }
     ocean_heat(planet.grid, model, retrograde, planet.latitude, planet.land, heat_w_m2);
-    return heat_w_m2;
-  };
-  const auto forward = heat(false), back = heat(true);
-  const auto at = [&](const std::vector<double>& values, int column, int row) {
-    return values[planet.grid.cell(column, row)];
-  };
-  EXPECT_LT(at(forward, 59, 15), -30.0) << "beside the eastern coast";
-  EXPECT_GT(at(forward, 20, 15), at(forward, 59, 15) * 0.2) << "the west of the basin is warm";
-  EXPECT_NEAR(at(forward, 59, 25), 0.0, 1e-6) << "far from the equator";
-  EXPECT_EQ(at(forward, 10, 15), 0.0) << "on land";
-  EXPECT_NEAR(at(back, 20, 15), at(forward, 59, 15), 1e-9) << "mirrored";
+  }
+  [[nodiscard]] double at(int column, int row) const {
+    return heat_w_m2[planet.grid.cell(column, row)];
+  }
+  [[nodiscard]] double sum_w() const {
+    return area_sum<double>(planet.grid, [&](Index cell) { return heat_w_m2[cell]; });
+  }
+};
+
+EnergyBalance only_upwelling() {
+  EnergyBalance model;
+  model.gyre_heat_w_m2 = model.subpolar_heat_w_m2 = 0.0;
+  model.upwelling_w_m2 = 50.0;
+  model.upwelling_reach_km = 6000.0;
+  return model;
+}
+
+TEST(OceanHeat, WellsUpAtTheEquatorOffTheCoastThatTradesLeave) {
+  const Currents forward(only_upwelling(), false), back(only_upwelling(), true);
+  EXPECT_LT(forward.at(59, 15), -30.0) << "beside the eastern coast";
+  EXPECT_GT(forward.at(20, 15), forward.at(59, 15) * 0.2) << "the west of the basin is warm";
+  EXPECT_EQ(forward.at(10, 15), 0.0) << "on land";
+  EXPECT_NEAR(back.at(20, 15), forward.at(59, 15), 1e-9) << "mirrored";
+  const Currents narrow(only_upwelling(), false, 50);
+  EXPECT_GT(narrow.at(59, 15), 0.7 * forward.at(59, 15)) << "a narrow ocean is tilted less";
+}
+
+TEST(OceanHeat, IsMovedAndNotMade) {
+  for (const bool retrograde : {false, true}) {
+    const Currents currents(EnergyBalance{}, retrograde);
+    double released = 0.0;
+    for (Index c = 0; c < currents.planet.grid.size(); ++c) {
+      released += std::abs(currents.heat_w_m2[c]) *
+                  currents.planet.grid.area_m2(currents.planet.grid.row(c));
+    }
+    EXPECT_LT(std::abs(currents.sum_w()), 1e-12 * released);
+  }
+}
+
+TEST(OceanHeat, WarmsTheEasternCoastsOfSubpolarSeas) {
+  EnergyBalance model;
+  model.gyre_heat_w_m2 = model.upwelling_w_m2 = 0.0;
+  model.subpolar_heat_w_m2 = 40.0;
+  const Currents currents(model, false);
+  const int subpolar = 25, subtropical = 20;  // 63 and 33 N
+  EXPECT_GT(currents.at(59, subpolar), 5.0);
+  EXPECT_LT(currents.at(20, subpolar), -5.0);
+  EXPECT_NEAR(currents.at(59, subtropical), currents.at(20, subtropical), 1e-9);
 }
 
 TEST(Budyko, SpotValueAndLimits) {

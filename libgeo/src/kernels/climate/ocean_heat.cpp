@@ -1,10 +1,12 @@
 #include "geo/kernels/climate/ocean_heat.hpp"
 
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <vector>
 
 #include "geo/core/array_sizes.hpp"
+#include "geo/kernels/numerics/area_sum.hpp"
 
 namespace geo {
 namespace {
@@ -13,8 +15,8 @@ constexpr double kRadians = std::numbers::pi / 180.0;
 
 /// Share of land that lies against the direction of a walk along a parallel, each cell weighted by
 /// exp(-distance / reach). `column` gives the steps of the walk.
-template <class Column, class Land>
-std::vector<double> land_behind(int nx, double keep, Column&& column, Land&& land) {
+std::vector<double> land_behind(int nx, double keep, const std::function<int(int)>& column,
+                                const std::function<double(int)>& land) {
   std::vector<double> share(nx);
   double behind = 0.0;
   // The second turn round the parallel starts from what the first one found.
@@ -27,8 +29,8 @@ std::vector<double> land_behind(int nx, double keep, Column&& column, Land&& lan
 }
 
 /// exp(-distance / reach) to the last coast that a walk has passed.
-template <class Column, class Land>
-std::vector<double> nearness_of_coast(int nx, double keep, Column&& column, Land&& land) {
+std::vector<double> nearness_of_coast(int nx, double keep, const std::function<int(int)>& column,
+                                      const std::function<double(int)>& land) {
   std::vector<double> nearness(nx);
   double near = 0.0;
   for (int step = 0; step < 2 * nx; ++step) {
@@ -37,6 +39,60 @@ std::vector<double> nearness_of_coast(int nx, double keep, Column&& column, Land
     near = land(i) + (1.0 - land(i)) * keep * near;
   }
   return nearness;
+}
+
+/// The currents of one parallel.
+class Parallel {
+ public:
+  Parallel(const Grid& grid, int row, bool retrograde, std::span<const float> land_fraction)
+      : grid_(grid), row_(row), retrograde_(retrograde), land_fraction_(land_fraction) {}
+
+  [[nodiscard]] double land(int i) const { return land_fraction_[grid_.cell(i, row_)]; }
+
+  /// Land to the west of every cell less land to the east of it.
+  [[nodiscard]] std::vector<double> land_west_less_east(double reach_km) const {
+    std::vector<double> west = walked(true, reach_km, land_behind);
+    const std::vector<double> east = walked(false, reach_km, land_behind);
+    for (std::size_t i = 0; i < west.size(); ++i) west[i] -= east[i];
+    return west;
+  }
+  [[nodiscard]] std::vector<double> nearness_of_eastern_coast(double reach_km) const {
+    return walked(false, reach_km, nearness_of_coast);
+  }
+  [[nodiscard]] std::vector<double> nearness_of_western_coast(double reach_km) const {
+    return walked(true, reach_km, nearness_of_coast);
+  }
+
+ private:
+  using Walk = std::vector<double> (*)(int, double, const std::function<int(int)>&,
+                                       const std::function<double(int)>&);
+
+  /// A walk with the planet's rotation, which is eastward unless that is retrograde, or against it.
+  [[nodiscard]] std::vector<double> walked(bool eastward, double reach_km, Walk walk) const {
+    const int nx = grid_.nx();
+    const bool rising = eastward != retrograde_;
+    return walk(
+        nx, std::exp(-grid_.spacing_east_m(row_) / (1000.0 * reach_km)),
+        [=](int step) { return rising ? step : nx - 1 - step; }, [this](int i) { return land(i); });
+  }
+
+  const Grid& grid_;
+  int row_;
+  bool retrograde_;
+  std::span<const float> land_fraction_;
+};
+
+/// Currents move heat and make none: what they release too much is taken from all water alike.
+void close_budget(const Grid& grid, std::span<const float> land_fraction,
+                  std::span<double> heat_w_m2) {
+  const double water_m2 =
+      area_sum<double>(grid, [&](Index cell) { return 1.0 - land_fraction[cell]; });
+  if (water_m2 <= 0.0) return;
+  const double excess_w_m2 =
+      area_sum<double>(grid, [&](Index cell) { return heat_w_m2[cell]; }) / water_m2;
+  for (std::size_t cell = 0; cell < heat_w_m2.size(); ++cell) {
+    heat_w_m2[cell] -= excess_w_m2 * (1.0 - land_fraction[cell]);
+  }
 }
 
 }  // namespace
@@ -48,32 +104,27 @@ void ocean_heat(const Grid& grid, const EnergyBalance& model, bool retrograde,
   check_sizes("ocean_heat", grid.size(),
               {{"land_fraction", land_fraction.size()}, {"heat_w_m2", heat_w_m2.size()}});
   constexpr double kUpwelling_deg = 5.0, kNone = 1e-6;
-  const int nx = grid.nx();
-  const auto eastward = [](int step) { return step; };
-  const auto westward = [nx](int step) { return nx - 1 - step; };
   for (int j = 0; j < grid.ny(); ++j) {
-    const auto land = [&](int i) { return land_fraction[grid.cell(i, j)]; };
-    const auto kept = [&](double reach_km) {
-      return std::exp(-grid.spacing_east_m(j) / (1000.0 * reach_km));
-    };
-    const double keep = kept(model.gyre_reach_km);
-    const auto west = land_behind(nx, keep, eastward, land);
-    const auto east = land_behind(nx, keep, westward, land);
-    const double gyre = (retrograde ? -1.0 : 1.0) * model.gyre_heat_w_m2 *
-                        std::cos(2.0 * latitude_deg[j] * kRadians);
-    for (int i = 0; i < nx; ++i) {
-      heat_w_m2[grid.cell(i, j)] = gyre * (west[i] - east[i]) * (1.0 - land(i));
+    const Parallel parallel(grid, j, retrograde, land_fraction);
+    const double curl = std::sin(4.0 * std::abs(latitude_deg[j]) * kRadians);
+    const bool subtropical = curl > 0.0;
+    const double gyre = curl * (subtropical ? model.gyre_heat_w_m2 : model.subpolar_heat_w_m2);
+    const auto contrast =
+        parallel.land_west_less_east(subtropical ? model.gyre_reach_km : model.subpolar_reach_km);
+    for (int i = 0; i < grid.nx(); ++i) {
+      heat_w_m2[grid.cell(i, j)] = gyre * contrast[i] * (1.0 - parallel.land(i));
     }
     const double from_equator = latitude_deg[j] / kUpwelling_deg;
     const double upwelling = model.upwelling_w_m2 * std::exp(-from_equator * from_equator);
     if (upwelling < kNone) continue;
-    const double far = kept(model.upwelling_reach_km);
-    const auto coast = retrograde ? nearness_of_coast(nx, far, eastward, land)
-                                  : nearness_of_coast(nx, far, westward, land);
-    for (int i = 0; i < nx; ++i) {
-      heat_w_m2[grid.cell(i, j)] -= upwelling * coast[i] * (1.0 - land(i));
+    const auto east = parallel.nearness_of_eastern_coast(model.upwelling_reach_km);
+    const auto west = parallel.nearness_of_western_coast(model.upwelling_reach_km);
+    for (int i = 0; i < grid.nx(); ++i) {
+      heat_w_m2[grid.cell(i, j)] -=
+          upwelling * east[i] * (1.0 - west[i]) * (1.0 - parallel.land(i));
     }
   }
+  close_budget(grid, land_fraction, heat_w_m2);
 }
 
 }  // namespace geo

@@ -175,7 +175,7 @@ void SeasonalYear::begin_month(int m, const TemperatureCycle& temperature) {
       grid_, latitude_deg_, month.temperature_c, zonal_c, model_.itcz_locality);
   const std::vector<float> eddies =
       eddy_strength(grid_, latitude_deg_, month.temperature_c, zonal_c,
-                    model_.eddy_gradient_k_1000km, model_.eddy_locality);
+                    model_.eddy_gradient_k_1000km, model_.eddy_exponent, model_.eddy_locality);
   month.sun_w_m2.resize(grid_.ny());
   for (int j = 0; j < grid_.ny(); ++j) {
     const double insolation = month.sun_w_m2[j] =

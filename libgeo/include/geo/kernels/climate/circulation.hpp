@@ -24,6 +24,7 @@ struct Circulation {
   double air_density_kg_m3 = 1.2;
   double drag_ocean_s = 1.3e-05;  ///< r over the sea, s-1
   double drag_land_s = 1.3e-05;
+  double displacement_decay = 3.0;    ///< exponent p of the cells' displacement with the trough
   double subtropical_high_hpa = 2.5;  ///< above the equatorial trough
   double subpolar_low_hpa = 5.1;      ///< below the subtropical high
   double polar_high_hpa = 9.88;       ///< above the subpolar low
@@ -40,7 +41,10 @@ struct Circulation {
 /// Pressure of the three cells at a latitude, hPa relative to the equatorial trough: half cosines
 /// between the trough, the high at 30, the low at 60 and the high at 90 deg; wider cells end at
 /// the pole, narrower ones are followed by more, like the polar one.
-/// @param trough_deg  latitude of the trough: the tropical edge moves with it, the pole stays
+/// Cells follow the trough through the year, the subtropical highs by a part of its excursion, the
+/// pole not at all: what lies x of the way from the trough to a pole is displaced by
+/// trough (1 - x)^p.
+/// @param trough_deg  latitude of the trough
 [[nodiscard]] double three_cell_pressure_hpa(double latitude_deg, const Circulation& model,
                                              double trough_deg = 0.0);
 

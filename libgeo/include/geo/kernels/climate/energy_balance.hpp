@@ -35,6 +35,8 @@ struct EnergyBalance {
   double melt_w_m2_k = 13.4;  ///< heat that melting sea ice takes for each kelvin above -1 degC
   double gyre_heat_w_m2 = 5;  ///< heat that gyres release along a western coast of an ocean
   double gyre_reach_km = 1.2e+03;  ///< e-folding distance of a coast's influence
+  double subpolar_heat_w_m2 = 30;  ///< heat that subpolar gyres release along an eastern coast
+  double subpolar_reach_km = 2.0e+03;
   double blocking_height_m =
       2.29e+03;  ///< mean height of topography that halves the heat passing over
   double lapse_k_m = 0.005;

@@ -29,6 +29,7 @@ struct SeasonalClimate {
   double eddy_diffusivity_m2_s = 2.02e+05;  ///< at the reference temperature gradient
   double eddy_rain = 0.244;  ///< rain-out by eddies there, whether the mean air rises or sinks
   double eddy_gradient_k_1000km = 3.87;  ///< the reference gradient
+  double eddy_exponent = 1.5;            ///< by which their strength grows with the gradient
   double eddy_locality = 0.252;   ///< how far eddies follow the local gradient, not the parallel's
   double ascent_time_d = 12;      ///< convergence over this time multiplies rain-out by e
   double descent_time_d = 0.128;  ///< the same of the descent that stationary waves make
