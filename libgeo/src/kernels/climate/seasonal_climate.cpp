@@ -72,6 +72,11 @@ class SeasonalYear {
   void carry_heat(std::span<const float> month_c, std::span<const double> annual_mean_c,
                   std::span<float> east, std::span<float> north) const;
   void begin_month(int m, const TemperatureCycle& temperature);
+  void clear(Month& month) const;
+  void press(Month& month, std::span<const double> zonal_c,
+             std::span<const double> annual_mean_c) const;
+  void stir(Month& month, std::span<const double> zonal_c) const;
+  void moisten(Month& month) const;
   void heat_air(Month& month) const;
   void activate(Month& month) const;
   [[nodiscard]] std::vector<float> convective_excess_k(const Month& month) const;
@@ -153,7 +158,26 @@ void SeasonalYear::warm() {
 
 void SeasonalYear::begin_month(int m, const TemperatureCycle& temperature) {
   Month& month = months_[m];
-  const int nx = grid_.nx();
+  clear(month);
+  std::vector<double> annual_c(size_);
+  for (std::size_t cell = 0; cell < size_; ++cell) {
+    month.temperature_c[cell] = static_cast<float>(temperature.month_c(cell, m));
+    annual_c[cell] = temperature.mean_c(cell);
+  }
+  month.sun_w_m2.resize(grid_.ny());
+  for (int j = 0; j < grid_.ny(); ++j) {
+    month.sun_w_m2[j] =
+        daily_insolation_w_m2(latitude_deg_[j], sun_of_month(model_.energy.orbit, m),
+                              model_.energy.orbit.obliquity_deg, model_.energy.solar_constant_w_m2);
+  }
+  const std::vector<double> zonal_c = row_means<float>(grid_, month.temperature_c);
+  month.zonal_wind_m_s = thermal_wind_m_s(grid_, model_.circulation, latitude_deg_, zonal_c);
+  press(month, zonal_c, row_means<double>(grid_, annual_c));
+  stir(month, zonal_c);
+  moisten(month);
+}
+
+void SeasonalYear::clear(Month& month) const {
   for (auto* values :
        {&month.temperature_c, &month.pressure_hpa, &month.wind_east, &month.wind_north,
         &month.descent_1_s, &month.open_flow, &month.diffusivity, &month.eddies, &month.activity,
@@ -163,54 +187,57 @@ void SeasonalYear::begin_month(int m, const TemperatureCycle& temperature) {
   }
   month.column_mm.resize(size_);
   month.rain_mm_d.assign(size_, 0.0);
-  std::vector<double> annual_c(size_);
-  for (std::size_t cell = 0; cell < size_; ++cell) {
-    month.temperature_c[cell] = static_cast<float>(temperature.month_c(cell, m));
-    annual_c[cell] = temperature.mean_c(cell);
-  }
-  const std::vector<double> annual_mean_c = row_means<double>(grid_, annual_c);
-  const std::vector<double> zonal_c = row_means<float>(grid_, month.temperature_c);
-  month.zonal_wind_m_s = thermal_wind_m_s(grid_, model_.circulation, latitude_deg_, zonal_c);
+}
+
+/// Pressure of the three cells about the trough, and of heat lows and cold highs.
+void SeasonalYear::press(Month& month, std::span<const double> zonal_c,
+                         std::span<const double> annual_mean_c) const {
   const std::vector<double> trough_deg = trough_latitudes_deg(
       grid_, latitude_deg_, month.temperature_c, zonal_c, model_.itcz_locality);
+  for (std::size_t cell = 0; cell < size_; ++cell) {
+    const Index here = static_cast<Index>(cell);
+    const int row = grid_.row(here);
+    month.pressure_hpa[cell] = static_cast<float>(
+        three_cell_pressure_hpa(latitude_deg_[row], model_.circulation,
+                                model_.itcz_share * trough_deg[grid_.column(here)]) +
+        thermal_pressure_hpa(month.temperature_c[cell] - annual_mean_c[row]));
+  }
+}
+
+/// Eddies, which mix the air's water and let it rain; mountains hold the flow back.
+void SeasonalYear::stir(Month& month, std::span<const double> zonal_c) const {
   const std::vector<float> eddies =
       eddy_strength(grid_, latitude_deg_, month.temperature_c, zonal_c,
                     model_.eddy_gradient_k_1000km, model_.eddy_exponent, model_.eddy_locality);
-  month.sun_w_m2.resize(grid_.ny());
-  for (int j = 0; j < grid_.ny(); ++j) {
-    const double insolation = month.sun_w_m2[j] =
-        daily_insolation_w_m2(latitude_deg_[j], sun_of_month(model_.energy.orbit, m),
-                              model_.energy.orbit.obliquity_deg, model_.energy.solar_constant_w_m2);
-    for (int i = 0; i < nx; ++i) {
-      const Index here = grid_.cell(i, j);
-      const double at_sea_c = month.temperature_c[here];
-      const double surface_c = at_sea_c - model_.energy.lapse_k_m * height_m_[here];
-      const double warmer_k = at_sea_c - annual_mean_c[j];
-      month.pressure_hpa[here] =
-          static_cast<float>(three_cell_pressure_hpa(latitude_deg_[j], model_.circulation,
-                                                     model_.itcz_share * trough_deg[i]) +
-                             thermal_pressure_hpa(warmer_k));
-      const double relative = height_m_[here] / model_.blocking_height_m;
-      month.open_flow[here] = static_cast<float>(1.0 / (1.0 + relative * relative));
-      month.diffusivity[here] =
-          static_cast<float>(month.open_flow[here] * (model_.base_diffusivity_m2_s +
-                                                      model_.eddy_diffusivity_m2_s * eddies[here]));
-      month.eddies[here] = static_cast<float>(model_.eddy_rain * eddies[here]);
-      const double lifted_c =
-          at_sea_c - model_.energy.lapse_k_m * model_.orographic_share * height_m_[here];
-      const double saturated = saturated_column_mm(lifted_c);
-      month.saturated_mm[here] = static_cast<float>(saturated);
-      month.potential_evapotranspiration_mm_d[here] =
-          static_cast<float>(oudin_evaporation_mm_d(insolation, surface_c));
-      const double resistance_d =
-          1.0 / model_.moisture.evaporation_velocity_1_d + saturated / most_evaporation_mm_d_[j];
-      month.open_water_1_d[here] = static_cast<float>((1.0 - land_[here]) / resistance_d);
-      month.column_mm[here] = (has_sea_ ? 0.7 : 0.0) * saturated;
-      month.land_evaporation_mm_d[here] = has_sea_
-                                              ? static_cast<float>(0.5 * land_[here]) *
-                                                    month.potential_evapotranspiration_mm_d[here]
-                                              : 0.0F;
-    }
+  for (std::size_t cell = 0; cell < size_; ++cell) {
+    const double relative = height_m_[cell] / model_.blocking_height_m;
+    month.open_flow[cell] = static_cast<float>(1.0 / (1.0 + relative * relative));
+    month.diffusivity[cell] =
+        static_cast<float>(month.open_flow[cell] * (model_.base_diffusivity_m2_s +
+                                                    model_.eddy_diffusivity_m2_s * eddies[cell]));
+    month.eddies[cell] = static_cast<float>(model_.eddy_rain * eddies[cell]);
+  }
+}
+
+/// What the air can hold, what sea and ground can give it, and a first guess of both.
+void SeasonalYear::moisten(Month& month) const {
+  for (std::size_t cell = 0; cell < size_; ++cell) {
+    const int row = grid_.row(static_cast<Index>(cell));
+    const double at_sea_c = month.temperature_c[cell];
+    const double surface_c = at_sea_c - model_.energy.lapse_k_m * height_m_[cell];
+    const double lifted_c =
+        at_sea_c - model_.energy.lapse_k_m * model_.orographic_share * height_m_[cell];
+    const double saturated = saturated_column_mm(lifted_c);
+    month.saturated_mm[cell] = static_cast<float>(saturated);
+    month.potential_evapotranspiration_mm_d[cell] =
+        static_cast<float>(oudin_evaporation_mm_d(month.sun_w_m2[row], surface_c));
+    const double resistance_d =
+        1.0 / model_.moisture.evaporation_velocity_1_d + saturated / most_evaporation_mm_d_[row];
+    month.open_water_1_d[cell] = static_cast<float>((1.0 - land_[cell]) / resistance_d);
+    month.column_mm[cell] = (has_sea_ ? 0.7 : 0.0) * saturated;
+    month.land_evaporation_mm_d[cell] = has_sea_ ? static_cast<float>(0.5 * land_[cell]) *
+                                                       month.potential_evapotranspiration_mm_d[cell]
+                                                 : 0.0F;
   }
 }
 
