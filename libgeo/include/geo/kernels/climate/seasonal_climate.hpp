@@ -21,26 +21,25 @@ struct SeasonalClimate {
   StationaryWave wave;
   MoistureBudget moisture;
   SoilMoisture soil;
-  double itcz_share = 1.17;  ///< of the thermal equator's excursion that the cells follow
-  double itcz_locality = 0;  ///< how far the trough follows the warmest latitude of each meridian
-  double sensible_w_m2_k =
-      3.04;  ///< heating of the air where the surface is warmer than its parallel
-  double base_diffusivity_m2_s = 3.87e+06;
-  double eddy_diffusivity_m2_s = 2.02e+05;  ///< at the reference temperature gradient
-  double eddy_rain = 0.244;  ///< rain-out by eddies there, whether the mean air rises or sinks
+  double itcz_share = 1.25;       ///< of the thermal equator's excursion that the cells follow
+  double itcz_locality = 0.127;   ///< how far the trough follows its meridian's warmest latitude
+  double sensible_w_m2_k = 4.42;  ///< heating of the air over ground warmer than its parallel
+  double base_diffusivity_m2_s = 4.36e+06;
+  double eddy_diffusivity_m2_s = 2e+05;  ///< at the reference temperature gradient
+  double eddy_rain = 0.408;  ///< rain-out by eddies there, whether the mean air rises or sinks
   double eddy_gradient_k_1000km = 3.87;  ///< the reference gradient
-  double eddy_exponent = 1.5;            ///< by which their strength grows with the gradient
-  double eddy_locality = 0.252;   ///< how far eddies follow the local gradient, not the parallel's
-  double ascent_time_d = 12;      ///< convergence over this time multiplies rain-out by e
-  double descent_time_d = 0.128;  ///< the same of the descent that stationary waves make
-  double ascent_latitude_deg = 46.2;  ///< at which converging winds make half as much rain as where
+  double eddy_exponent = 1.59;           ///< by which their strength grows with the gradient
+  double eddy_locality = 0;       ///< how far eddies follow the local gradient, not the parallel's
+  double ascent_time_d = 18.1;    ///< convergence over this time multiplies rain-out by e
+  double descent_time_d = 0.582;  ///< the same of the descent that stationary waves make
+  double ascent_latitude_deg = 42.6;  ///< at which converging winds make half as much rain as where
                                       ///< rotation is weak
-  double ascent_smoothing_km = 588;   ///< over which ascent is felt
+  double ascent_smoothing_km = 634;   ///< over which ascent is felt
   double convection_1_k = 0;          ///< by which rain-out grows with relative moist static energy
-  double convection_latitude_deg = 27;  ///< to which the free atmosphere is level
+  double convection_latitude_deg = 24.3;  ///< to which the free atmosphere is level
   double orographic_share = 0.0;  ///< of the mean height by which moist air is lifted over a cell
-  double blocking_height_m = 3.62e+03;  ///< height at which topography halves the moist flow
-  double land_transpiration = 1.0;      ///< share of the soil's evaporation that returns to the air
+  double blocking_height_m = 3.9e+03;  ///< height at which topography halves the moist flow
+  double land_transpiration = 1.0;     ///< share of the soil's evaporation that returns to the air
 };
 
 /// Water that passes between a surface and its air, m3 s-1 over the year. The two sides are summed
