@@ -179,8 +179,8 @@ TEST(EnergyBalance, RangesKeepWarmGroundFromCold) {
   const Grid grid = Grid::sphere(90, 45);
   std::vector<double> latitude;
   for (int j = 0; j < grid.ny(); ++j) latitude.push_back(grid.latitude_deg(j));
-  EnergyBalance model;
-  model.ice_width_k = 0.0;
+  EnergyBalance model = constant_albedo();
+  model.blocking_height_m = 1000.0;
   std::vector<float> land(grid.size(), 1.0F), flat(grid.size(), 0.0F), range = flat;
   for (Index c = 0; c < grid.size(); ++c) {
     if (std::abs(grid.latitude_deg(grid.row(c)) - 32.0) < 3.0) range[c] = 5000.0F;

@@ -123,7 +123,7 @@ class ClimateStage final : public Stage {
   [[nodiscard]] const StageInfo& info() const override { return info_; }
   [[nodiscard]] std::vector<Parameter> parameters() override { return p_.declarations(); }
   [[nodiscard]] StageCost cost(std::span<const Parameter> /*configuration*/) const override {
-    return {.per_cell_ns = 300.0, .fixed_s = air_seconds(p_), .cell_bytes = 110.0};
+    return {.per_cell_ns = 300.0, .fixed_s = air_seconds(p_), .cell_bytes = 118.0};
   }
 
   void run(StageIo& io, Context& context) const override {
@@ -137,6 +137,8 @@ class ClimateStage final : public Stage {
                              io.write(field::distance_to_coast),
                              io.write(field::potential_evapotranspiration),
                              io.write(field::sea_ice_area_fraction),
+                             io.write(field::ocean_current_east),
+                             io.write(field::ocean_current_north),
                              io.write(field::koppen_class)};
     warn_of_slow_rotation(p_.seasonal.circulation, context);
     distance_to_coast(io.grid(), elevation, out.coast);
@@ -172,7 +174,7 @@ class ClimateStage final : public Stage {
                                          relief_land, relief_height, ascent);
       planet_ascent.assign(size, 1.0F);
     }
-    const FineClimate fine(frame, p_, model, fields, planet_ascent, ascent, dimmed, context);
+    const FineClimate fine(frame, p_, model, fields, land, planet_ascent, ascent, dimmed, context);
     const std::vector<std::int64_t> held = fine.fill(elevation, out);
     report_limits(io.grid(), fine.limits(), held, /*part_of_model=*/closed_formulas, context);
     if (!closed_formulas) {
@@ -215,7 +217,8 @@ class ClimateStage final : public Stage {
                   {&field::temperature, &field::temperature_range, &field::precipitation,
                    &field::precipitation_seasonality, &field::wind_east, &field::wind_north,
                    &field::distance_to_coast, &field::potential_evapotranspiration,
-                   &field::sea_ice_area_fraction, &field::koppen_class},
+                   &field::sea_ice_area_fraction, &field::ocean_current_east,
+                   &field::ocean_current_north, &field::koppen_class},
                   /*own_grid=*/false,
                   /*feels_events=*/true};
 };

@@ -10,6 +10,7 @@
 #include "geo/kernels/climate/circulation.hpp"
 #include "geo/kernels/climate/evaporation.hpp"
 #include "geo/kernels/climate/insolation.hpp"
+#include "geo/kernels/climate/ocean_currents.hpp"
 #include "geo/kernels/life/koppen.hpp"
 #include "geo/kernels/noise/noise.hpp"
 
@@ -100,6 +101,33 @@ std::vector<float> annual_mean(const Climatology::Monthly& months) {
   return mean;
 }
 
+/// Currents of the sea on the coarse grid.
+struct Currents {
+  std::vector<float> east, north;
+};
+
+/// Those that the stress of the months' winds drives; none unless the grid is a whole planet.
+Currents wind_driven_currents(const ClimateFrame& frame, const SeasonalClimate& model,
+                              const SeasonalFields& fields, std::span<const float> land_fraction) {
+  const Grid& grid = frame.planet();
+  const auto size = static_cast<std::size_t>(grid.size());
+  Currents currents{std::vector<float>(size), std::vector<float>(size)};
+  if (grid.topology() != Topology::sphere) return currents;
+  std::vector<double> east_pa(size), north_pa(size);
+  for (std::size_t cell = 0; cell < size; ++cell) {
+    for (int m = 0; m < kMonths; ++m) {
+      const WindStress stress =
+          wind_stress(model.currents, fields.wind_east[m][cell], fields.wind_north[m][cell]);
+      east_pa[cell] += stress.east_pa / kMonths;
+      north_pa[cell] += stress.north_pa / kMonths;
+    }
+  }
+  ocean_currents(grid, model.currents, model.circulation.rotation_rad_s(),
+                 frame.planet_latitudes_deg(), land_fraction, east_pa, north_pa, currents.east,
+                 currents.north);
+  return currents;
+}
+
 /// How much more sun than on average reaches the ground under a column of this humidity
 /// (Angstrom-Prescott, sunshine falling with humidity).
 float clearness(float humidity) {
@@ -180,8 +208,9 @@ class SeasonsOfRows {
 class FineClimate::Rows {
  public:
   Rows(const ClimateFrame& frame, const ClimateParameters& p, const SeasonalClimate& model,
-       const SeasonalFields& fields, std::span<const float> planet_ascent,
-       std::span<const float> on_relief, const DimmedSun& dimmed, const Context& context)
+       const SeasonalFields& fields, std::span<const float> land_fraction,
+       std::span<const float> planet_ascent, std::span<const float> on_relief,
+       const DimmedSun& dimmed, const Context& context)
       : frame_(frame),
         p_(p),
         model_(model),
@@ -198,6 +227,9 @@ class FineClimate::Rows {
         north_of_(frame.on_planet(), annual_mean(year_->wind_north),
                   Interpolator::Kind::vector_component),
         relief_of_(frame.on_relief(), on_relief),
+        currents_(wind_driven_currents(frame, model, fields, land_fraction)),
+        current_east_of_(frame.on_planet(), currents_.east, Interpolator::Kind::vector_component),
+        current_north_of_(frame.on_planet(), currents_.north, Interpolator::Kind::vector_component),
         seasons_(frame, model, *year_),
         noise_(p, frame.on_planet().fine(), context.seed) {}
 
@@ -225,16 +257,28 @@ class FineClimate::Rows {
     const std::int64_t held = closed_formulas() ? closed_row(j, elevation, out, work)
                                                 : balanced_row(j, elevation, out, work);
     seasons_.row(j, elevation, work.humidity, out, work.months, work.scratch);
-    for (std::size_t cell = begin; cell < begin + nx; ++cell) {
-      const bool at_sea = elevation[cell] < 0.0F;
-      out.sea_ice[cell] =
-          at_sea ? static_cast<float>(sea_ice_share(model_.energy, out.temperature[cell])) : 0.0F;
-    }
+    sea_row(j, elevation, out, work);
     return held;
   }
 
  private:
   [[nodiscard]] bool closed_formulas() const { return p_.model == "blueprint"; }
+
+  /// Ice and currents.
+  void sea_row(int j, std::span<const float> elevation, const ClimateOutputs& out,
+               Work& work) const {
+    const auto nx = static_cast<std::size_t>(grid().nx());
+    const std::size_t begin = static_cast<std::size_t>(j) * nx;
+    current_east_of_.row(j, out.current_east.subspan(begin, nx), work.scratch);
+    current_north_of_.row(j, out.current_north.subspan(begin, nx), work.scratch);
+    for (std::size_t cell = begin; cell < begin + nx; ++cell) {
+      const bool at_sea = elevation[cell] < 0.0F;
+      out.sea_ice[cell] =
+          at_sea ? static_cast<float>(sea_ice_share(model_.energy, out.temperature[cell])) : 0.0F;
+      if (at_sea) continue;
+      out.current_east[cell] = out.current_north[cell] = 0.0F;
+    }
+  }
 
   /// By the blueprint's formulas.
   std::int64_t closed_row(int j, std::span<const float> elevation, const ClimateOutputs& out,
@@ -296,16 +340,19 @@ class FineClimate::Rows {
   std::vector<float> mean_c_, rain_mm_yr_;  ///< of coarse cells, filled with the year
   std::shared_ptr<Climatology> year_;
   Interpolator mean_of_, rain_of_, humidity_of_, east_of_, north_of_, relief_of_;
+  Currents currents_;
+  Interpolator current_east_of_, current_north_of_;
   SeasonsOfRows seasons_;
   ClimateNoise noise_;
 };
 
 FineClimate::FineClimate(const ClimateFrame& frame, const ClimateParameters& parameters,
                          const SeasonalClimate& model, const SeasonalFields& fields,
-                         std::span<const float> planet_ascent, std::span<const float> on_relief,
-                         const DimmedSun& dimmed, const Context& context)
-    : rows_(std::make_unique<const Rows>(frame, parameters, model, fields, planet_ascent, on_relief,
-                                         dimmed, context)) {}
+                         std::span<const float> land_fraction, std::span<const float> planet_ascent,
+                         std::span<const float> on_relief, const DimmedSun& dimmed,
+                         const Context& context)
+    : rows_(std::make_unique<const Rows>(frame, parameters, model, fields, land_fraction,
+                                         planet_ascent, on_relief, dimmed, context)) {}
 
 FineClimate::~FineClimate() = default;
 

@@ -17,7 +17,7 @@ namespace geo {
 /// The outputs of the stage.
 struct ClimateOutputs {
   std::span<float> temperature, temperature_range, precipitation, seasonality, wind_east,
-      wind_north, coast, evaporation, sea_ice;
+      wind_north, coast, evaporation, sea_ice, current_east, current_north;
   std::span<std::int8_t> koppen;
 };
 
@@ -44,12 +44,13 @@ struct TemperatureLimits {
 /// The coarse year at the stage's own cells: their elevation, single ranges, noise and events.
 class FineClimate {
  public:
-  /// `on_relief` is the ascent over single ranges, of which `planet_ascent` is the mean over each
-  /// coarse cell; with the blueprint's closed formulas it is their rain.
+  /// `land_fraction` is that of coarse cells. `on_relief` is the ascent over single ranges, of
+  /// which `planet_ascent` is the mean over each coarse cell; with the blueprint's closed formulas
+  /// it is their rain.
   FineClimate(const ClimateFrame& frame, const ClimateParameters& parameters,
               const SeasonalClimate& model, const SeasonalFields& fields,
-              std::span<const float> planet_ascent, std::span<const float> on_relief,
-              const DimmedSun& dimmed, const Context& context);
+              std::span<const float> land_fraction, std::span<const float> planet_ascent,
+              std::span<const float> on_relief, const DimmedSun& dimmed, const Context& context);
   ~FineClimate();
   FineClimate(const FineClimate&) = delete;
   FineClimate& operator=(const FineClimate&) = delete;
