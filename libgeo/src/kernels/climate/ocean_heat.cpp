@@ -13,32 +13,41 @@ namespace {
 
 constexpr double kRadians = std::numbers::pi / 180.0;
 
+/// What a walk along a closed parallel has met, each cell's part forgotten by its own factor:
+/// x <- left(i) x + met(i), the walk's first value such that it comes round to itself. `column`
+/// gives the steps of the walk, `left` and `met` are of the cells.
+std::vector<double> round_parallel(int nx, const std::function<int(int)>& column,
+                                   const std::function<double(int)>& left,
+                                   const std::function<double(int)>& met) {
+  double once = 0.0, left_over = 1.0;
+  for (int step = 0; step < nx; ++step) {
+    const int i = column(step);
+    once = left(i) * once + met(i);
+    left_over *= left(i);
+  }
+  std::vector<double> before(nx);
+  double value = once / (1.0 - left_over);
+  for (int step = 0; step < nx; ++step) {
+    const int i = column(step);
+    before[i] = value;
+    value = left(i) * value + met(i);
+  }
+  return before;
+}
+
 /// Share of land that lies against the direction of a walk along a parallel, each cell weighted by
-/// exp(-distance / reach). `column` gives the steps of the walk.
+/// exp(-distance / reach), which is `keep` for one cell.
 std::vector<double> land_behind(int nx, double keep, const std::function<int(int)>& column,
                                 const std::function<double(int)>& land) {
-  std::vector<double> share(nx);
-  double behind = 0.0;
-  // The second turn round the parallel starts from what the first one found.
-  for (int step = 0; step < 2 * nx; ++step) {
-    const int i = column(step % nx);
-    share[i] = behind;
-    behind = keep * behind + (1.0 - keep) * land(i);
-  }
-  return share;
+  return round_parallel(
+      nx, column, [=](int) { return keep; }, [&](int i) { return (1.0 - keep) * land(i); });
 }
 
 /// exp(-distance / reach) to the last coast that a walk has passed.
 std::vector<double> nearness_of_coast(int nx, double keep, const std::function<int(int)>& column,
                                       const std::function<double(int)>& land) {
-  std::vector<double> nearness(nx);
-  double near = 0.0;
-  for (int step = 0; step < 2 * nx; ++step) {
-    const int i = column(step % nx);
-    nearness[i] = near;
-    near = land(i) + (1.0 - land(i)) * keep * near;
-  }
-  return nearness;
+  return round_parallel(
+      nx, column, [&](int i) { return (1.0 - land(i)) * keep; }, land);
 }
 
 /// The currents of one parallel.

@@ -62,7 +62,7 @@ class SeasonalYear {
   void warm();
   void blow();
   void exchange();
-  void rain(bool last);
+  void rain(bool closed);
   void evaporate();
   void lift(const TerrainAscent& ascent);
   [[nodiscard]] SeasonalFields fields() const;
@@ -347,14 +347,14 @@ void SeasonalYear::exchange() {
   errors.rethrow();
 }
 
-void SeasonalYear::rain(bool last) {
+void SeasonalYear::rain(bool closed) {
   constexpr int kTogether = SteadyMoisture::kSeasons;
   ParallelErrors errors;
 #pragma omp parallel for schedule(dynamic, 1)
   for (int m = 0; m < kMonths; ++m) {
     errors.guard([&] {
       Month& month = months_[m];
-      if (last) budgets_[m / kTogether]->close(m % kTogether);
+      if (closed) budgets_[m / kTogether]->close(m % kTogether);
       for (std::size_t cell = 0; cell < size_; ++cell) {
         month.rain_mm_d[cell] = rain_mm_d(model_.moisture, month.column_mm[cell],
                                           month.saturated_mm[cell], month.activity[cell]);
@@ -477,14 +477,13 @@ SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& m
               {{"land_fraction", land_fraction.size()}, {"height_m", height_m.size()}});
   SeasonalYear year(grid, model, latitude_deg, land_fraction, height_m);
   year.warm();
-  constexpr int kRounds = 7, kLevelRounds = 3;
+  constexpr int kRounds = 7, kLevelRounds = 3, kClosedRounds = 2;
   for (int round = 0; round < kRounds; ++round) {
     if (round == kLevelRounds && ascent) year.lift(ascent);
     year.blow();
     year.exchange();
-    const bool last = round + 1 == kRounds;
-    year.rain(last);
-    if (!last) year.evaporate();
+    year.rain(/*closed=*/round + kClosedRounds >= kRounds);
+    if (round + 1 < kRounds) year.evaporate();
   }
   return year.fields();
 }
