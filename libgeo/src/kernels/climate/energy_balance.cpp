@@ -237,7 +237,7 @@ class PeriodicYear {
   /// do.
   TemperatureCycle solve() && {
     constexpr int kRounds = 14, kFactorRounds = 3;
-    constexpr double kNear = 1e-6, kClosed = 1e-8;
+    constexpr double kNear = 1e-4, kClosed = 1e-7;
     for (int round = 0; round < kRounds; ++round) {
       const bool refactor = round < kFactorRounds;
       if (refactor) take_coefficients();
