@@ -206,15 +206,18 @@ void SeasonalYear::press(Month& month, std::span<const double> zonal_c,
 
 /// Eddies, which mix the air's water and let it rain; mountains hold the flow back.
 void SeasonalYear::stir(Month& month, std::span<const double> zonal_c) const {
+  constexpr double kFastest_1_s = 0.01;  // on tiny planets: what mixes in minutes is mixed
   const std::vector<float> eddies =
       eddy_strength(grid_, latitude_deg_, month.temperature_c, zonal_c,
                     model_.eddy_gradient_k_1000km, model_.eddy_exponent, model_.eddy_locality);
   for (std::size_t cell = 0; cell < size_; ++cell) {
     const double relative = height_m_[cell] / model_.blocking_height_m;
     month.open_flow[cell] = static_cast<float>(1.0 / (1.0 + relative * relative));
-    month.diffusivity[cell] =
-        static_cast<float>(month.open_flow[cell] * (model_.base_diffusivity_m2_s +
-                                                    model_.eddy_diffusivity_m2_s * eddies[cell]));
+    const double spacing_m = grid_.spacing_north_m(grid_.row(static_cast<Index>(cell)));
+    month.diffusivity[cell] = static_cast<float>(
+        std::min(month.open_flow[cell] *
+                     (model_.base_diffusivity_m2_s + model_.eddy_diffusivity_m2_s * eddies[cell]),
+                 kFastest_1_s * spacing_m * spacing_m));
     month.eddies[cell] = static_cast<float>(model_.eddy_rain * eddies[cell]);
   }
 }
