@@ -11,10 +11,10 @@ namespace geo {
 
 /// Constants of the moisture budget.
 struct MoistureBudget {
-  double rain_time_d = 0.842;          ///< rain-out time of a saturated column
+  double rain_time_d = 0.819;          ///< rain-out time of a saturated column
   std::int64_t humidity_exponent = 2;  ///< how sharply rain follows the column's relative humidity
-  double evaporation_velocity_1_d = 0.194;  ///< v over open water that energy does not limit
-  double evaporating_share = 0.795;         ///< of the annual insolation, at most
+  double evaporation_velocity_1_d = 0.196;  ///< v over open water that energy does not limit
+  double evaporating_share = 0.802;         ///< of the annual insolation, at most
   int sweeps = 44;
 };
 
