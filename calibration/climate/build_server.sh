@@ -1,3 +1,0 @@
-C=.; cd fit; mkdir -p obj
-srcs="$(ls $C/libgeo/src/kernels/climate/*.cpp) $C/libgeo/src/stages/climate/climate_frame.cpp $C/libgeo/src/stages/climate/orographic_ascent.cpp $C/libgeo/src/stages/climate/climate_parameters.cpp fit/serve_climates.cpp"
-for s in $srcs; do o=obj/$(basename $s .cpp).o; [ $o -nt $s ] && [ -z "$1" ] || echo "ccache g++ -std=c++20 -O3 -DNDEBUG -fopenmp -fno-math-errno -fno-trapping-math -march=native -DFMT_HEADER_ONLY=1 -I/usr/include/eigen3 -I$C/libgeo/include -I$C/libgeo/src -c $s -o $o"; done | xargs -d '\n' -P2 -I{} sh -c '{}' && g++ -fopenmp obj/*.o $C/build/release/libgeo/libterrane_geo.a -lfmt -lGeographicLib -o clim2
