@@ -15,7 +15,6 @@
 #include "geo/kernels/climate/seasonal_climate.hpp"
 #include "geo/kernels/climate/stationary_wave.hpp"
 #include "geo/kernels/landscape/deltas.hpp"
-#include "geo/kernels/landscape/fine_relief.hpp"
 #include "geo/kernels/landscape/hypsometric_curve.hpp"
 #include "geo/kernels/landscape/marine_deposition.hpp"
 #include "geo/kernels/landscape/plastic_ice.hpp"
@@ -24,6 +23,7 @@
 #include "geo/kernels/landscape/river_sediment.hpp"
 #include "geo/kernels/landscape/straits.hpp"
 #include "geo/kernels/landscape/stream_power.hpp"
+#include "geo/kernels/landscape/surface_detail.hpp"
 #include "geo/kernels/life/whittaker.hpp"
 #include "geo/kernels/noise/oriented_noise.hpp"
 #include "geo/kernels/numerics/diffusion.hpp"
@@ -187,10 +187,10 @@ TEST(ArraySizes, OfRiversAndLakesAreChecked) {
     Floats z(n(cells()));
     carve_valleys(grid, graph, sea, discharge, {}, z);
   });
-  expect_refused("breach_dams", 2, [&](Lengths& n) {
+  expect_refused("breach_depressions", 2, [&](Lengths& n) {
     const Bytes outlets(n(cells()));
     Floats z(n(cells()));
-    breach_dams(grid, outlets, {}, z);
+    breach_depressions(grid, outlets, {}, z);
   });
   expect_refused("grade_rivers", 4, [&](Lengths& n) {
     const FlowGraph graph = graph_of(n, false);

@@ -15,7 +15,7 @@
 #include "geo/core/projection.hpp"
 #include "geo/kernels/climate/blueprint_climate.hpp"
 #include "geo/kernels/exemplars/exemplar.hpp"
-#include "geo/kernels/landscape/fine_relief.hpp"
+#include "geo/kernels/landscape/surface_detail.hpp"
 #include "geo/kernels/remapping/catmull_rom.hpp"
 #include "geo/kernels/water/water_balance.hpp"
 #include "geo/stages/climate/climate.hpp"

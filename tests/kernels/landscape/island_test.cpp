@@ -6,9 +6,9 @@
 
 #include "geo/core/field.hpp"
 #include "geo/core/projection.hpp"
-#include "geo/kernels/landscape/fine_relief.hpp"
 #include "geo/kernels/landscape/region_score.hpp"
 #include "geo/kernels/landscape/river_courses.hpp"
+#include "geo/kernels/landscape/surface_detail.hpp"
 #include "geo/kernels/noise/noise.hpp"
 #include "geo/kernels/remapping/catmull_rom.hpp"
 #include "geo/kernels/water/depressions.hpp"

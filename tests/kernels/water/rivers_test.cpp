@@ -153,7 +153,7 @@ TEST(Breaching, KeepsItsLimitsOfDepthAndLength) {
                                      {BreachLimits{140, 35e3, 0}, 0},
                                      {BreachLimits{160, 15e3, 0}, 0}}) {
     auto z = dam.z;
-    EXPECT_EQ(breach_dams(dam.grid, dam.outlets, limits, z), cuts);
+    EXPECT_EQ(breach_depressions(dam.grid, dam.outlets, limits, z), cuts);
     EXPECT_EQ(count_pits(dam.grid, z, dam.outlets), 1 - cuts);
     if (cuts == 0) {
       EXPECT_EQ(z, dam.z);
@@ -188,7 +188,7 @@ TEST(Breaching, AndGradingMakeNoPitsAndKeepLand) {
       const auto before = z;
       const auto outlets = find_outlets(grid, z);
       const int pits = count_pits(grid, z, outlets);
-      cuts += breach_dams(grid, outlets, {60.0, 1e6, 0.0}, z);
+      cuts += breach_depressions(grid, outlets, {60.0, 1e6, 0.0}, z);
       const int fewer = count_pits(grid, z, outlets);
       EXPECT_LE(fewer, pits);
       const auto graph = route_water(grid, z, outlets).graph;

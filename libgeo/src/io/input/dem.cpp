@@ -14,11 +14,11 @@
 #include "geo/io/drawing/map_view.hpp"
 #include "geo/kernels/remapping/turned_planet.hpp"
 #include "geotiff.hpp"
-#include "image_relief.hpp"
 #include "io/drawing/map_projection.hpp"
 #include "io/files/open_input.hpp"
 #include "io/netcdf/classic_size.hpp"
 #include "io/netcdf/netcdf_file.hpp"
+#include "plain_raster.hpp"
 #include "questions.hpp"
 
 namespace geo::io {

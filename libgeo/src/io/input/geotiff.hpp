@@ -4,7 +4,7 @@
 
 #include "geo/core/planet.hpp"
 #include "geo/io/input/dem.hpp"
-#include "image_relief.hpp"
+#include "plain_raster.hpp"
 
 namespace geo::io {
 

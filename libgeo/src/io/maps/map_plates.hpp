@@ -7,8 +7,8 @@
 #include "geo/core/state.hpp"
 #include "io/drawing/map_canvas.hpp"
 #include "io/drawing/map_raster.hpp"
+#include "map_base.hpp"
 #include "map_outlines.hpp"
-#include "map_relief.hpp"
 
 namespace geo::io {
 

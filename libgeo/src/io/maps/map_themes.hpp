@@ -6,7 +6,7 @@
 #include "geo/core/state.hpp"
 #include "geo/io/maps/maps.hpp"
 #include "io/drawing/map_canvas.hpp"
-#include "map_relief.hpp"
+#include "map_base.hpp"
 
 namespace geo::io {
 

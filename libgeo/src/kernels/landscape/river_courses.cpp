@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "geo/core/array_sizes.hpp"
-#include "geo/kernels/landscape/fine_relief.hpp"
+#include "geo/kernels/landscape/surface_detail.hpp"
 #include "kernels/water/planet_window.hpp"
 
 namespace geo {

@@ -102,9 +102,9 @@ class Search {
 
 }  // namespace
 
-int breach_dams(const Grid& grid, std::span<const std::uint8_t> outlets, const BreachLimits& limits,
-                std::span<float> elevation_m) {
-  check_sizes("breach_dams", grid.size(),
+int breach_depressions(const Grid& grid, std::span<const std::uint8_t> outlets,
+                       const BreachLimits& limits, std::span<float> elevation_m) {
+  check_sizes("breach_depressions", grid.size(),
               {{"outlets", outlets.size()}, {"elevation_m", elevation_m.size()}});
   if (!(limits.depth_m > 0) || !(limits.length_m > 0)) return 0;
   std::vector<Index> receiver(grid.size()), pits;

@@ -19,7 +19,7 @@
 #include "geo/kernels/numerics/area_sum.hpp"
 #include "geo/kernels/remapping/conservative_remapping.hpp"
 #include "geo/kernels/water/water_balance.hpp"
-#include "relief_ascent.hpp"
+#include "orographic_ascent.hpp"
 
 namespace geo {
 namespace {
@@ -339,7 +339,7 @@ class ClimateStage final : public Stage {
     TerrainAscent ascent_of;  // the blueprint has its own
     if (!closed_formulas) {
       ascent_of = [&](std::span<const float> wind_east, std::span<const float> wind_north) {
-        ascent = relief_ascent(frame, wind_east, wind_north, relief_height, p_);
+        ascent = orographic_ascent(frame, wind_east, wind_north, relief_height, p_);
         planet_ascent = mean_ascent(frame, ascent);
         return planet_ascent;
       };

@@ -44,7 +44,7 @@ ClimateFrame::ClimateFrame(const Grid& grid, const ClimateParameters& parameters
                            const Planet& planet)
     : edge_continues_(parameters.surroundings == "edge") {
   const double radius_m = grid.figure().radius_m;
-  const double relief_m = 1000.0 * parameters.relief_resolution_km;
+  const double relief_m = 1000.0 * parameters.topography_resolution_km;
   latitude_deg_ = row_latitudes(grid, parameters.latitude_deg, radius_m);
   const int rows = std::max(12, static_cast<int>(std::lround(180.0 / parameters.resolution_deg)));
   switch (grid.topology()) {

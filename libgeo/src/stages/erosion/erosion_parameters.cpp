@@ -21,11 +21,10 @@ std::vector<Parameter> steps_and_rivers_rows(ErosionParameters& p) {
            "harel2016"),
       real("erosion.diffusivity_m2_yr", p.diffusivity_m2_yr, "m2 yr-1", 0.0, 1e6,
            "hillslope diffusivity kappa", "salles2023"),
-      choice(
-          "erosion.model", p.model, {"detachment", "sediment"},
-          "what becomes of what rivers take: it leaves the world, or they lay it down where they "
-          "cannot carry it, on plains, in lakes and at sea",
-          "davy2009"),
+      choice("erosion.model", p.model, {"detachment", "sediment"},
+             "what becomes of what rivers take: it is lost, or they deposit it where they "
+             "cannot carry it, on plains, in lakes and at sea",
+             "davy2009"),
       choice("erosion.discharge", p.discharge, {"rain", "area"},
              "what makes rivers large: the runoff of the climate of the surface as it stands, or "
              "the area that they drain",
@@ -190,7 +189,7 @@ std::vector<Parameter> finish_rows(ErosionParameters& p) {
 std::vector<Parameter> sediment_rows(ErosionParameters& p) {
   return {
       real("erosion.sediment.deposition", p.deposition, "1", 0.0, 1000.0,
-           "deposition G: what rivers lay down, over the mean loss of the land upstream",
+           "deposition G: what rivers deposit, over the mean loss of the land upstream",
            "guerit2019"),
       real("erosion.sediment.dispersal_km", p.dispersal_km, "km", 0.0, 5000.0,
            "length over which the sea spreads what rivers bring", "design"),

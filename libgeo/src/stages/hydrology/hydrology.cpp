@@ -43,10 +43,10 @@ Drainage drain(const Grid& grid, std::span<const float> z, const Bytes& outlets,
   return d;
 }
 
-/// Where water ends: outlets, and the bottoms of the basins that keep theirs before any dam is cut.
-/// Not those behind what a coarse elevation model has made of a gorge: basins smaller than
-/// `least_m2` when full to their sill, and those that so much water comes to that its valley would
-/// be as deep as the sill is high above the bottom.
+/// Where water ends: outlets, and the bottoms of the basins that keep theirs before any depression
+/// is breached. Not those behind what a coarse elevation model has made of a gorge: basins smaller
+/// than `least_m2` when full to their sill, and those that so much water comes to that its valley
+/// would be as deep as the sill is high above the bottom.
 Bytes with_closed_basins(const Grid& grid, std::span<const float> z, Bytes outlets,
                          std::span<const double> runoff, std::span<const float> loss,
                          double least_m2) {
@@ -101,8 +101,8 @@ void write_discharge(const Drainage& d, const Bytes& sea, std::span<const double
   }
 }
 
-/// Hollows that ice has scoured are no dams of a coarse elevation model: their pits keep their
-/// sills.
+/// Hollows that ice has scoured are no spurious depressions of a coarse elevation model: their pits
+/// keep their sills.
 Bytes with_scoured_basins(const Grid& grid, std::span<const float> z,
                           std::span<const float> scoured_m, Bytes outlets) {
   if (scoured_m.empty()) return outlets;
@@ -243,7 +243,7 @@ class HydrologyStage final : public Stage {
                      std::span<const double> runoff, std::span<const double> inflow_area,
                      std::span<const float> ice_m, std::span<float> z) const {
     const std::vector<float> before(z.begin(), z.end());
-    breach_dams(grid, kept, {p_.breach_depth_m, p_.breach_length_km * 1000}, z);
+    breach_depressions(grid, kept, {p_.breach_depth_m, p_.breach_length_km * 1000}, z);
     const FlowGraph graph = route_water(grid, z, outlets).graph;
     double threshold_m3_s = 0.0;
     const std::vector<double> discharge =

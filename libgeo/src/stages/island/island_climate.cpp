@@ -9,7 +9,7 @@
 #include "geo/kernels/climate/blueprint_climate.hpp"
 #include "geo/kernels/climate/distance_to_coast.hpp"
 #include "geo/kernels/climate/orography.hpp"
-#include "geo/kernels/landscape/fine_relief.hpp"
+#include "geo/kernels/landscape/surface_detail.hpp"
 #include "geo/kernels/numerics/smoothing.hpp"
 #include "geo/kernels/remapping/catmull_rom.hpp"
 #include "geo/kernels/remapping/conservative_remapping.hpp"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "geo/kernels/exemplars/exemplar.hpp"
-#include "geo/kernels/landscape/fine_relief.hpp"
+#include "geo/kernels/landscape/surface_detail.hpp"
 #include "geo/stages/erosion/erosion.hpp"
 #include "geo/stages/island/island.hpp"
 

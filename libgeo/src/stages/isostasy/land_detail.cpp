@@ -6,7 +6,7 @@
 
 #include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/exemplars/exemplar_detail.hpp"
-#include "geo/kernels/landscape/fine_relief.hpp"
+#include "geo/kernels/landscape/surface_detail.hpp"
 #include "geo/kernels/numerics/shapes.hpp"
 #include "geo/kernels/numerics/smoothing.hpp"
 #include "geo/kernels/remapping/cubic_rows.hpp"

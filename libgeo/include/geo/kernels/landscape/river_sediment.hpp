@@ -32,7 +32,7 @@ std::vector<std::uint8_t> flooded_cells(const FlowGraph& graph, std::span<const 
   return flooded;
 }
 
-/// One implicit step of rivers that cut and lay down at once, along the receivers of a forest:
+/// One implicit step of rivers that erode and deposit at once, along the receivers of a forest:
 ///
 ///   dz/dt = -K A^m S^n + (G / A*) Q
 ///

@@ -8,7 +8,7 @@
 
 namespace geo {
 
-/// How deep and how long a cut through a narrow dam may be.
+/// How deep and how long a cut through a spurious barrier may be.
 struct BreachLimits {
   double depth_m = 0.0;
   double length_m = 0.0;    ///< of the part deeper than `shallow_m`
@@ -22,8 +22,8 @@ struct BreachLimits {
 /// Method: least-cost breaching (Lindsay & Dhun 2015; Lindsay 2016), with limits on both depth and
 /// length. Cost: linear in cells, plus a search of some dozen cells for each pit.
 /// Arrays have one value per cell (`check_sizes`); Bug otherwise.
-int breach_dams(const Grid& grid, std::span<const std::uint8_t> outlets, const BreachLimits& limits,
-                std::span<float> elevation_m);
+int breach_depressions(const Grid& grid, std::span<const std::uint8_t> outlets,
+                       const BreachLimits& limits, std::span<float> elevation_m);
 
 /// How deep and how long a cut a river may make.
 struct GorgeLimits {

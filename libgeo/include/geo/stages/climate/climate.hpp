@@ -15,7 +15,7 @@ struct ClimateParameters {
   SeasonalClimate seasonal;
   BlueprintClimate blueprint;
   double resolution_deg = 2.0;
-  double relief_resolution_km = 20.0;
+  double topography_resolution_km = 20.0;
   double latitude_deg = 45.0;
   std::string surroundings = "edge";
   double lift_reach_km = 40.0;

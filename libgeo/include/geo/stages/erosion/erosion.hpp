@@ -73,7 +73,7 @@ struct ErosionParameters {
   double detail_noise = 0.0;
 
   [[nodiscard]] std::vector<Parameter> declarations();
-  /// Whether rivers lay down what they cannot carry.
+  /// Whether rivers deposit what they cannot carry.
   [[nodiscard]] bool deposits() const { return model == "sediment" && deposition > 0.0; }
   /// Whether ice is looked for at all.
   [[nodiscard]] bool freezes() const {
@@ -83,8 +83,8 @@ struct ErosionParameters {
 
 /// Landscape evolution, dz/dt = U - K A^m S^n + (G / A) Q + kappa lap(z) on land (Braun & Willett
 /// 2013; Davy & Lague 2009; Hergarten 2020), with the sea and open edges as base level. The model
-/// "detachment" has G = 0: what rivers take leaves the world. Each step: route the water, raise the
-/// ground, let rivers cut and, with "sediment", lay down (implicit, any m and n), let hillslopes
+/// "detachment" has G = 0: what rivers take is lost. Each step: route the water, raise the
+/// ground, let rivers cut and, with "sediment", deposit (implicit, any m and n), let hillslopes
 /// creep (implicit), lay on the floor of the sea what rivers bring there, let the crust rise under
 /// what was taken from it and sink under what was laid on it. With the discharge "rain" the area A
 /// counts for as much as it yields: the climate stage is run within on a coarse grid, `climates`

@@ -169,7 +169,7 @@ class Landscape {
     return {active_(p_.area_exponent), active_(p_.slope_exponent), active_(p_.time_step_yr), 0.0};
   }
   [[nodiscard]] const RockVolumes<Number>& rock() const { return rock_; }
-  /// Whether rivers lay down what they cannot carry.
+  /// Whether rivers deposit what they cannot carry.
   [[nodiscard]] bool deposits() const { return p_.deposits() && p_.steps > 0; }
   /// Empty where they do not, or where numbers carry derivatives.
   [[nodiscard]] const SedimentRecord& sediment() const { return sediment_; }
@@ -229,7 +229,7 @@ class Landscape {
   }
   /// What the height of a cell misses of the sum of the one before and a rise: nothing if that is
   /// more than a few roundings of single precision, so that a process that does something else than
-  /// what is booked shows as an error in the budget.
+  /// what is accounted for shows as an error in the budget.
   [[nodiscard]] double rounding_m(Index cell, double rise_m) const {
     constexpr double kFew = 0x1p-21;
     const double now_m = z_[cell], before_m = before_[cell], missed_m = now_m - before_m - rise_m;

@@ -33,7 +33,7 @@ struct HydrologyParameters {
 /// endorheic basins by the steady water balance, discharge, valleys carved by rivers (Leopold &
 /// Maddock 1953), basins and stream orders.
 ///
-/// Hollows that ice has scoured keep their sills against the cuts through dams, and nothing is cut
+/// Hollows that ice has scoured keep their sills when depressions are breached, and nothing is cut
 /// into ice.
 ///
 /// With `rivers = "area"` rivers show and carve by their drainage area, as in the Tectonica

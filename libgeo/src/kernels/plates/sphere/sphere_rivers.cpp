@@ -126,7 +126,7 @@ class MovingSurface {
 
 }  // namespace
 
-/// Rivers carve what stands above the sea, plates and all as they lie, and lay down what they carry
+/// Rivers carve what stands above the sea, plates and all as they lie, and deposit what they carry
 /// in lakes, on shelves and on the sea floor.
 void run_rivers(SphereTectonics& model) {
   SphereCrust& crust = model.state.crust;

@@ -1,4 +1,4 @@
-#include "io/input/image_relief.hpp"
+#include "io/input/plain_raster.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

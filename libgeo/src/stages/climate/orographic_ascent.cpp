@@ -1,4 +1,4 @@
-#include "relief_ascent.hpp"
+#include "orographic_ascent.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,9 @@
 
 namespace geo {
 
-std::vector<float> relief_ascent(const ClimateFrame& frame, std::span<const float> wind_east,
-                                 std::span<const float> wind_north, std::span<const float> height_m,
-                                 const ClimateParameters& p) {
+std::vector<float> orographic_ascent(const ClimateFrame& frame, std::span<const float> wind_east,
+                                     std::span<const float> wind_north,
+                                     std::span<const float> height_m, const ClimateParameters& p) {
   const Grid& relief = frame.relief();
   std::vector<float> east(height_m.size()), north(height_m.size()), ascent(height_m.size());
   const Interpolator east_of(frame.relief_on_planet(), wind_east,

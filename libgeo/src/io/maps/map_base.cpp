@@ -1,4 +1,4 @@
-#include "map_relief.hpp"
+#include "map_base.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "image_relief.hpp"
+#include "plain_raster.hpp"
 
 #include <fmt/format.h>
 #include <png.h>

@@ -1,4 +1,4 @@
-#include "geo/kernels/landscape/fine_relief.hpp"
+#include "geo/kernels/landscape/surface_detail.hpp"
 
 #include <algorithm>
 #include <cmath>
