@@ -31,6 +31,8 @@ STANDARD_NAMES = {
     "water_volume_transport_in_river_channel": "m3 s-1",
     "land_ice_thickness": "m",
     "sea_ice_area_fraction": "1",
+    "eastward_sea_water_velocity": "m s-1",
+    "northward_sea_water_velocity": "m s-1",
     "projection_x_coordinate": "m",
     "projection_y_coordinate": "m",
 }

@@ -53,10 +53,11 @@ State run(std::shared_ptr<const Grid> grid, std::vector<float> elevation,
 }
 
 const Field<float>* const kOutputs[] = {
-    &field::temperature,       &field::temperature_range,
-    &field::precipitation,     &field::precipitation_seasonality,
-    &field::wind_east,         &field::wind_north,
-    &field::distance_to_coast, &field::potential_evapotranspiration};
+    &field::temperature,        &field::temperature_range,
+    &field::precipitation,      &field::precipitation_seasonality,
+    &field::wind_east,          &field::wind_north,
+    &field::distance_to_coast,  &field::potential_evapotranspiration,
+    &field::ocean_current_east, &field::ocean_current_north};
 
 void expect_sound(const State& state, const std::string& which) {
   for (const auto* spec : kOutputs) {

@@ -80,7 +80,7 @@ extern const Field<std::int32_t> flow_receiver;
 extern const Field<std::int8_t> flow_direction;
 extern const Field<float> temperature, temperature_range, precipitation, precipitation_seasonality;
 extern const Field<float> wind_east, wind_north, distance_to_coast, potential_evapotranspiration;
-extern const Field<float> sea_ice_area_fraction;
+extern const Field<float> sea_ice_area_fraction, ocean_current_east, ocean_current_north;
 extern const Field<float> slope, discharge, river_intensity, lake_depth;
 extern const Field<std::int32_t> lake_id, basin_id;
 extern const Field<std::int8_t> stream_order;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
-#include <tuple>
 #include <unsupported/Eigen/FFT>
 #include <vector>
 
@@ -118,6 +117,117 @@ class Wave {
   std::vector<Parallel> centre_, face_;
 };
 
+using Spectra = std::vector<std::vector<Complex>>;  ///< of each parallel
+
+/// Parallels into zonal wave numbers and back.
+class ParallelTransform {
+ public:
+  explicit ParallelTransform(const Grid& grid) : nx_(grid.nx()), ny_(grid.ny()), line_(nx_) {}
+
+  [[nodiscard]] Spectra none() const { return Spectra(ny_, std::vector<Complex>(nx_, 0.0)); }
+
+  [[nodiscard]] Spectra analyse(std::span<const float> values) {
+    Spectra spectra(ny_);
+    for (int j = 0; j < ny_; ++j) {
+      const auto row = values.subspan(static_cast<std::size_t>(j) * nx_, nx_);
+      std::copy(row.begin(), row.end(), line_.begin());
+      fourier_.fwd(spectra[j], line_);
+    }
+    return spectra;
+  }
+
+  void synthesise(const Spectra& spectra, std::span<float> values) {
+    for (int j = 0; j < ny_; ++j) {
+      fourier_.inv(line_, spectra[j]);
+      const std::size_t begin = static_cast<std::size_t>(j) * nx_;
+      for (int i = 0; i < nx_; ++i) values[begin + i] = static_cast<float>(line_[i]);
+    }
+  }
+
+ private:
+  int nx_, ny_;
+  Eigen::FFT<double> fourier_;
+  std::vector<double> line_;
+};
+
+/// Winds and descent of the waves that have been added.
+class Response {
+ public:
+  Response(const StationaryWave& model, double radius_m, double rotation_rad_s,
+           std::span<const double> latitude_deg, std::span<const double> zonal_wind_m_s,
+           const Spectra& calm)
+      : model_(model),
+        radius_m_(radius_m),
+        rotation_rad_s_(rotation_rad_s),
+        latitude_deg_(latitude_deg),
+        zonal_wind_m_s_(zonal_wind_m_s),
+        values_(calm.size()),
+        east_(calm),
+        north_(calm),
+        descent_(calm) {}
+
+  /// What heating sets up in one wave number: the internal mode.
+  void add_heating(int number, const Spectra& heating_w_m2) {
+    const double speed2 = model_.internal.speed_m_s * model_.internal.speed_m_s;
+    const Wave wave = wave_of(model_.internal, number);
+    for (int j = 0; j < rows(); ++j) {
+      values_[j] = -model_.heating_m4_s3_w * smoothed(number, j) * heating_w_m2[j][number];
+    }
+    wave.respond(values_);
+    for (int j = 0; j < rows(); ++j) {
+      add_wind(wave, number, j);
+      descent_[j][number] = -wave.thermal(j) * values_[j] / speed2;
+    }
+  }
+
+  /// What mountains set up in one wave number: the external mode.
+  void add_mountains(int number, const Spectra& height_m) {
+    constexpr double kGravity_m_s2 = 9.81;
+    const Wave wave = wave_of(model_.external, number);
+    for (int j = 0; j < rows(); ++j) {
+      values_[j] = kGravity_m_s2 * model_.mountain_share * smoothed(number, j) * wave.carried(j) *
+                   height_m[j][number];
+    }
+    wave.respond(values_);
+    for (int j = 0; j < rows(); ++j) add_wind(wave, number, j);
+  }
+
+  /// Fields are real: negative wave numbers are conjugates.
+  void mirror(int number) {
+    for (auto* spectra : {&east_, &north_, &descent_}) {
+      for (auto& spectrum : *spectra) {
+        spectrum[spectrum.size() - number] = std::conj(spectrum[number]);
+      }
+    }
+  }
+
+  [[nodiscard]] const Spectra& east() const { return east_; }
+  [[nodiscard]] const Spectra& north() const { return north_; }
+  [[nodiscard]] const Spectra& descent() const { return descent_; }
+
+ private:
+  [[nodiscard]] int rows() const { return static_cast<int>(values_.size()); }
+  [[nodiscard]] Wave wave_of(const WaveMode& mode, int number) const {
+    return Wave(mode, number, radius_m_, rotation_rad_s_, latitude_deg_, zonal_wind_m_s_);
+  }
+  [[nodiscard]] double smoothed(int number, int j) const {
+    const double scale =
+        1000.0 * model_.smoothing_km * number / (radius_m_ * std::cos(latitude_deg_[j] * kRadians));
+    return 1.0 / (1.0 + scale * scale);
+  }
+  void add_wind(const Wave& wave, int number, int j) {
+    const auto [along, across] = wave.wind(j, values_);
+    east_[j][number] += along;
+    north_[j][number] += across;
+  }
+
+  const StationaryWave& model_;
+  double radius_m_, rotation_rad_s_;
+  std::span<const double> latitude_deg_, zonal_wind_m_s_;
+  std::vector<Complex> values_;  ///< forcing, then geopotential
+  Spectra east_, north_, descent_;
+};
+
 }  // namespace
 
 void stationary_wave(const Grid& grid, const StationaryWave& model, double rotation_rad_s,
@@ -134,73 +244,21 @@ void stationary_wave(const Grid& grid, const StationaryWave& model, double rotat
                {"wind_north", wind_north.size()},
                {"descent_1_s", descent_1_s.size()}});
   if (grid.topology() != Topology::sphere) throw Bug("stationary_wave: the grid is no sphere");
-  constexpr double kGravity_m_s2 = 9.81;
-  const int nx = grid.nx(), ny = grid.ny();
-  const double radius_m = grid.figure().radius_m;
-  const int waves = std::min(model.waves, nx / 2 - 1);
+  ParallelTransform transform(grid);
+  const Spectra heating = transform.analyse(heating_w_m2);
   const bool mountains = model.mountain_share > 0.0;
-  Eigen::FFT<double> fourier;
-  std::vector<std::vector<Complex>> heating(ny), height(ny), east(ny), north(ny), descent(ny);
-  std::vector<double> line(nx);
-  const auto analyse = [&](int j, std::span<const float> values, std::vector<Complex>& spectrum) {
-    const auto row = values.subspan(static_cast<std::size_t>(j) * nx, nx);
-    std::copy(row.begin(), row.end(), line.begin());
-    fourier.fwd(spectrum, line);
-  };
-  for (int j = 0; j < ny; ++j) {
-    analyse(j, heating_w_m2, heating[j]);
-    if (mountains) analyse(j, height_m, height[j]);
-    east[j].assign(nx, 0.0);
-    north[j].assign(nx, 0.0);
-    descent[j].assign(nx, 0.0);
+  const Spectra height = mountains ? transform.analyse(height_m) : Spectra();
+  Response response(model, grid.figure().radius_m, rotation_rad_s, latitude_deg, zonal_wind_m_s,
+                    transform.none());
+  const int waves = std::min(model.waves, grid.nx() / 2 - 1);
+  for (int number = 1; number <= waves; ++number) {
+    response.add_heating(number, heating);
+    if (mountains) response.add_mountains(number, height);
+    response.mirror(number);
   }
-  const double speed2 = model.internal.speed_m_s * model.internal.speed_m_s;
-  std::vector<Complex> values(ny);
-  for (int m = 1; m <= waves; ++m) {
-    const auto wave_of = [&](const WaveMode& mode) {
-      return Wave(mode, m, radius_m, rotation_rad_s, latitude_deg, zonal_wind_m_s);
-    };
-    const Wave wave = wave_of(model.internal);
-    const auto smoothed = [&](int j) {
-      const double scale =
-          1000.0 * model.smoothing_km * m / (radius_m * std::cos(latitude_deg[j] * kRadians));
-      return 1.0 / (1.0 + scale * scale);
-    };
-    for (int j = 0; j < ny; ++j) {
-      values[j] = -model.heating_m4_s3_w * smoothed(j) * heating[j][m];
-    }
-    wave.respond(values);
-    for (int j = 0; j < ny; ++j) {
-      std::tie(east[j][m], north[j][m]) = wave.wind(j, values);
-      descent[j][m] = -wave.thermal(j) * values[j] / speed2;
-    }
-    if (mountains) {
-      const Wave over = wave_of(model.external);
-      for (int j = 0; j < ny; ++j) {
-        values[j] =
-            kGravity_m_s2 * model.mountain_share * smoothed(j) * over.carried(j) * height[j][m];
-      }
-      over.respond(values);
-      for (int j = 0; j < ny; ++j) {
-        const auto [along, across] = over.wind(j, values);
-        east[j][m] += along;
-        north[j][m] += across;
-      }
-    }
-    for (auto* spectra : {&east, &north, &descent}) {
-      for (auto& spectrum : *spectra) spectrum[nx - m] = std::conj(spectrum[m]);
-    }
-  }
-  for (int j = 0; j < ny; ++j) {
-    const std::size_t begin = static_cast<std::size_t>(j) * nx;
-    const auto put = [&](const std::vector<Complex>& spectrum, std::span<float> out) {
-      fourier.inv(line, spectrum);
-      for (int i = 0; i < nx; ++i) out[begin + i] = static_cast<float>(line[i]);
-    };
-    put(east[j], wind_east);
-    put(north[j], wind_north);
-    put(descent[j], descent_1_s);
-  }
+  transform.synthesise(response.east(), wind_east);
+  transform.synthesise(response.north(), wind_north);
+  transform.synthesise(response.descent(), descent_1_s);
 }
 
 }  // namespace geo

@@ -77,15 +77,13 @@ double planet_height_m(const Grid& planet, std::span<const float> elevation_m, C
   return height_m;
 }
 
-/// The planet's surface from Catmull-Rom. Next to a shore, which would follow the sides of the
-/// planet's cells, it is read from a place nearby: bays and headlands shorter than two cells,
-/// with as much land in each.
-void read_planet(const PlanetCells& cells, std::span<const float> planet_elevation_m,
-                 const IslandParameters& p, std::uint64_t seed, std::span<const float> planet_m,
-                 std::span<float> z) {
+/// Next to a shore, which would follow the sides of the planet's cells, the surface is read from a
+/// place nearby: bays and headlands shorter than two cells, with as much land in each and the same
+/// mean elevation over each of the planet's cells.
+void wind_coasts(const PlanetCells& cells, std::span<const float> planet_elevation_m,
+                 const IslandParameters& p, std::uint64_t seed, std::span<const float> dry,
+                 std::span<const float> wet, std::span<const float> planet_m, std::span<float> z) {
   const Grid& fine = cells.fine();
-  std::copy(planet_m.begin(), planet_m.end(), z.begin());
-  if (p.coast_fray <= 0.0) return;
   const double spacing_m = cells.planet().face_east_m(cells.first_row());
   DetailLaw law;
   law.wavelength_m = 2.0 * spacing_m;
@@ -93,8 +91,6 @@ void read_planet(const PlanetCells& cells, std::span<const float> planet_elevati
   std::vector<float> east(fine.size()), north(fine.size());
   unit_detail(fine, law, seed, "island.coast_east", east);
   unit_detail(fine, law, seed, "island.coast_north", north);
-  const std::vector<float> dry = all_round(cells, planet_elevation_m, /*land=*/true);
-  const std::vector<float> wet = all_round(cells, planet_elevation_m, /*land=*/false);
   const std::vector<float> mean_east = cells.means(east, {}, 0.0F);
   const std::vector<float> mean_north = cells.means(north, {}, 0.0F);
   const double degrees_per_m = 180.0 / (std::numbers::pi * fine.figure().radius_m);
@@ -112,6 +108,26 @@ void read_planet(const PlanetCells& cells, std::span<const float> planet_elevati
                        here.longitude_deg + right / std::max(across, 1e-3)};
     z[c] = static_cast<float>(planet_height_m(cells.planet(), planet_elevation_m, there));
   });
+  const std::vector<float> planets = cells.means(planet_m, {}, 0.0F),
+                           own = cells.means(z, {}, 0.0F);
+  std::vector<float> lost(own.size());
+  for (std::size_t k = 0; k < own.size(); ++k) lost[k] = planets[k] - own[k];
+  on_cells(fine, [&](int i, int j, Index c) {
+    const double far = cells.interpolate(dry, i, j) + cells.interpolate(wet, i, j);
+    const double near = std::clamp(1.0 - far, 0.0, 1.0) * edge_ramp(fine, i, j, seam_m(cells));
+    z[c] += static_cast<float>(near * cells.interpolate(lost, i, j));
+  });
+}
+
+/// The planet's surface from Catmull-Rom, with winding coasts.
+void read_planet(const PlanetCells& cells, std::span<const float> planet_elevation_m,
+                 const IslandParameters& p, std::uint64_t seed, std::span<const float> planet_m,
+                 std::span<float> z) {
+  std::copy(planet_m.begin(), planet_m.end(), z.begin());
+  if (p.coast_fray <= 0.0) return;
+  const std::vector<float> dry = all_round(cells, planet_elevation_m, /*land=*/true);
+  const std::vector<float> wet = all_round(cells, planet_elevation_m, /*land=*/false);
+  wind_coasts(cells, planet_elevation_m, p, seed, dry, wet, planet_m, z);
 }
 
 /// Unit detail of exemplars. Waves that they do not hold, too long for a piece of them or too short
@@ -240,10 +256,37 @@ void sink_edges(const Grid& fine, const IslandParameters& p, std::uint64_t seed,
   });
 }
 
+/// Hollows about dips that the window's edge, which keeps the planet's heights, would hold closed:
+/// all that water would stand over whose sill lies within `seam_m` of the edge.
+std::vector<std::uint8_t> closed_by_edge(const Grid& fine, const FlowGraph& graph, double seam_m,
+                                         std::span<const std::uint8_t> dips,
+                                         std::span<const float> z) {
+  std::vector<Index> sill(z.size());
+  for (auto at = graph.order.rbegin(); at != graph.order.rend(); ++at) {  // downstream first
+    const Index c = *at, to = graph.receiver[c];
+    sill[c] = to == c || z[c] >= z[sill[to]] ? c : sill[to];
+  }
+  const auto closed = [&](Index c) {
+    const Index at = sill[c];
+    return z[c] < z[at] && edge_ramp(fine, fine.column(at), fine.row(at), seam_m) < 1.0;
+  };
+  std::vector<std::uint8_t> hollow(z.size());
+  for (const Index c : graph.order) {
+    const Index to = graph.receiver[c];
+    if (dips[c] != 0 && closed(c)) hollow[c] = 1;
+    if (hollow[c] != 0 && closed(to)) hollow[to] = 1;
+  }
+  for (auto at = graph.order.rbegin(); at != graph.order.rend(); ++at) {
+    if (hollow[graph.receiver[*at]] != 0 && closed(*at)) hollow[*at] = 1;
+  }
+  return hollow;
+}
+
 /// Makes plains of dips: they rise from where their water leaves them, along its ways over the
 /// ground as it dips, as graded rivers do, S = S1 (A / 1 km2)^-1/2. On an even plain rivers would
-/// run straight along the grid.
-void grade_plains(const Grid& fine, std::span<const std::uint8_t> dips,
+/// run straight along the grid. Where the window's edge holds a hollow closed, its plain rises from
+/// there.
+void grade_plains(const Grid& fine, double seam_m, std::span<const std::uint8_t> dips,
                   std::span<const std::uint8_t> sea, std::span<float> z) {
   constexpr double kSlope = 2e-4, kArea_m2 = 1e6;
   std::vector<std::uint8_t> outlets(sea.begin(), sea.end());
@@ -251,16 +294,18 @@ void grade_plains(const Grid& fine, std::span<const std::uint8_t> dips,
     if (fine.is_open_edge(fine.column(c), fine.row(c))) outlets[c] = 1;
   }
   const FlowGraph graph = route_water(fine, z, outlets).graph;
+  const std::vector<std::uint8_t> hollow = closed_by_edge(fine, graph, seam_m, dips, z);
   std::vector<double> area_m2(fine.size(), fine.area_m2(0));
   graph.accumulate(area_m2);
   for (auto at = graph.order.rbegin(); at != graph.order.rend(); ++at) {  // downstream first
     const Index c = *at, to = graph.receiver[c];
-    if (dips[c] == 0) continue;
-    z[c] = 0.0F;
-    if (to == c || dips[to] == 0) continue;
+    if (dips[c] == 0 && hollow[c] == 0) continue;
+    z[c] = std::max(z[c], 0.0F);
+    if (to == c || (hollow[c] == 0 && dips[to] == 0)) continue;
     const ReceiverDistance distance(fine, fine.row(c));
     const double slope = kSlope * std::sqrt(kArea_m2 / area_m2[c]);
-    z[c] = static_cast<float>(z[to] + slope * distance(c, fine.column(c), to));
+    const auto graded = static_cast<float>(z[to] + slope * distance(c, fine.column(c), to));
+    z[c] = std::max(z[c], graded);
   }
 }
 
@@ -288,7 +333,8 @@ void dry_inland_dips(const PlanetCells& cells, std::span<const float> planet_ele
   }
   std::vector<std::uint8_t> dips(fine.size());
   for (Index c = 0; c < fine.size(); ++c) dips[c] = z[c] < 0.0F && wet[c] == 0 ? 1 : 0;
-  if (std::find(dips.begin(), dips.end(), 1) != dips.end()) grade_plains(fine, dips, wet, z);
+  if (std::find(dips.begin(), dips.end(), 1) == dips.end()) return;
+  grade_plains(fine, seam_m(cells), dips, wet, z);
 }
 
 /// Raises land so that its mean over each planet cell is `target` again.

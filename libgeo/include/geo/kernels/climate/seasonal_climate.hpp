@@ -9,6 +9,7 @@
 #include "geo/kernels/climate/circulation.hpp"
 #include "geo/kernels/climate/energy_balance.hpp"
 #include "geo/kernels/climate/moisture.hpp"
+#include "geo/kernels/climate/ocean_currents.hpp"
 #include "geo/kernels/climate/soil_moisture.hpp"
 #include "geo/kernels/climate/stationary_wave.hpp"
 
@@ -19,6 +20,7 @@ struct SeasonalClimate {
   EnergyBalance energy;
   Circulation circulation;
   StationaryWave wave;
+  OceanCurrents currents;
   MoistureBudget moisture;
   SoilMoisture soil;
   double itcz_share = 0.34;  ///< of the thermal equator's excursion that the cells follow
