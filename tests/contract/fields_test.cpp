@@ -9,10 +9,16 @@ namespace {
 
 /// Of the CF standard name table, with canonical units: the names that fields may bear.
 const std::map<std::string_view, std::string_view> kStandardNames{
-    {"height_above_mean_sea_level", "m"}, {"air_temperature", "K"},
-    {"lwe_precipitation_rate", "m s-1"},  {"eastward_wind", "m s-1"},
-    {"northward_wind", "m s-1"},          {"water_volume_transport_in_river_channel", "m3 s-1"},
-    {"land_ice_thickness", "m"},          {"sea_ice_area_fraction", "1"},
+    {"height_above_mean_sea_level", "m"},
+    {"air_temperature", "K"},
+    {"lwe_precipitation_rate", "m s-1"},
+    {"eastward_wind", "m s-1"},
+    {"northward_wind", "m s-1"},
+    {"water_volume_transport_in_river_channel", "m3 s-1"},
+    {"land_ice_thickness", "m"},
+    {"sea_ice_area_fraction", "1"},
+    {"eastward_sea_water_velocity", "m s-1"},
+    {"northward_sea_water_velocity", "m s-1"},
 };
 
 TEST(Vocabulary, HasOneRowPerName) {
