@@ -111,6 +111,25 @@ TEST(OceanCurrents, RunRoundIslandsAndNotThroughThem) {
   EXPECT_LT(std::abs(sea.v[sea.grid.cell(118, 54)]), 0.3) << "no jet";
 }
 
+TEST(OceanCurrents, HaveNoJetsWhereMeridiansMeet) {
+  Sea sea(60);
+  for (Index c = 0; c < sea.grid.size(); ++c) {
+    // A coast across the pole, with bays of a few columns.
+    const bool bay = sea.grid.column(c) % 7 < 3;
+    if (sea.latitude[sea.grid.row(c)] > (bay ? 89.5 : 86.0)) sea.land[c] = 1.0F;
+    sea.east_pa[c] = 0.1;
+  }
+  ocean_currents(sea.grid, sea.model, kTurning, sea.latitude, sea.land, sea.east_pa, sea.north_pa,
+                 sea.u, sea.v);
+  double at_pole = 0.0, elsewhere = 0.0;
+  for (Index c = 0; c < sea.grid.size(); ++c) {
+    const double speed = std::hypot(sea.u[c], sea.v[c]);
+    double& fastest = sea.latitude[sea.grid.row(c)] > 80.0 ? at_pole : elsewhere;
+    fastest = std::max(fastest, speed);
+  }
+  EXPECT_LT(at_pole, elsewhere);
+}
+
 TEST(OceanCurrents, WindStressGoesAsTheSquareOfTheWind) {
   const WindStress stress = wind_stress({}, -6.0, 8.0);
   EXPECT_NEAR(stress.east_pa, 1.2 * 1.3e-3 * 10.0 * -6.0, 1e-12);

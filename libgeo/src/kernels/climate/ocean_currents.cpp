@@ -153,20 +153,27 @@ void ocean_currents(const Grid& grid, const OceanCurrents& model, double rotatio
                {"current_north_m_s", current_north_m_s.size()}});
   const StreamFunction sea(grid, model, rotation_rad_s, latitude_deg, land_fraction);
   const Eigen::VectorXd psi = sea.solve(stress_east_pa, stress_north_pa);
+  const int nx = grid.nx();
   for (int j = 0; j < grid.ny(); ++j) {
-    for (int i = 0; i < grid.nx(); ++i) {
+    // Towards the poles over several columns: cells there are narrower than what they resolve.
+    const int reach =
+        std::min(nx / 4, static_cast<int>(0.25 * grid.spacing_north_m(j) / grid.spacing_east_m(j)));
+    const double across_m = (2 * reach + 1) * grid.spacing_east_m(j);
+    for (int i = 0; i < nx; ++i) {
       const Index here = grid.cell(i, j);
-      const int west = (i + grid.nx() - 1) % grid.nx();
-      const double north_west = sea.corner(psi, west, j), north_east = sea.corner(psi, i, j),
-                   south_west = sea.corner(psi, west, j - 1),
-                   south_east = sea.corner(psi, i, j - 1);
-      const bool moves = !sea.is_land(here);
-      const double northward = 0.5 * (north_east + south_east - north_west - south_west),
-                   eastward = 0.5 * (south_west + south_east - north_west - north_east);
-      current_north_m_s[here] =
-          moves ? static_cast<float>(northward / grid.spacing_east_m(j) / model.layer_m) : 0.0F;
-      current_east_m_s[here] =
-          moves ? static_cast<float>(eastward / grid.face_east_m(j) / model.layer_m) : 0.0F;
+      if (sea.is_land(here)) {
+        current_east_m_s[here] = current_north_m_s[here] = 0.0F;
+        continue;
+      }
+      const auto corner = [&](int column, int row) {
+        return sea.corner(psi, (column + nx) % nx, row);
+      };
+      const double northward = 0.5 * (corner(i + reach, j) + corner(i + reach, j - 1) -
+                                      corner(i - 1 - reach, j) - corner(i - 1 - reach, j - 1)),
+                   eastward = 0.5 * (corner(i - 1, j - 1) + corner(i, j - 1) - corner(i - 1, j) -
+                                     corner(i, j));
+      current_north_m_s[here] = static_cast<float>(northward / across_m / model.layer_m);
+      current_east_m_s[here] = static_cast<float>(eastward / grid.face_east_m(j) / model.layer_m);
     }
   }
 }
