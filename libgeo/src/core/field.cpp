@@ -381,18 +381,18 @@ const Field<float> sea_ice_area_fraction{
      .type = Type::float32,
      .least = 0.0,
      .most = 1.0}};
-const Field<float> ocean_current_east{
-    {.name = "ocean_current_east",
-     .units = "m s-1",
-     .standard_name = "eastward_sea_water_velocity",
-     .doc = "eastward velocity of the wind-driven currents, annual mean, 0 on land",
-     .type = Type::float32}};
-const Field<float> ocean_current_north{
-    {.name = "ocean_current_north",
-     .units = "m s-1",
-     .standard_name = "northward_sea_water_velocity",
-     .doc = "northward velocity of the wind-driven currents, annual mean, 0 on land",
-     .type = Type::float32}};
+const Field<float> ocean_current_east{{.name = "ocean_current_east",
+                                       .units = "m s-1",
+                                       .standard_name = "eastward_sea_water_velocity",
+                                       .doc = "eastward velocity of wind-driven currents, annual "
+                                              "mean, 0 on land and on parts of a planet",
+                                       .type = Type::float32}};
+const Field<float> ocean_current_north{{.name = "ocean_current_north",
+                                        .units = "m s-1",
+                                        .standard_name = "northward_sea_water_velocity",
+                                        .doc = "northward velocity of wind-driven currents, annual "
+                                               "mean, 0 on land and on parts of a planet",
+                                        .type = Type::float32}};
 const Field<std::int8_t> koppen_class{{.name = "koppen_class",
                                        .units = "",
                                        .doc = "climate class after Köppen-Geiger",

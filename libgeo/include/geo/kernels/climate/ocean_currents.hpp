@@ -30,8 +30,11 @@ struct WindStress {
 /// that the circulation round it asks for (Godfrey 1989). Where no land stands in the way, wind and
 /// friction balance along the whole parallel. Finite volumes, beta's term upwind; one sparse
 /// system, solved directly. Ekman's drift and what density drives are not in it.
+/// Near a pole, where cells are narrower than they are high, velocities are means over several.
+/// Cost: a direct solver's, as cells to the power 1.5; 0.1 s at 2 degrees, 5 s at half a degree.
 ///
 /// Shapes: latitude_deg one per row; all else one per cell, row-major from the southernmost row.
+/// @param rotation_rad_s                   of the planet, negative if retrograde
 /// @param stress_east_pa, stress_north_pa  on the water, mean over the year
 /// @param[out] current_east_m_s, current_north_m_s  0 on land
 /// Throws Bug where sizes differ or the grid is no sphere.
