@@ -78,8 +78,8 @@ double planet_height_m(const Grid& planet, std::span<const float> elevation_m, C
 }
 
 /// Next to a shore, which would follow the sides of the planet's cells, the surface is read from a
-/// place nearby: bays and headlands shorter than two cells, with as much land in each and the same
-/// mean elevation over each of the planet's cells.
+/// place nearby: bays and headlands shorter than two cells, with as much land in each and nearly
+/// the same mean elevation over each of the planet's cells.
 void wind_coasts(const PlanetCells& cells, std::span<const float> planet_elevation_m,
                  const IslandParameters& p, std::uint64_t seed, std::span<const float> dry,
                  std::span<const float> wet, std::span<const float> planet_m, std::span<float> z) {
