@@ -8,6 +8,8 @@
 #include "geo/kernels/climate/energy_balance.hpp"
 #include "geo/kernels/climate/evaporation.hpp"
 #include "geo/kernels/climate/insolation.hpp"
+#include "geo/kernels/climate/ocean_heat.hpp"
+#include "geo/kernels/numerics/area_sum.hpp"
 
 namespace geo {
 namespace {
@@ -96,8 +98,8 @@ TemperatureCycle solve(const Grid& grid, const EnergyBalance& model, float land,
   std::vector<double> latitude;
   for (int j = 0; j < grid.ny(); ++j) latitude.push_back(grid.latitude_deg(j));
   const auto size = static_cast<std::size_t>(grid.size());
-  return solve_energy_balance(grid, model, false, latitude, std::vector<double>(grid.ny(), 0.0),
-                              std::vector<float>(size, land), std::vector<float>(size, height_m));
+  return solve_energy_balance(grid, model, false, latitude, std::vector<float>(size, land),
+                              std::vector<float>(size, height_m));
 }
 
 EnergyBalance constant_albedo() {
@@ -111,7 +113,7 @@ EnergyBalance constant_albedo() {
   model.coalbedo_p2 = 0.0;
   model.ice_width_k = 0.0;
   model.orbit = kCircle;
-  model.gyre_heat_w_m2 = 0.0;
+  model.gyre_heat_w_m2 = model.subpolar_heat_w_m2 = model.upwelling_w_m2 = 0.0;
   return model;
 }
 
@@ -152,36 +154,165 @@ TEST(EnergyBalance, HarmonicSolvesTheStoringPlanet) {
   EXPECT_NEAR(std::abs(temperature / expected - 1.0), 0.0, 1e-3);
 }
 
-TEST(EnergyBalance, HeightsOnlyMatterThroughSnowAndIce) {
+TEST(EnergyBalance, HeightsMatterThroughSnowIceAndTheHeatThatTheyHoldBack) {
   const Grid grid = Grid::sphere(60, 30);
-  const EnergyBalance model;
+  EnergyBalance open;
+  open.blocking_height_m = 1e12;
   const Index cell = grid.cell(0, 3);
-  EXPECT_LT(solve(grid, model, 1.0F, 3000.0F).mean_c(cell), solve(grid, model, 1.0F).mean_c(cell))
+  EXPECT_LT(solve(grid, open, 1.0F, 3000.0F).mean_c(cell), solve(grid, open, 1.0F).mean_c(cell))
       << "a high plateau near the pole is icier";
-  EnergyBalance without = model;
+  EnergyBalance without = open;
   without.ice_width_k = 0.0;
-  EXPECT_NEAR(solve(grid, without, 1.0F, 3000.0F).mean_c(cell),
-              solve(grid, without, 1.0F).mean_c(cell), 1e-6);
+  const double low_c = solve(grid, without, 1.0F).mean_c(cell);
+  EXPECT_NEAR(solve(grid, without, 1.0F, 3000.0F).mean_c(cell), low_c, 1e-6);
+  // Where the diffusivity is that of a fraction, so is the temperature.
+  EnergyBalance blocked = without, slow = without;
+  blocked.blocking_height_m = 3000.0;
+  slow.diffusivity_w_m2_k *= 0.5;
+  EXPECT_NEAR(solve(grid, blocked, 1.0F, 3000.0F).mean_c(cell),
+              solve(grid, slow, 1.0F).mean_c(cell), 1e-6);
+  EXPECT_LT(solve(grid, slow, 1.0F).mean_c(cell), low_c - 1.0);
+}
+
+// Behind a range that holds heat back the far side keeps its own climate.
+TEST(EnergyBalance, RangesKeepWarmGroundFromCold) {
+  const Grid grid = Grid::sphere(90, 45);
+  std::vector<double> latitude;
+  for (int j = 0; j < grid.ny(); ++j) latitude.push_back(grid.latitude_deg(j));
+  EnergyBalance model = constant_albedo();
+  model.blocking_height_m = 100.0;  // next to nothing passes
+  std::vector<float> land(grid.size(), 1.0F), flat(grid.size(), 0.0F), range = flat;
+  for (Index c = 0; c < grid.size(); ++c) {
+    if (std::abs(grid.latitude_deg(grid.row(c)) - 32.0) < 3.0) range[c] = 5000.0F;
+  }
+  const auto contrast_k = [&](const std::vector<float>& height_m) {
+    const auto year = solve_energy_balance(grid, model, false, latitude, land, height_m);
+    return year.month_c(grid.cell(0, 29), 0) - year.month_c(grid.cell(0, 33), 0);
+  };
+  // Radiation alone holds the two sides together: 1.37 times as far apart as on level ground.
+  EXPECT_GT(contrast_k(range), 1.3 * contrast_k(flat));
 }
 
 TEST(EnergyBalance, SeaWindsMakeWesternCoastsMild) {
   const Grid grid = Grid::sphere(90, 45);
-  std::vector<double> latitude, wind(grid.ny(), 5.0);
+  std::vector<double> latitude;
   for (int j = 0; j < grid.ny(); ++j) latitude.push_back(grid.latitude_deg(j));
   std::vector<float> land(grid.size());
   for (Index c = 0; c < grid.size(); ++c) land[c] = grid.column(c) < 30 ? 1.0F : 0.0F;
   EnergyBalance model;
-  model.gyre_heat_w_m2 = 0.0;
+  model.advected_heat_j_m2_k = 9.5e6;
+  model.gyre_heat_w_m2 = model.subpolar_heat_w_m2 = model.upwelling_w_m2 = 0.0;
   const std::vector<float> flat(land.size(), 0.0F);
   const auto range = [&](bool retrograde, int column) {
-    std::vector<double> blowing(wind);
-    if (retrograde) std::fill(blowing.begin(), blowing.end(), -5.0);
-    const auto year = solve_energy_balance(grid, model, retrograde, latitude, blowing, land, flat);
+    const auto year =
+        solve_energy_balance(grid, model, retrograde, latitude, land, flat,
+                             [&](auto, auto, std::span<float> east, std::span<float> north) {
+                               std::fill(east.begin(), east.end(), retrograde ? -5.0F : 5.0F);
+                               std::fill(north.begin(), north.end(), 0.0F);
+                             });
     const Index cell = grid.cell(column, 34);  // 50 N
     return 2.0 * std::abs(year.harmonic(1)[cell]);
   };
   EXPECT_LT(range(false, 1), range(false, 28)) << "the western coast has the smaller range";
   EXPECT_NEAR(range(true, 28), range(false, 1), 1e-3) << "mirrored on a planet that turns back";
+}
+
+/// A planet of one continent, a third of its meridians, and winds that change with the months.
+struct WindyPlanet {
+  Grid grid = Grid::sphere(60, 30);
+  std::vector<double> latitude;
+  std::vector<float> land, flat;
+  WindyPlanet() : land(grid.size()), flat(land.size(), 0.0F) {
+    for (int j = 0; j < grid.ny(); ++j) latitude.push_back(grid.latitude_deg(j));
+    for (Index c = 0; c < grid.size(); ++c) land[c] = grid.column(c) < 20 ? 1.0F : 0.0F;
+  }
+  [[nodiscard]] TemperatureCycle year(float speed_m_s) const {
+    EnergyBalance model = constant_albedo();
+    model.advected_heat_j_m2_k = 5e6;
+    model.gyre_heat_w_m2 = model.subpolar_heat_w_m2 = model.upwelling_w_m2 = 0.0;
+    return solve_energy_balance(
+        grid, model, false, latitude, land, flat,
+        [&](std::span<const float> month_c, auto, std::span<float> east, std::span<float> north) {
+          for (std::size_t c = 0; c < month_c.size(); ++c) {
+            const Index cell = static_cast<Index>(c);
+            east[c] = speed_m_s * (month_c[c] > 10.0F ? 1.0F : -0.5F);
+            north[c] = grid.column(cell) < 20 ? -speed_m_s : 0.5F * speed_m_s;
+          }
+        });
+  }
+  [[nodiscard]] double mean_c(const TemperatureCycle& year) const {
+    double sum = 0.0;
+    for (Index c = 0; c < grid.size(); ++c) sum += year.mean_c(c) * grid.area_m2(grid.row(c));
+    return sum / grid.total_area_m2();
+  }
+};
+
+TEST(EnergyBalance, WindsMoveHeatAndMakeNone) {
+  const WindyPlanet planet;
+  const auto still = planet.year(0.0F), windy = planet.year(3.0F);
+  EXPECT_NEAR(planet.mean_c(windy), planet.mean_c(still), 1e-3);
+  const Index inland = planet.grid.cell(10, 24);  // 57 N, under wind from the north
+  EXPECT_LT(windy.mean_c(inland), still.mean_c(inland) - 1.0);
+}
+
+/// Heat of currents on that planet, row 15 the first north of the equator.
+struct Currents {
+  WindyPlanet planet;
+  std::vector<double> heat_w_m2;
+  Currents(const EnergyBalance& model, bool retrograde, int land_columns = 20)
+      : heat_w_m2(planet.land.size()) {
+    for (Index c = 0; c < planet.grid.size(); ++c) {
+      planet.land[c] = planet.grid.column(c) < land_columns ? 1.0F : 0.0F;
+    }
+    ocean_heat(planet.grid, model, retrograde, planet.latitude, planet.land, heat_w_m2);
+  }
+  [[nodiscard]] double at(int column, int row) const {
+    return heat_w_m2[planet.grid.cell(column, row)];
+  }
+  [[nodiscard]] double sum_w() const {
+    return area_sum<double>(planet.grid, [&](Index cell) { return heat_w_m2[cell]; });
+  }
+};
+
+EnergyBalance only_upwelling() {
+  EnergyBalance model;
+  model.gyre_heat_w_m2 = model.subpolar_heat_w_m2 = 0.0;
+  model.upwelling_w_m2 = 50.0;
+  model.upwelling_reach_km = 6000.0;
+  return model;
+}
+
+TEST(OceanHeat, WellsUpAtTheEquatorOffTheCoastThatTradesLeave) {
+  const Currents forward(only_upwelling(), false), back(only_upwelling(), true);
+  EXPECT_LT(forward.at(59, 15), -30.0) << "beside the eastern coast";
+  EXPECT_GT(forward.at(20, 15), forward.at(59, 15) * 0.2) << "the west of the basin is warm";
+  EXPECT_EQ(forward.at(10, 15), 0.0) << "on land";
+  EXPECT_NEAR(back.at(20, 15), forward.at(59, 15), 1e-9) << "mirrored";
+  const Currents narrow(only_upwelling(), false, 50);
+  EXPECT_GT(narrow.at(59, 15), 0.7 * forward.at(59, 15)) << "a narrow ocean is tilted less";
+}
+
+TEST(OceanHeat, IsMovedAndNotMade) {
+  for (const bool retrograde : {false, true}) {
+    const Currents currents(EnergyBalance{}, retrograde);
+    double released = 0.0;
+    for (Index c = 0; c < currents.planet.grid.size(); ++c) {
+      released += std::abs(currents.heat_w_m2[c]) *
+                  currents.planet.grid.area_m2(currents.planet.grid.row(c));
+    }
+    EXPECT_LT(std::abs(currents.sum_w()), 1e-12 * released);
+  }
+}
+
+TEST(OceanHeat, WarmsTheEasternCoastsOfSubpolarSeas) {
+  EnergyBalance model;
+  model.gyre_heat_w_m2 = model.upwelling_w_m2 = 0.0;
+  model.subpolar_heat_w_m2 = 40.0;
+  const Currents currents(model, false);
+  const int subpolar = 25, subtropical = 20;  // 63 and 33 N
+  EXPECT_GT(currents.at(59, subpolar), 5.0);
+  EXPECT_LT(currents.at(20, subpolar), -5.0);
+  EXPECT_NEAR(currents.at(59, subtropical), currents.at(20, subtropical), 1e-9);
 }
 
 TEST(Budyko, SpotValueAndLimits) {

@@ -12,10 +12,14 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kRadians = kPi / 180.0;
 
-/// Latitude as the cells see it: the tropical boundary moves with the trough, the pole stays.
-double cell_latitude_deg(double latitude_deg, double trough_deg) {
+/// Latitude as the cells see it: displaced with the trough at the trough, less and less from there
+/// to the pole, which stays.
+double cell_latitude_deg(double latitude_deg, double trough_deg, double decay) {
   const double span = latitude_deg >= trough_deg ? 90.0 - trough_deg : 90.0 + trough_deg;
-  return (latitude_deg - trough_deg) / span * 90.0;
+  const double to_pole = std::clamp(1.0 - std::abs(latitude_deg - trough_deg) / span, 0.0, 1.0);
+  // A displacement that fell off faster would turn the order of latitudes round.
+  const double steepest = (90.0 + std::abs(trough_deg)) / std::max(std::abs(trough_deg), 1e-9);
+  return latitude_deg - trough_deg * std::pow(to_pole, std::min(decay, steepest));
 }
 
 double cell_rise_hpa(int cell, const Circulation& model) {
@@ -47,7 +51,8 @@ double Circulation::cell_width() const {
 }
 
 double three_cell_pressure_hpa(double latitude_deg, const Circulation& model, double trough_deg) {
-  const double seen_deg = std::min(std::abs(cell_latitude_deg(latitude_deg, trough_deg)), 90.0);
+  const double seen_deg = std::min(
+      std::abs(cell_latitude_deg(latitude_deg, trough_deg, model.displacement_decay)), 90.0);
   const double width_deg = std::min(90.0, 30.0 * model.cell_width());
   double pressure = 0.0;
   for (int cell = 0; cell == 0 || width_deg * cell < 90.0 - 1e-9; ++cell) {

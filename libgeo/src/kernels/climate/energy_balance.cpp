@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
 
 #include "geo/core/array_sizes.hpp"
 #include "geo/core/error.hpp"
 #include "geo/core/parallel_errors.hpp"
+#include "geo/kernels/climate/ocean_heat.hpp"
 #include "geo/kernels/climate/thermodynamics.hpp"
+#include "kernels/climate/heat_advection.hpp"
 #include "kernels/climate/row_preconditioner.hpp"
 
 namespace geo {
@@ -19,19 +20,8 @@ namespace {
 using Complex = std::complex<double>;
 constexpr double kPi = std::numbers::pi;
 constexpr double kRadians = kPi / 180.0;
-constexpr double kSecondsPerYear = 365.25 * 86400.0;
 constexpr int kHarmonics = TemperatureCycle::kHarmonics;
 constexpr double kMelting_c = -1.0;  // of a month on ice that is melting
-
-/// e^(2 pi i k t) in the middle of a month.
-Complex month_phase(int harmonic, int month) {
-  static const auto phases = [] {
-    std::array<Complex, 2 * kMonths> all;  // of half months
-    for (int n = 0; n < 2 * kMonths; ++n) all[n] = std::polar(1.0, 2.0 * kPi * n / (2 * kMonths));
-    return all;
-  }();
-  return phases[harmonic * (2 * month + 1) % (2 * kMonths)];
-}
 
 /// Rises from 0 to 1 as a temperature falls below a limit; 0 without a width.
 double frozen_share(double temperature_c, double limit_c, double width_k) {
@@ -139,7 +129,8 @@ class Surface {
     return sea_ice_share(model_, annual_mean_c);
   }
 
-  /// Sunlight that a cell absorbs in each month, less what melts its sea ice.
+  /// Sunlight that a cell absorbs in each month, less what melts its sea ice, and what that gives
+  /// back.
   [[nodiscard]] std::array<double, kMonths> absorbed_w_m2(const TemperatureCycle& temperature,
                                                           Index cell) const {
     const int row = grid_.row(cell);
@@ -154,12 +145,21 @@ class Surface {
     const double snowy = model_.snow_coalbedo + ice * (model_.ice_coalbedo - model_.snow_coalbedo);
     const double sea = bare + sea_ice(temperature.mean_c(cell)) * (model_.sea_ice_coalbedo - bare);
     const double melting = (1.0 - land) * sea_ice(temperature.mean_c(cell)) * model_.melt_w_m2_k;
+    double melted_w_m2 = 0.0, frost_k = 0.0;
     for (int m = 0; m < kMonths; ++m) {
       const double snow =
           std::max(ice, frozen_share(ground_c[m], model_.snow_temperature_c, model_.ice_width_k));
       const double share = land * (bare + snow * (snowy - bare)) + (1.0 - land) * sea;
-      absorbed[m] = insolation_[row][m] * share -
-                    melting * std::max(0.0, temperature.month_c(cell, m) - kMelting_c);
+      const double warmer_k = temperature.month_c(cell, m) - kMelting_c;
+      const double melt_w_m2 = melting * std::max(0.0, warmer_k);
+      absorbed[m] = insolation_[row][m] * share - melt_w_m2;
+      melted_w_m2 += melt_w_m2;
+      frost_k += std::max(0.0, -warmer_k);
+    }
+    // What melts in summer freezes in winter, most in the coldest months.
+    for (int m = 0; m < kMonths && frost_k > 0.0; ++m) {
+      const double colder_k = kMelting_c - temperature.month_c(cell, m);
+      absorbed[m] += melted_w_m2 * std::max(0.0, colder_k) / frost_k;
     }
     return absorbed;
   }
@@ -173,11 +173,12 @@ class Surface {
     return land_[cell] * model_.land_heat_capacity_w_yr_m2_k + (1.0 - land_[cell]) * sea;
   }
 
-  [[nodiscard]] double diffusivity_w_m2_k(double annual_mean_c) const {
+  [[nodiscard]] double diffusivity_w_m2_k(double annual_mean_c, Index cell) const {
     const auto moist = [&](double temperature_c) {
       return 1.0 + model_.moist_transport * latent_to_sensible_slope(temperature_c);
     };
-    return model_.diffusivity_w_m2_k * moist(annual_mean_c) / moist(15.0);
+    return model_.diffusivity_w_m2_k * open_to_heat(model_, height_m_[cell]) *
+           moist(annual_mean_c) / moist(15.0);
   }
 
  private:
@@ -198,112 +199,145 @@ double TemperatureCycle::month_c(std::size_t cell, int month) const {
   return sum;
 }
 
+double open_to_heat(const EnergyBalance& model, double height_m) {
+  const double relative = height_m / model.blocking_height_m;
+  return 1.0 / (1.0 + relative * relative);
+}
+
 double sea_ice_share(const EnergyBalance& model, double annual_mean_c) {
   return frozen_share(annual_mean_c, model.ice_temperature_c, model.ice_width_k);
 }
 
-void gyre_heat(const Grid& grid, const EnergyBalance& model, bool retrograde,
+namespace {
+
+/// The temperatures that are sought, and what is known of their heat.
+class PeriodicYear {
+ public:
+  PeriodicYear(const Grid& grid, const EnergyBalance& model, bool retrograde,
                std::span<const double> latitude_deg, std::span<const float> land_fraction,
-               std::span<double> heat_w_m2) {
-  check_sizes("gyre_heat", grid.ny(), {{"latitude_deg", latitude_deg.size()}});
-  check_sizes("gyre_heat", grid.size(),
-              {{"land_fraction", land_fraction.size()}, {"heat_w_m2", heat_w_m2.size()}});
-  const int nx = grid.nx();
-  std::vector<double> west(nx), east(nx);
-  for (int j = 0; j < grid.ny(); ++j) {
-    const double keep = std::exp(-grid.spacing_east_m(j) / (1000.0 * model.gyre_reach_km));
-    const auto land = [&](int i) { return land_fraction[grid.cell(i, j)]; };
-    double from_west = 0.0, from_east = 0.0;
-    // The second turn round the parallel starts from what the first one found.
-    for (int turn = 0; turn < 2; ++turn) {
-      for (int i = 0; i < nx; ++i) {
-        west[i] = from_west;
-        east[nx - 1 - i] = from_east;
-        from_west = keep * from_west + (1.0 - keep) * land(i);
-        from_east = keep * from_east + (1.0 - keep) * land(nx - 1 - i);
+               std::span<const float> height_m, const HeatWinds& winds)
+      : grid_(grid),
+        model_(model),
+        size_(static_cast<std::size_t>(grid.size())),
+        surface_(grid, model, latitude_deg, land_fraction, height_m),
+        advection_(grid, model.advected_heat_j_m2_k, winds),
+        ocean_(size_),
+        diffusivity_(size_),
+        capacity_(size_),
+        temperature_(size_) {
+    ocean_heat(grid, model, retrograde, latitude_deg, land_fraction, ocean_);
+    for (std::size_t cell = 0; cell < size_; ++cell) {
+      const double sine = std::sin(latitude_deg[grid.row(static_cast<Index>(cell))] * kRadians);
+      temperature_.harmonic(0)[cell] = 27.0 - 40.0 * sine * sine;
+    }
+    for (auto& source : sources_) source.resize(size_);
+  }
+
+  /// Snow, ice, winds and moist transport follow the temperature; factors are kept while they still
+  /// do.
+  TemperatureCycle solve() && {
+    constexpr int kRounds = 14, kFactorRounds = 3;
+    constexpr double kNear = 1e-4, kClosed = 1e-7;
+    for (int round = 0; round < kRounds; ++round) {
+      const bool refactor = round < kFactorRounds;
+      if (refactor) take_coefficients();
+      gather_sources(round > 0);
+      if (round > 0) advection_.advance(temperature_);
+      ParallelErrors errors;
+#pragma omp parallel for schedule(dynamic, 1)
+      for (int k = 0; k <= kHarmonics; ++k) {
+        errors.guard([&] {
+          if (refactor) factor(k);
+          solve(k, round + 1 < kRounds ? kNear : kClosed);
+        });
       }
+      errors.rethrow();
     }
-    const double gyre = (retrograde ? -1.0 : 1.0) * model.gyre_heat_w_m2 *
-                        std::cos(2.0 * latitude_deg[j] * kRadians);
-    for (int i = 0; i < nx; ++i) {
-      heat_w_m2[grid.cell(i, j)] = gyre * (west[i] - east[i]) * (1.0 - land(i));
+    return std::move(temperature_);
+  }
+
+ private:
+  void take_coefficients() {
+    for (std::size_t cell = 0; cell < size_; ++cell) {
+      diffusivity_[cell] =
+          surface_.diffusivity_w_m2_k(temperature_.mean_c(cell), static_cast<Index>(cell));
+      capacity_[cell] =
+          surface_.capacity_w_yr_m2_k(temperature_.mean_c(cell), static_cast<Index>(cell));
     }
+    advection_.average(temperature_, stiffness_w_m2_k());
   }
-}
 
-TemperatureCycle solve_energy_balance(const Grid& grid, const EnergyBalance& model, bool retrograde,
-                                      std::span<const double> latitude_deg,
-                                      std::span<const double> zonal_wind_m_s,
-                                      std::span<const float> land_fraction,
-                                      std::span<const float> height_m) {
-  check_sizes("solve_energy_balance", grid.ny(),
-              {{"latitude_deg", latitude_deg.size()}, {"zonal_wind_m_s", zonal_wind_m_s.size()}});
-  check_sizes("solve_energy_balance", grid.size(),
-              {{"land_fraction", land_fraction.size()}, {"height_m", height_m.size()}});
-  const auto size = static_cast<std::size_t>(grid.size());
-  const HeatOperator heat(grid, model.advected_heat_j_m2_k, zonal_wind_m_s);
-  const Surface surface(grid, model, latitude_deg, land_fraction, height_m);
-  std::vector<double> gyres(size), diffusivity(size), capacity(size);
-  gyre_heat(grid, model, retrograde, latitude_deg, land_fraction, gyres);
-  TemperatureCycle temperature(size);
-  for (std::size_t cell = 0; cell < size; ++cell) {
-    const double sine = std::sin(latitude_deg[grid.row(static_cast<Index>(cell))] * kRadians);
-    temperature.harmonic(0)[cell] = 27.0 - 40.0 * sine * sine;
+  /// How fast diffusion and radiation level a departure of one cell, W m-2 K-1.
+  [[nodiscard]] std::vector<double> stiffness_w_m2_k() const {
+    std::vector<double> stiffness(size_);
+    const double radius2 = grid_.figure().radius_m * grid_.figure().radius_m;
+    for (std::size_t cell = 0; cell < size_; ++cell) {
+      const int row = grid_.row(static_cast<Index>(cell));
+      const double per_east = 2.0 * grid_.face_east_m(row) / grid_.spacing_east_m(row);
+      const double per_north = 2.0 * grid_.face_north_m(row) / grid_.spacing_north_m(row);
+      stiffness[cell] = model_.outgoing_slope_w_m2_k +
+                        radius2 / grid_.area_m2(row) * (per_east + per_north) * diffusivity_[cell];
+    }
+    return stiffness;
   }
-  std::array<HarmonicSolver, kHarmonics + 1> solvers;
-  std::array<std::vector<Complex>, kHarmonics + 1> sources;
-  for (auto& source : sources) source.resize(size);
-  ParallelErrors errors;
 
-  const auto gather_sources = [&](bool started) {
+  void gather_sources(bool started) {
 #pragma omp parallel for schedule(static)
-    for (int j = 0; j < grid.ny(); ++j) {
-      for (Index cell = grid.cell(0, j); cell < grid.cell(0, j) + grid.nx(); ++cell) {
-        const auto absorbed = surface.absorbed_w_m2(temperature, cell);
+    for (int j = 0; j < grid_.ny(); ++j) {
+      for (Index cell = grid_.cell(0, j); cell < grid_.cell(0, j) + grid_.nx(); ++cell) {
+        const auto absorbed = surface_.absorbed_w_m2(temperature_, cell);
         for (int k = 0; k <= kHarmonics; ++k) {
           Complex sum = 0.0;
           for (int m = 0; m < kMonths; ++m) sum += absorbed[m] * std::conj(month_phase(k, m));
           sum *= (k == 0 ? 1.0 : 2.0) / kMonths;
-          if (k == 0) sum += gyres[cell] - model.outgoing_w_m2;
-          sum *= grid.area_m2(j);
+          if (k == 0) sum += ocean_[cell] - model_.outgoing_w_m2;
+          sum *= grid_.area_m2(j);
           // Half-way, so that snow, ice and melting settle.
-          sources[k][cell] += (started ? 0.5 : 1.0) * (sum - sources[k][cell]);
+          sources_[k][cell] += (started ? 0.5 : 1.0) * (sum - sources_[k][cell]);
         }
       }
     }
-  };
-  const auto factor = [&](int k) {
-    std::vector<Complex> loss(size);
-    for (std::size_t cell = 0; cell < size; ++cell) {
-      loss[cell] = Complex(model.outgoing_slope_w_m2_k, 2.0 * kPi * k * capacity[cell]) *
-                   grid.area_m2(grid.row(static_cast<Index>(cell)));
-    }
-    solvers[k].factor(heat.matrix(diffusivity, loss), grid.nx());
-  };
-
-  // Snow and ice and moist transport follow the temperature; factors are kept while they still do.
-  constexpr int kRounds = 14, kFactorRounds = 3;
-  constexpr double kNear = 1e-3, kClosed = 1e-6;
-  for (int round = 0; round < kRounds; ++round) {
-    if (round < kFactorRounds) {
-      for (std::size_t cell = 0; cell < size; ++cell) {
-        diffusivity[cell] = surface.diffusivity_w_m2_k(temperature.mean_c(cell));
-        capacity[cell] =
-            surface.capacity_w_yr_m2_k(temperature.mean_c(cell), static_cast<Index>(cell));
-      }
-    }
-    gather_sources(round > 0);
-#pragma omp parallel for schedule(dynamic, 1)
-    for (int k = 0; k <= kHarmonics; ++k) {
-      errors.guard([&] {
-        if (round < kFactorRounds) factor(k);
-        solvers[k].solve(sources[k], round + 1 < kRounds ? kNear : kClosed,
-                         temperature.harmonic(k));
-      });
-    }
-    errors.rethrow();
   }
-  return temperature;
+
+  void factor(int k) {
+    std::vector<Complex> loss(size_);
+    for (std::size_t cell = 0; cell < size_; ++cell) {
+      loss[cell] = Complex(model_.outgoing_slope_w_m2_k, 2.0 * kPi * k * capacity_[cell]) *
+                   grid_.area_m2(grid_.row(static_cast<Index>(cell)));
+    }
+    const HeatOperator heat(grid_, model_.advected_heat_j_m2_k, advection_.mean_wind_m_s());
+    solvers_[k].factor(heat.matrix(diffusivity_, loss), grid_.nx());
+  }
+
+  void solve(int k, double tolerance) {
+    std::vector<Complex> all = sources_[k];
+    const auto carried = advection_.besides(k);
+    for (std::size_t cell = 0; cell < size_; ++cell) all[cell] += carried[cell];
+    solvers_[k].solve(all, tolerance, temperature_.harmonic(k));
+  }
+
+  const Grid& grid_;
+  const EnergyBalance& model_;
+  std::size_t size_;
+  Surface surface_;
+  HeatAdvection advection_;
+  std::vector<double> ocean_, diffusivity_, capacity_;
+  TemperatureCycle temperature_;
+  std::array<HarmonicSolver, kHarmonics + 1> solvers_;
+  std::array<std::vector<Complex>, kHarmonics + 1> sources_;
+};
+
+}  // namespace
+
+TemperatureCycle solve_energy_balance(const Grid& grid, const EnergyBalance& model, bool retrograde,
+                                      std::span<const double> latitude_deg,
+                                      std::span<const float> land_fraction,
+                                      std::span<const float> height_m, const HeatWinds& winds) {
+  check_sizes("solve_energy_balance", grid.ny(), {{"latitude_deg", latitude_deg.size()}});
+  check_sizes("solve_energy_balance", grid.size(),
+              {{"land_fraction", land_fraction.size()}, {"height_m", height_m.size()}});
+  return PeriodicYear(grid, model, retrograde, latitude_deg, land_fraction, height_m, winds)
+      .solve();
 }
 
 }  // namespace geo

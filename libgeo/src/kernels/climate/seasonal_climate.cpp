@@ -23,6 +23,12 @@ constexpr double kDaysPerMonth = 365.25 / kMonths, kSecondsPerDay = 86400.0;
 constexpr double kWattsPerMillimetreADay = 28.9;  // latent heat of rain
 constexpr double kLatentOverHeat_k = 2.5e6 / 1004.0;
 
+/// How far a latitude is one where planetary rotation is weak: half at the edge.
+double weak_rotation(double latitude_deg, double edge_deg) {
+  const double turning = std::sin(latitude_deg * kRadians) / std::sin(edge_deg * kRadians);
+  return 1.0 / (1.0 + turning * turning * turning * turning);
+}
+
 /// One month's air and what it exchanges with the ground.
 struct Month {
   std::vector<float> temperature_c;  ///< at sea level
@@ -56,13 +62,21 @@ class SeasonalYear {
   void warm();
   void blow();
   void exchange();
-  void rain(bool last);
+  void rain(bool closed);
   void evaporate();
   void lift(const TerrainAscent& ascent);
   [[nodiscard]] SeasonalFields fields() const;
 
  private:
+  [[nodiscard]] double thermal_pressure_hpa(double warmer_k) const;
+  void carry_heat(std::span<const float> month_c, std::span<const double> annual_mean_c,
+                  std::span<float> east, std::span<float> north) const;
   void begin_month(int m, const TemperatureCycle& temperature);
+  void clear(Month& month) const;
+  void press(Month& month, std::span<const double> zonal_c,
+             std::span<const double> annual_mean_c) const;
+  void stir(Month& month, std::span<const double> zonal_c) const;
+  void moisten(Month& month) const;
   void heat_air(Month& month) const;
   void activate(Month& month) const;
   [[nodiscard]] std::vector<float> convective_excess_k(const Month& month) const;
@@ -89,17 +103,44 @@ class SeasonalYear {
   bool has_sea_;
 };
 
+/// Pressure over ground that is warmer or colder than its parallel is through the year, hPa.
+double SeasonalYear::thermal_pressure_hpa(double warmer_k) const {
+  return -model_.circulation.thermal_low_hpa_k * warmer_k *
+         (warmer_k > 0.0 ? 1.0 : model_.circulation.cold_high_share);
+}
+
+/// Winds that carry heat: a share of the thermal wind, the same all along a parallel, and a share
+/// of the winds about heat lows and cold highs.
+void SeasonalYear::carry_heat(std::span<const float> month_c, std::span<const double> annual_mean_c,
+                              std::span<float> east, std::span<float> north) const {
+  std::vector<float> pressure_hpa(size_);
+  for (std::size_t cell = 0; cell < size_; ++cell) {
+    const int row = grid_.row(static_cast<Index>(cell));
+    pressure_hpa[cell] =
+        static_cast<float>(thermal_pressure_hpa(month_c[cell] - annual_mean_c[row]));
+  }
+  balanced_winds(grid_, model_.circulation, latitude_deg_, land_, pressure_hpa, east, north);
+  const auto mean_east = row_means<float>(grid_, east), mean_north = row_means<float>(grid_, north);
+  const std::vector<double> aloft =
+      thermal_wind_m_s(grid_, model_.circulation, latitude_deg_, row_means<float>(grid_, month_c));
+  const EnergyBalance& energy = model_.energy;
+  for (std::size_t cell = 0; cell < size_; ++cell) {
+    const int row = grid_.row(static_cast<Index>(cell));
+    east[cell] = static_cast<float>(energy.heat_wave_share * (east[cell] - mean_east[row]) +
+                                    energy.heat_wind_share * aloft[row]);
+    north[cell] = static_cast<float>(energy.heat_wave_share * (north[cell] - mean_north[row]));
+    const double open = open_to_heat(energy, height_m_[cell]);
+    east[cell] *= static_cast<float>(open);
+    north[cell] *= static_cast<float>(open);
+  }
+}
+
 /// Temperatures of the months, and all that follows from them alone.
 void SeasonalYear::warm() {
   const int ny = grid_.ny();
-  std::vector<double> zonal_wind(ny);
-  for (int j = 0; j < ny; ++j) {
-    zonal_wind[j] =
-        three_cell_zonal_wind_m_s(latitude_deg_[j], model_.circulation, grid_.figure().radius_m);
-  }
   const TemperatureCycle temperature =
       solve_energy_balance(grid_, model_.energy, model_.circulation.retrograde, latitude_deg_,
-                           zonal_wind, land_, height_m_);
+                           land_, height_m_, [this](auto... fields) { carry_heat(fields...); });
   // Evaporation in series with the energy that the sun gives through the year.
   constexpr double kWattsEvaporating = 28.36;
   most_evaporation_mm_d_.resize(ny);
@@ -117,7 +158,26 @@ void SeasonalYear::warm() {
 
 void SeasonalYear::begin_month(int m, const TemperatureCycle& temperature) {
   Month& month = months_[m];
-  const int nx = grid_.nx();
+  clear(month);
+  std::vector<double> annual_c(size_);
+  for (std::size_t cell = 0; cell < size_; ++cell) {
+    month.temperature_c[cell] = static_cast<float>(temperature.month_c(cell, m));
+    annual_c[cell] = temperature.mean_c(cell);
+  }
+  month.sun_w_m2.resize(grid_.ny());
+  for (int j = 0; j < grid_.ny(); ++j) {
+    month.sun_w_m2[j] =
+        daily_insolation_w_m2(latitude_deg_[j], sun_of_month(model_.energy.orbit, m),
+                              model_.energy.orbit.obliquity_deg, model_.energy.solar_constant_w_m2);
+  }
+  const std::vector<double> zonal_c = row_means<float>(grid_, month.temperature_c);
+  month.zonal_wind_m_s = thermal_wind_m_s(grid_, model_.circulation, latitude_deg_, zonal_c);
+  press(month, zonal_c, row_means<double>(grid_, annual_c));
+  stir(month, zonal_c);
+  moisten(month);
+}
+
+void SeasonalYear::clear(Month& month) const {
   for (auto* values :
        {&month.temperature_c, &month.pressure_hpa, &month.wind_east, &month.wind_north,
         &month.descent_1_s, &month.open_flow, &month.diffusivity, &month.eddies, &month.activity,
@@ -127,55 +187,60 @@ void SeasonalYear::begin_month(int m, const TemperatureCycle& temperature) {
   }
   month.column_mm.resize(size_);
   month.rain_mm_d.assign(size_, 0.0);
-  std::vector<double> annual_c(size_);
-  for (std::size_t cell = 0; cell < size_; ++cell) {
-    month.temperature_c[cell] = static_cast<float>(temperature.month_c(cell, m));
-    annual_c[cell] = temperature.mean_c(cell);
-  }
-  const std::vector<double> annual_mean_c = row_means<double>(grid_, annual_c);
-  const std::vector<double> zonal_c = row_means<float>(grid_, month.temperature_c);
-  month.zonal_wind_m_s = thermal_wind_m_s(grid_, model_.circulation, latitude_deg_, zonal_c);
+}
+
+/// Pressure of the three cells about the trough, and of heat lows and cold highs.
+void SeasonalYear::press(Month& month, std::span<const double> zonal_c,
+                         std::span<const double> annual_mean_c) const {
   const std::vector<double> trough_deg = trough_latitudes_deg(
       grid_, latitude_deg_, month.temperature_c, zonal_c, model_.itcz_locality);
+  for (std::size_t cell = 0; cell < size_; ++cell) {
+    const Index here = static_cast<Index>(cell);
+    const int row = grid_.row(here);
+    month.pressure_hpa[cell] = static_cast<float>(
+        three_cell_pressure_hpa(latitude_deg_[row], model_.circulation,
+                                model_.itcz_share * trough_deg[grid_.column(here)]) +
+        thermal_pressure_hpa(month.temperature_c[cell] - annual_mean_c[row]));
+  }
+}
+
+/// Eddies, which mix the air's water and let it rain; mountains hold the flow back.
+void SeasonalYear::stir(Month& month, std::span<const double> zonal_c) const {
+  constexpr double kFastest_1_s = 0.01;  // on tiny planets: what mixes in minutes is mixed
   const std::vector<float> eddies =
       eddy_strength(grid_, latitude_deg_, month.temperature_c, zonal_c,
-                    model_.eddy_gradient_k_1000km, model_.eddy_locality);
-  month.sun_w_m2.resize(grid_.ny());
-  for (int j = 0; j < grid_.ny(); ++j) {
-    const double insolation = month.sun_w_m2[j] =
-        daily_insolation_w_m2(latitude_deg_[j], sun_of_month(model_.energy.orbit, m),
-                              model_.energy.orbit.obliquity_deg, model_.energy.solar_constant_w_m2);
-    for (int i = 0; i < nx; ++i) {
-      const Index here = grid_.cell(i, j);
-      const double at_sea_c = month.temperature_c[here];
-      const double surface_c = at_sea_c - model_.energy.lapse_k_m * height_m_[here];
-      const double warmer_k = at_sea_c - annual_mean_c[j];
-      month.pressure_hpa[here] =
-          static_cast<float>(three_cell_pressure_hpa(latitude_deg_[j], model_.circulation,
-                                                     model_.itcz_share * trough_deg[i]) -
-                             model_.circulation.thermal_low_hpa_k * warmer_k *
-                                 (warmer_k > 0.0 ? 1.0 : model_.circulation.cold_high_share));
-      const double relative = height_m_[here] / model_.blocking_height_m;
-      month.open_flow[here] = static_cast<float>(1.0 / (1.0 + relative * relative));
-      month.diffusivity[here] =
-          static_cast<float>(month.open_flow[here] * (model_.base_diffusivity_m2_s +
-                                                      model_.eddy_diffusivity_m2_s * eddies[here]));
-      month.eddies[here] = static_cast<float>(1.0 + model_.eddy_rain * eddies[here]);
-      const double lifted_c =
-          at_sea_c - model_.energy.lapse_k_m * model_.orographic_share * height_m_[here];
-      const double saturated = saturated_column_mm(lifted_c);
-      month.saturated_mm[here] = static_cast<float>(saturated);
-      month.potential_evapotranspiration_mm_d[here] =
-          static_cast<float>(oudin_evaporation_mm_d(insolation, surface_c));
-      const double resistance_d =
-          1.0 / model_.moisture.evaporation_velocity_1_d + saturated / most_evaporation_mm_d_[j];
-      month.open_water_1_d[here] = static_cast<float>((1.0 - land_[here]) / resistance_d);
-      month.column_mm[here] = (has_sea_ ? 0.7 : 0.0) * saturated;
-      month.land_evaporation_mm_d[here] = has_sea_
-                                              ? static_cast<float>(0.5 * land_[here]) *
-                                                    month.potential_evapotranspiration_mm_d[here]
-                                              : 0.0F;
-    }
+                    model_.eddy_gradient_k_1000km, model_.eddy_exponent, model_.eddy_locality);
+  for (std::size_t cell = 0; cell < size_; ++cell) {
+    const double relative = height_m_[cell] / model_.blocking_height_m;
+    month.open_flow[cell] = static_cast<float>(1.0 / (1.0 + relative * relative));
+    const double spacing_m = grid_.spacing_north_m(grid_.row(static_cast<Index>(cell)));
+    month.diffusivity[cell] = static_cast<float>(
+        std::min(month.open_flow[cell] *
+                     (model_.base_diffusivity_m2_s + model_.eddy_diffusivity_m2_s * eddies[cell]),
+                 kFastest_1_s * spacing_m * spacing_m));
+    month.eddies[cell] = static_cast<float>(model_.eddy_rain * eddies[cell]);
+  }
+}
+
+/// What the air can hold, what sea and ground can give it, and a first guess of both.
+void SeasonalYear::moisten(Month& month) const {
+  for (std::size_t cell = 0; cell < size_; ++cell) {
+    const int row = grid_.row(static_cast<Index>(cell));
+    const double at_sea_c = month.temperature_c[cell];
+    const double surface_c = at_sea_c - model_.energy.lapse_k_m * height_m_[cell];
+    const double lifted_c =
+        at_sea_c - model_.energy.lapse_k_m * model_.orographic_share * height_m_[cell];
+    const double saturated = saturated_column_mm(lifted_c);
+    month.saturated_mm[cell] = static_cast<float>(saturated);
+    month.potential_evapotranspiration_mm_d[cell] =
+        static_cast<float>(oudin_evaporation_mm_d(month.sun_w_m2[row], surface_c));
+    const double resistance_d =
+        1.0 / model_.moisture.evaporation_velocity_1_d + saturated / most_evaporation_mm_d_[row];
+    month.open_water_1_d[cell] = static_cast<float>((1.0 - land_[cell]) / resistance_d);
+    month.column_mm[cell] = (has_sea_ ? 0.7 : 0.0) * saturated;
+    month.land_evaporation_mm_d[cell] = has_sea_ ? static_cast<float>(0.5 * land_[cell]) *
+                                                       month.potential_evapotranspiration_mm_d[cell]
+                                                 : 0.0F;
   }
 }
 
@@ -231,12 +296,11 @@ std::vector<float> SeasonalYear::convective_excess_k(const Month& month) const {
   }
   const std::vector<double> around_k =
       smooth_rows(latitude_deg_, row_means<float>(grid_, energy_k), kReach_deg);
-  const double edge = std::sin(model_.convection_latitude_deg * kRadians);
   for (std::size_t cell = 0; cell < size_; ++cell) {
     const int row = grid_.row(static_cast<Index>(cell));
-    const double turning = std::sin(latitude_deg_[row] * kRadians) / edge;
-    energy_k[cell] = static_cast<float>((energy_k[cell] - around_k[row]) /
-                                        (1.0 + turning * turning * turning * turning));
+    energy_k[cell] =
+        static_cast<float>((energy_k[cell] - around_k[row]) *
+                           weak_rotation(latitude_deg_[row], model_.convection_latitude_deg));
   }
   return energy_k;
 }
@@ -247,17 +311,19 @@ void SeasonalYear::activate(Month& month) const {
   constexpr double kMost = 2.0;
   std::vector<float> rising = convergence(grid_, month.wind_east, month.wind_north);
   for (std::size_t cell = 0; cell < size_; ++cell) {
-    rising[cell] =
-        static_cast<float>(kSecondsPerDay * (model_.ascent_time_d * rising[cell] -
-                                             model_.descent_time_d * month.descent_1_s[cell]));
+    const double deep = weak_rotation(latitude_deg_[grid_.row(static_cast<Index>(cell))],
+                                      model_.ascent_latitude_deg);
+    rising[cell] = static_cast<float>(
+        deep * kSecondsPerDay *
+        (model_.ascent_time_d * rising[cell] - model_.descent_time_d * month.descent_1_s[cell]));
   }
   smooth(grid_, rising, 1000.0 * model_.ascent_smoothing_km);
   const std::vector<float> excess_k = convective_excess_k(month);
   for (std::size_t cell = 0; cell < size_; ++cell) {
     const double lighter = model_.convection_1_k * excess_k[cell];
-    month.activity[cell] =
-        static_cast<float>(month.eddies[cell] * ascent_[cell] *
-                           std::exp(std::clamp(rising[cell] + lighter, -kMost, kMost)));
+    month.activity[cell] = static_cast<float>(
+        ascent_[cell] *
+        (month.eddies[cell] + std::exp(std::clamp(rising[cell] + lighter, -kMost, kMost))));
   }
 }
 
@@ -284,14 +350,14 @@ void SeasonalYear::exchange() {
   errors.rethrow();
 }
 
-void SeasonalYear::rain(bool last) {
+void SeasonalYear::rain(bool closed) {
   constexpr int kTogether = SteadyMoisture::kSeasons;
   ParallelErrors errors;
 #pragma omp parallel for schedule(dynamic, 1)
   for (int m = 0; m < kMonths; ++m) {
     errors.guard([&] {
       Month& month = months_[m];
-      if (last) budgets_[m / kTogether]->close(m % kTogether);
+      if (closed) budgets_[m / kTogether]->close(m % kTogether);
       for (std::size_t cell = 0; cell < size_; ++cell) {
         month.rain_mm_d[cell] = rain_mm_d(model_.moisture, month.column_mm[cell],
                                           month.saturated_mm[cell], month.activity[cell]);
@@ -414,14 +480,13 @@ SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& m
               {{"land_fraction", land_fraction.size()}, {"height_m", height_m.size()}});
   SeasonalYear year(grid, model, latitude_deg, land_fraction, height_m);
   year.warm();
-  constexpr int kRounds = 7, kLevelRounds = 3;
+  constexpr int kRounds = 7, kLevelRounds = 3, kClosedRounds = 2;
   for (int round = 0; round < kRounds; ++round) {
     if (round == kLevelRounds && ascent) year.lift(ascent);
     year.blow();
     year.exchange();
-    const bool last = round + 1 == kRounds;
-    year.rain(last);
-    if (!last) year.evaporate();
+    year.rain(/*closed=*/round + kClosedRounds >= kRounds);
+    if (round + 1 < kRounds) year.evaporate();
   }
   return year.fields();
 }

@@ -116,7 +116,7 @@ std::vector<double> trough_latitudes_deg(const Grid& grid, std::span<const doubl
 std::vector<float> eddy_strength(const Grid& grid, std::span<const double> latitude_deg,
                                  std::span<const float> temperature_c,
                                  std::span<const double> zonal_temperature_c,
-                                 double reference_k_1000km, double locality) {
+                                 double reference_k_1000km, double exponent, double locality) {
   const int nx = grid.nx(), ny = grid.ny();
   std::vector<float> strength(static_cast<std::size_t>(grid.size()), 0.0F);
   if (latitude_deg[0] == latitude_deg[ny - 1]) return strength;  // a torus at one latitude
@@ -137,8 +137,9 @@ std::vector<float> eddy_strength(const Grid& grid, std::span<const double> latit
                               temperature_c[grid.cell((i - sideways + nx) % nx, j)]) /
                              (2.0 * sideways * across);
       const double local = std::hypot(along_x, along_y);
+      const double gradient = zonal + locality * (local - zonal);
       strength[grid.cell(i, j)] =
-          static_cast<float>((zonal + locality * (local - zonal)) / reference_k_1000km);
+          static_cast<float>(std::pow(gradient / reference_k_1000km, exponent));
     }
   }
   return strength;

@@ -40,11 +40,11 @@ std::vector<double> trough_latitudes_deg(const Grid& grid, std::span<const doubl
                                          double locality);
 
 /// Strength of eddies: the temperature gradient over some 10 degrees as a share of the reference
-/// one; `locality` of it the cell's own, the rest the parallel's.
+/// one, `locality` of it the cell's own, the rest the parallel's, to the power `exponent`.
 std::vector<float> eddy_strength(const Grid& grid, std::span<const double> latitude_deg,
                                  std::span<const float> temperature_c,
                                  std::span<const double> zonal_temperature_c,
-                                 double reference_k_1000km, double locality);
+                                 double reference_k_1000km, double exponent, double locality);
 
 /// Horizontal convergence of the winds, s-1, from face-normal velocities.
 std::vector<float> convergence(const Grid& grid, std::span<const float> wind_east,

@@ -22,13 +22,14 @@ struct Circulation {
   double rotation_period_h = 23.934;
   bool retrograde = false;
   double air_density_kg_m3 = 1.2;
-  double drag_ocean_s = 2.79e-5;  ///< r over the sea, s-1
-  double drag_land_s = 1.72e-5;
-  double subtropical_high_hpa = 3.62;  ///< above the equatorial trough
-  double subpolar_low_hpa = 8.0;       ///< below the subtropical high
-  double polar_high_hpa = 11.1;        ///< above the subpolar low
-  double thermal_low_hpa_k = 0.926;    ///< fall of pressure per kelvin of heat anomaly
-  double cold_high_share = 0.975;      ///< of it, where the anomaly is cold and shallow
+  double drag_ocean_s = 1e-05;  ///< r over the sea, s-1
+  double drag_land_s = 1.09e-05;
+  double displacement_decay = 3.28;   ///< exponent p of the cells' displacement with the trough
+  double subtropical_high_hpa = 2.5;  ///< above the equatorial trough
+  double subpolar_low_hpa = 6.69;     ///< below the subtropical high
+  double polar_high_hpa = 5.41;       ///< above the subpolar low
+  double thermal_low_hpa_k = 0.59;    ///< fall of pressure per kelvin of heat anomaly
+  double cold_high_share = 0.7;       ///< of it, where the anomaly is cold and shallow
 
   /// Angular velocity, negative if retrograde.
   [[nodiscard]] double rotation_rad_s() const;
@@ -40,7 +41,10 @@ struct Circulation {
 /// Pressure of the three cells at a latitude, hPa relative to the equatorial trough: half cosines
 /// between the trough, the high at 30, the low at 60 and the high at 90 deg; wider cells end at
 /// the pole, narrower ones are followed by more, like the polar one.
-/// @param trough_deg  latitude of the trough: the tropical edge moves with it, the pole stays
+/// Cells follow the trough through the year, the subtropical highs by a part of its excursion, the
+/// pole not at all: what lies x of the way from the trough to a pole is displaced by
+/// trough (1 - x)^p.
+/// @param trough_deg  latitude of the trough
 [[nodiscard]] double three_cell_pressure_hpa(double latitude_deg, const Circulation& model,
                                              double trough_deg = 0.0);
 

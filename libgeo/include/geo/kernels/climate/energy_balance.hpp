@@ -2,6 +2,7 @@
 
 #include <array>
 #include <complex>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -15,39 +16,40 @@ namespace geo {
 struct EnergyBalance {
   double solar_constant_w_m2 = 1361.0;
   Orbit orbit;
-  double outgoing_w_m2 = 198.0;         ///< A at 0 degC
-  double outgoing_slope_w_m2_k = 2.36;  ///< B
-  double diffusivity_w_m2_k = 0.552;    ///< D at 15 degC, on the unit sphere
-  double moist_transport = 1.15;        ///< share of latent heat in D's change with temperature
-  double advected_heat_j_m2_k = 9.5e6;  ///< of the air that the zonal wind moves
-  double coalbedo = 0.682;              ///< mean absorbed share without snow and ice
-  double coalbedo_p2 = -0.0788;         ///< its second Legendre coefficient in latitude
-  double snow_coalbedo = 0.66;          ///< of snow that melts in summer
-  double ice_coalbedo = 0.232;          ///< of land whose snow stays
-  double sea_ice_coalbedo = 0.65;       ///< of sea ice, broken and wet in summer
-  double snow_temperature_c = -4.14;    ///< monthly mean at which half the land is under snow
-  double ice_temperature_c = -9.68;     ///< annual mean at which half the sea is ice
-  double ice_width_k = 2.45;            ///< width of both transitions; 0: no ice and snow at all
-  double land_heat_capacity_w_yr_m2_k = 0.104;
-  double ocean_heat_capacity_w_yr_m2_k = 6.73;
-  double ice_heat_capacity_w_yr_m2_k = 0.532;  ///< of sea ice that does not melt
-  double melt_w_m2_k = 10.1;      ///< heat that melting sea ice takes for each kelvin above -1 degC
-  double gyre_heat_w_m2 = 41.9;   ///< heat that gyres release along a western coast of an ocean
-  double gyre_reach_km = 1030.0;  ///< e-folding distance of a coast's influence
-  double lapse_k_m = 0.00498;
-  double dry_warming_k_m2_w = 0.0268;  ///< by which dry ground is warmer for each W m-2 of sunlight
-  double dry_warming_from_w_m2 = 160.0;  ///< above this
+  double outgoing_w_m2 = 194;              ///< A at 0 degC
+  double outgoing_slope_w_m2_k = 2.21;     ///< B
+  double diffusivity_w_m2_k = 0.524;       ///< D at 15 degC, on the unit sphere
+  double moist_transport = 0.762;          ///< share of latent heat in D's change with temperature
+  double advected_heat_j_m2_k = 6.29e+06;  ///< of the air that winds move
+  double coalbedo = 0.665;                 ///< mean absorbed share without snow and ice
+  double coalbedo_p2 = -0.0662;            ///< its second Legendre coefficient in latitude
+  double snow_coalbedo = 0.65;             ///< of snow that melts in summer
+  double ice_coalbedo = 0.34;              ///< of land whose snow stays
+  double sea_ice_coalbedo = 0.544;         ///< of sea ice, broken and wet in summer
+  double snow_temperature_c = -1.16;       ///< monthly mean at which half the land is under snow
+  double ice_temperature_c = -8.39;        ///< annual mean at which half the sea is ice
+  double ice_width_k = 2.45;               ///< width of both transitions; 0: no ice and snow at all
+  double land_heat_capacity_w_yr_m2_k = 0.132;
+  double ocean_heat_capacity_w_yr_m2_k = 8.43;
+  double ice_heat_capacity_w_yr_m2_k = 0.797;  ///< of sea ice that does not melt
+  double melt_w_m2_k = 14.3;     ///< heat that melting sea ice takes for each kelvin above -1 degC
+  double gyre_heat_w_m2 = 14.8;  ///< heat that gyres release along a western coast of an ocean
+  double gyre_reach_km = 1.48e+03;   ///< e-folding distance of a coast's influence
+  double subpolar_heat_w_m2 = 34.8;  ///< heat that subpolar gyres release along an eastern coast
+  double subpolar_reach_km = 2.16e+03;
+  double blocking_height_m = 1.6e+03;  ///< of topography that halves the heat passing over
+  double lapse_k_m = 0.005;
+  double heat_wind_share = 0.197;  ///< of the zonal wind in mid-troposphere that carries heat
+  double heat_wave_share = 0;      ///< of the winds about warm and cold ground that carries it
+  double upwelling_w_m2 = 150;     ///< heat that water welling up along the equator takes
+  double upwelling_reach_km = 2.98e+03;  ///< to the west of a coast, over which that falls by e
+  double dry_warming_k_m2_w = 0.0524;  ///< by which dry ground is warmer for each W m-2 of sunlight
+  double dry_warming_from_w_m2 = 273;  ///< above this
 };
 
-/// Heat that wind-driven gyres bring to the sea, W m-2: trades push warm water west and let cold
-/// water well up in the east, westerlies the other way round (zero at 45 deg),
-///   q = gyre_heat cos(2 lat) (land to the west - land to the east) * water,
-/// the land shares weighted by exp(-distance / reach) along the parallel. On a planet that turns
-/// the other way, west is east.
-/// Throws Bug where sizes differ.
-void gyre_heat(const Grid& grid, const EnergyBalance& model, bool retrograde,
-               std::span<const double> latitude_deg, std::span<const float> land_fraction,
-               std::span<double> heat_w_m2);
+/// Share of the heat carried over level ground that passes over a cell of a mean height:
+///   1 / (1 + (h / blocking_height)^2).
+[[nodiscard]] double open_to_heat(const EnergyBalance& model, double height_m);
 
 /// Share of the sea that ice covers where the mean of the year is a temperature:
 ///   1 / (1 + exp((T - ice_temperature) / ice_width)), none without a width.
@@ -74,21 +76,31 @@ class TemperatureCycle {
   std::array<std::vector<std::complex<double>>, kHarmonics + 1> harmonics_;
 };
 
+/// Winds that carry heat in one month, from its temperatures (degC at sea level, per cell) and the
+/// annual mean of every parallel: east and north, m s-1 per cell. Called from several threads.
+using HeatWinds =
+    std::function<void(std::span<const float> month_c, std::span<const double> annual_mean_c,
+                       std::span<float> east, std::span<float> north)>;
+
 /// Solves, on a sphere or torus,
-///   C dT/dt + F u dT/dx = Q (1 - albedo) - (A + B T) + gyres + div(D grad T)
-/// for the periodic year, by harmonics: for each a sparse linear system, in whose source the albedo
-/// of the months' snow and ice is found by iteration. F is the advected heat, u the zonal wind.
-/// Throws Bug if a solver does not converge. Threads: one for each harmonic.
+///   C dT/dt + F u . grad T = Q (1 - albedo) - (A + B T) + ocean + div(D grad T)
+/// for the periodic year, by harmonics: for each a sparse linear system with the annual and zonal
+/// mean of u, in whose source all else is found by iteration: the albedo of the months' snow and
+/// ice, the heat that sea ice takes as it melts in summer and gives as it freezes in winter, and
+/// what the winds of each month carry besides, which adds up to nothing over the planet. F is the
+/// advected heat; without `winds` nothing is carried.
+/// Throws Bug if a solver does not converge. Threads: one for each harmonic; the same bits for any
+/// number of them.
 ///
-/// @param latitude_deg, zonal_wind_m_s  per row
+/// @param latitude_deg   per row
 /// @param land_fraction  0..1 per cell
 /// @param height_m       mean elevation of the cell above sea level, 0 at sea
 /// Throws Bug where sizes differ.
 [[nodiscard]] TemperatureCycle solve_energy_balance(const Grid& grid, const EnergyBalance& model,
                                                     bool retrograde,
                                                     std::span<const double> latitude_deg,
-                                                    std::span<const double> zonal_wind_m_s,
                                                     std::span<const float> land_fraction,
-                                                    std::span<const float> height_m);
+                                                    std::span<const float> height_m,
+                                                    const HeatWinds& winds = {});
 
 }  // namespace geo

@@ -11,10 +11,10 @@ namespace geo {
 
 /// Constants of the moisture budget.
 struct MoistureBudget {
-  double rain_time_d = 0.3;            ///< rain-out time of a saturated column
-  std::int64_t humidity_exponent = 4;  ///< how sharply rain follows the column's relative humidity
-  double evaporation_velocity_1_d = 0.183;  ///< v over open water that energy does not limit
-  double evaporating_share = 0.899;         ///< of the annual insolation, at most
+  double rain_time_d = 0.819;          ///< rain-out time of a saturated column
+  std::int64_t humidity_exponent = 2;  ///< how sharply rain follows the column's relative humidity
+  double evaporation_velocity_1_d = 0.196;  ///< v over open water that energy does not limit
+  double evaporating_share = 0.802;         ///< of the annual insolation, at most
   int sweeps = 44;
 };
 

@@ -23,24 +23,25 @@ struct SeasonalClimate {
   OceanCurrents currents;
   MoistureBudget moisture;
   SoilMoisture soil;
-  double itcz_share = 0.34;  ///< of the thermal equator's excursion that the cells follow
-  double itcz_locality =
-      0.218;  ///< how far the trough follows the warmest latitude of each meridian
-  double sensible_w_m2_k =
-      5.88;  ///< heating of the air where the surface is warmer than its parallel
-  double base_diffusivity_m2_s = 3e6;
-  double eddy_diffusivity_m2_s = 3.35e5;  ///< at the reference temperature gradient
-  double eddy_rain = 12.0;                ///< extra rain-out activity there
-  double eddy_gradient_k_1000km = 4.0;    ///< the reference gradient
-  double eddy_locality = 0.0;    ///< how far eddies follow the local gradient, not the parallel's
-  double ascent_time_d = 9.88;   ///< convergence over this time multiplies rain-out by e
-  double descent_time_d = 1.58;  ///< the same of the descent that stationary waves make
-  double ascent_smoothing_km = 496.0;  ///< over which ascent is felt
-  double convection_1_k = 0.0506;  ///< by which rain-out grows with relative moist static energy
-  double convection_latitude_deg = 35.9;  ///< to which the free atmosphere is level
+  double itcz_share = 1.27;      ///< of the thermal equator's excursion that the cells follow
+  double itcz_locality = 0.132;  ///< how far the trough follows its meridian's warmest latitude
+  double sensible_w_m2_k = 4.7;  ///< heating of the air over ground warmer than its parallel
+  double base_diffusivity_m2_s = 4.59e+06;
+  double eddy_diffusivity_m2_s = 2e+05;  ///< at the reference temperature gradient
+  double eddy_rain = 0.346;  ///< rain-out by eddies there, whether the mean air rises or sinks
+  double eddy_gradient_k_1000km = 3.87;  ///< the reference gradient
+  double eddy_exponent = 1.73;           ///< by which their strength grows with the gradient
+  double eddy_locality = 0;       ///< how far eddies follow the local gradient, not the parallel's
+  double ascent_time_d = 18.4;    ///< convergence over this time multiplies rain-out by e
+  double descent_time_d = 0.533;  ///< the same of the descent that stationary waves make
+  double ascent_latitude_deg = 44.8;  ///< at which converging winds make half as much rain as where
+                                      ///< rotation is weak
+  double ascent_smoothing_km = 627;   ///< over which ascent is felt
+  double convection_1_k = 0;          ///< by which rain-out grows with relative moist static energy
+  double convection_latitude_deg = 25.1;  ///< to which the free atmosphere is level
   double orographic_share = 0.0;  ///< of the mean height by which moist air is lifted over a cell
-  double blocking_height_m = 5.24e3;  ///< height at which topography halves the moist flow
-  double land_transpiration = 0.973;  ///< share of the soil's evaporation that returns to the air
+  double blocking_height_m = 3.7e+03;  ///< height at which topography halves the moist flow
+  double land_transpiration = 1.0;     ///< share of the soil's evaporation that returns to the air
 };
 
 /// Water that passes between a surface and its air, m3 s-1 over the year. The two sides are summed
