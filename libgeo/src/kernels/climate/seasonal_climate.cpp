@@ -37,7 +37,10 @@ struct Month {
   std::vector<float> wind_east, wind_north, descent_1_s;
   std::vector<float> open_flow;  ///< share of the flow that relief lets pass
   std::vector<float> diffusivity, eddies, activity, saturated_mm, open_water_1_d;
+  std::vector<float> gust_m_s;  ///< of eddies
   std::vector<float> potential_evapotranspiration_mm_d, land_evaporation_mm_d;
+  std::vector<float> cold_air_evaporation_mm_d;  ///< from water under air that comes from the cold
+  std::vector<float> given_evaporation_mm_d;     ///< both, whatever the column holds
   std::vector<float> heating_w_m2;
   std::vector<double> column_mm, rain_mm_d;
   std::vector<double> sun_w_m2;  ///< per row
@@ -78,6 +81,7 @@ class SeasonalYear {
   void stir(Month& month, std::span<const double> zonal_c) const;
   void moisten(Month& month) const;
   void heat_air(Month& month) const;
+  void evaporate_sea(Month& month) const;
   void activate(Month& month) const;
   [[nodiscard]] std::vector<float> convective_excess_k(const Month& month) const;
   void evaporate_cell(std::size_t cell);
@@ -181,8 +185,9 @@ void SeasonalYear::clear(Month& month) const {
   for (auto* values :
        {&month.temperature_c, &month.pressure_hpa, &month.wind_east, &month.wind_north,
         &month.descent_1_s, &month.open_flow, &month.diffusivity, &month.eddies, &month.activity,
-        &month.saturated_mm, &month.open_water_1_d, &month.potential_evapotranspiration_mm_d,
-        &month.land_evaporation_mm_d, &month.heating_w_m2}) {
+        &month.saturated_mm, &month.open_water_1_d, &month.gust_m_s,
+        &month.potential_evapotranspiration_mm_d, &month.land_evaporation_mm_d,
+        &month.cold_air_evaporation_mm_d, &month.given_evaporation_mm_d, &month.heating_w_m2}) {
     values->assign(size_, 0.0F);
   }
   month.column_mm.resize(size_);
@@ -219,6 +224,8 @@ void SeasonalYear::stir(Month& month, std::span<const double> zonal_c) const {
                      (model_.base_diffusivity_m2_s + model_.eddy_diffusivity_m2_s * eddies[cell]),
                  kFastest_1_s * spacing_m * spacing_m));
     month.eddies[cell] = static_cast<float>(model_.eddy_rain * eddies[cell]);
+    month.gust_m_s[cell] =
+        static_cast<float>(model_.gust_m_s * std::pow(eddies[cell], 1.0 / model_.eddy_exponent));
   }
 }
 
@@ -234,9 +241,6 @@ void SeasonalYear::moisten(Month& month) const {
     month.saturated_mm[cell] = static_cast<float>(saturated);
     month.potential_evapotranspiration_mm_d[cell] =
         static_cast<float>(oudin_evaporation_mm_d(month.sun_w_m2[row], surface_c));
-    const double resistance_d =
-        1.0 / model_.moisture.evaporation_velocity_1_d + saturated / most_evaporation_mm_d_[row];
-    month.open_water_1_d[cell] = static_cast<float>((1.0 - land_[cell]) / resistance_d);
     month.column_mm[cell] = (has_sea_ ? 0.7 : 0.0) * saturated;
     month.land_evaporation_mm_d[cell] = has_sea_ ? static_cast<float>(0.5 * land_[cell]) *
                                                        month.potential_evapotranspiration_mm_d[cell]
@@ -254,6 +258,36 @@ void SeasonalYear::heat_air(Month& month) const {
     const double heating = kWattsPerMillimetreADay * month.rain_mm_d[cell] +
                            model_.sensible_w_m2_k * land_[cell] * warmer_k;
     month.heating_w_m2[cell] += static_cast<float>(kRelaxed * (heating - month.heating_w_m2[cell]));
+  }
+}
+
+/// What the sea gives to the air above it: the more, the faster that blows, and besides it warms and
+/// moistens air that comes from colder places.
+void SeasonalYear::evaporate_sea(Month& month) const {
+  constexpr double kReference_m_s = 8.0, kGustOfCalm_m_s = 4.0;
+  for (int j = 0; j < grid_.ny(); ++j) {
+    for (int i = 0; i < grid_.nx(); ++i) {
+      const Index cell = grid_.cell(i, j);
+      const double water = 1.0 - land_[cell];
+      if (water <= 0.0) continue;
+      const double east = month.wind_east[cell], north = month.wind_north[cell];
+      const double speed_m_s = std::hypot(std::hypot(east, north), month.gust_m_s[cell],
+                                          kGustOfCalm_m_s);
+      const double resistance_d =
+          kReference_m_s / (model_.moisture.evaporation_velocity_1_d * speed_m_s) +
+          month.saturated_mm[cell] / most_evaporation_mm_d_[j];
+      month.open_water_1_d[cell] = static_cast<float>(water / resistance_d);
+      const auto colder_k = [&](double wind, int behind, int ahead) {
+        const Index upwind = grid_.neighbour(i, j, wind > 0.0 ? behind : ahead);
+        return month.temperature_c[cell] - month.temperature_c[upwind];
+      };
+      const double cooling_k_s =
+          std::abs(east) * colder_k(east, kWest, kEast) / grid_.spacing_east_m(j) +
+          std::abs(north) * colder_k(north, kSouth, kNorth) / grid_.spacing_north_m(j);
+      month.cold_air_evaporation_mm_d[cell] =
+          static_cast<float>(water * model_.cold_air_heat_j_m2_k * std::max(0.0, cooling_k_s) /
+                             kWattsPerMillimetreADay);
+    }
   }
 }
 
@@ -277,6 +311,7 @@ void SeasonalYear::blow() {
       month.wind_east[cell] *= month.open_flow[cell];
       month.wind_north[cell] *= month.open_flow[cell];
     }
+    if (has_sea_) evaporate_sea(month);
     activate(month);
   });
 }
@@ -333,8 +368,12 @@ void SeasonalYear::exchange() {
   static_assert(kMonths % kTogether == 0);
   std::vector<MoistureSeason> seasons;
   for (Month& month : months_) {
+    for (std::size_t cell = 0; cell < size_; ++cell) {
+      month.given_evaporation_mm_d[cell] =
+          month.land_evaporation_mm_d[cell] + month.cold_air_evaporation_mm_d[cell];
+    }
     seasons.push_back({month.wind_east, month.wind_north, month.diffusivity, month.activity,
-                       month.saturated_mm, month.open_water_1_d, month.land_evaporation_mm_d,
+                       month.saturated_mm, month.open_water_1_d, month.given_evaporation_mm_d,
                        month.column_mm});
   }
   budgets_.resize(kMonths / kTogether);
@@ -415,7 +454,8 @@ AirWater SeasonalYear::water() const {
            });
   };
   return {.sea_evaporation_m3_s = over_the_year([](const Month& month, Index cell) {
-            return sea_evaporation_mm_d(month.column_mm[cell], month.saturated_mm[cell],
+            return month.cold_air_evaporation_mm_d[cell] +
+                   sea_evaporation_mm_d(month.column_mm[cell], month.saturated_mm[cell],
                                         month.open_water_1_d[cell]);
           }),
           .land_evaporation_m3_s = over_the_year(

@@ -32,6 +32,8 @@ struct SeasonalClimate {
   double eddy_gradient_k_1000km = 3.87;  ///< the reference gradient
   double eddy_exponent = 1.73;           ///< by which their strength grows with the gradient
   double eddy_locality = 0;       ///< how far eddies follow the local gradient, not the parallel's
+  double gust_m_s = 4.0;           ///< of eddies' winds over the sea at the reference gradient
+  double cold_air_heat_j_m2_k = 1.0e6;  ///< of air that evaporates as the sea warms it
   double ascent_time_d = 18.4;    ///< convergence over this time multiplies rain-out by e
   double descent_time_d = 0.533;  ///< the same of the descent that stationary waves make
   double ascent_latitude_deg = 44.8;  ///< at which converging winds make half as much rain as where
