@@ -35,9 +35,10 @@ const Quad& quad(const Array& lanes) {
 }  // namespace
 
 double rain_mm_d(const MoistureBudget& model, double column_mm, double saturated_mm,
-                 double eddy_activity) {
-  return eddy_activity * column_mm / model.rain_time_d *
-         integer_power(column_mm / saturated_mm, model.humidity_exponent);
+                 double activity, double eddies) {
+  const double humidity = column_mm / saturated_mm;
+  return column_mm / model.rain_time_d *
+         (activity * integer_power(humidity, model.humidity_exponent) + eddies * humidity);
 }
 
 double sea_evaporation_mm_d(double column_mm, double saturated_mm, double open_water_1_d) {
@@ -59,7 +60,8 @@ SteadyMoisture::SteadyMoisture(const Grid& grid, const MoistureBudget& model,
                 {{"wind_east", season.wind_east.size()},
                  {"wind_north", season.wind_north.size()},
                  {"diffusivity", season.diffusivity.size()},
-                 {"eddy_activity", season.eddy_activity.size()},
+                 {"activity", season.activity.size()},
+                 {"eddies", season.eddies.size()},
                  {"saturated_mm", season.saturated_mm.size()},
                  {"open_water_1_d", season.open_water_1_d.size()},
                  {"land_evaporation", season.land_evaporation.size()},
@@ -114,7 +116,8 @@ void SteadyMoisture::take_exchange(int lane) {
     air.out[lane] = out[cell];
     air.saturated_mm[lane] = season.saturated_mm[cell];
     air.open_water_1_d[lane] = season.open_water_1_d[cell];
-    air.rain_rate_1_d[lane] = season.eddy_activity[cell] / model_.rain_time_d;
+    air.rain_rate_1_d[lane] = season.activity[cell] / model_.rain_time_d;
+    air.eddy_rate_1_d[lane] = season.eddies[cell] / model_.rain_time_d;
   }
 }
 
@@ -148,13 +151,14 @@ TERRANE_WIDE void SteadyMoisture::sweep(const Field& field, bool northward, bool
         Quad capacity, open;
         widen(air.saturated_mm, capacity);
         widen(air.open_water_1_d, open);
-        const Quad &out = quad(air.out), &rain_rate = quad(air.rain_rate_1_d);
+        const Quad &out = quad(air.out), &rain_rate = quad(air.rain_rate_1_d),
+                   &eddy_rate = quad(air.eddy_rate_1_d);
         const Quad supply = quad(air.from_east) * quad(field.column[east]) +
                             quad(air.from_west) * quad(field.column[west]) +
                             quad(air.from_north) * quad(field.column[north]) +
                             quad(air.from_south) * quad(field.column[south]) +
                             quad(field.land_evaporation[here]);
-        // supply + open (W_s - w)+ = out w + c w (w/W_s)^n: two Newton steps from the present
+        // supply + open (W_s - w)+ = out w + c w (w/W_s)^n + e w w/W_s: two Newton steps from the present
         // value, which lies on the convex side after the first.
         Quad w = quad(field.column[here]);
         for (int newton = 0; newton < 2; ++newton) {
@@ -163,9 +167,10 @@ TERRANE_WIDE void SteadyMoisture::sweep(const Field& field, bool northward, bool
           for (std::int64_t n = 0; n < field.exponent; ++n) power *= humidity;
           const auto unsaturated = w < capacity;
           const Quad none{};
-          const Quad value = out * w + rain_rate * power * w - supply -
+          const Quad value = out * w + (rain_rate * power + eddy_rate * humidity) * w - supply -
                              (unsaturated ? open * (capacity - w) : none);
-          const Quad slope = out + rain_rate * power * next_power + (unsaturated ? open : none);
+          const Quad slope = out + rain_rate * power * next_power + 2.0 * eddy_rate * humidity +
+                             (unsaturated ? open : none);
           const Quad better = w - value / slope, least = 0.01 * w;
           w = better < least ? least : better;
         }

@@ -73,11 +73,12 @@ void SteadyMoisture::close(std::size_t lane) const {
         arriving += rate[k] * season.column_mm[from[k][c]];
         entries.emplace_back(c, from[k][c], -rate[k]);
       }
-      rain[c] = rain_mm_d(model_, w, capacity, season.eddy_activity[c]);
+      rain[c] = rain_mm_d(model_, w, capacity, season.activity[c], season.eddies[c]);
+      const double by_eddies = rain_mm_d(model_, w, capacity, 0.0, season.eddies[c]);
       const double open = season.open_water_1_d[c];
       excess[c] = arriving - air.out[lane] * w + season.land_evaporation[c] +
                   sea_evaporation_mm_d(w, capacity, open) - rain[c];
-      const double drying = w > 0.0 ? (model_.humidity_exponent + 1.0) * rain[c] / w : 0.0;
+      const double drying = w > 0.0 ? ((model_.humidity_exponent + 1.0) * (rain[c] - by_eddies) + 2.0 * by_eddies) / w : 0.0;
       entries.emplace_back(c, c, air.out[lane] + drying + (w < capacity ? open : 0.0));
     }
     if (mean_size(grid_, excess) <= kClosed * mean_size(grid_, rain)) return;

@@ -36,7 +36,7 @@ struct Month {
   std::vector<double> zonal_wind_m_s;
   std::vector<float> wind_east, wind_north, descent_1_s;
   std::vector<float> open_flow;  ///< share of the flow that relief lets pass
-  std::vector<float> diffusivity, eddies, activity, saturated_mm, open_water_1_d;
+  std::vector<float> diffusivity, own_eddies, eddies, activity, saturated_mm, open_water_1_d;
   std::vector<float> gust_m_s;  ///< of eddies
   std::vector<float> potential_evapotranspiration_mm_d, land_evaporation_mm_d;
   std::vector<float> cold_air_evaporation_mm_d;  ///< from water under air that comes from the cold
@@ -184,7 +184,7 @@ void SeasonalYear::begin_month(int m, const TemperatureCycle& temperature) {
 void SeasonalYear::clear(Month& month) const {
   for (auto* values :
        {&month.temperature_c, &month.pressure_hpa, &month.wind_east, &month.wind_north,
-        &month.descent_1_s, &month.open_flow, &month.diffusivity, &month.eddies, &month.activity,
+        &month.descent_1_s, &month.open_flow, &month.diffusivity, &month.own_eddies, &month.eddies, &month.activity,
         &month.saturated_mm, &month.open_water_1_d, &month.gust_m_s,
         &month.potential_evapotranspiration_mm_d, &month.land_evaporation_mm_d,
         &month.cold_air_evaporation_mm_d, &month.given_evaporation_mm_d, &month.heating_w_m2}) {
@@ -223,7 +223,7 @@ void SeasonalYear::stir(Month& month, std::span<const double> zonal_c) const {
         std::min(month.open_flow[cell] *
                      (model_.base_diffusivity_m2_s + model_.eddy_diffusivity_m2_s * eddies[cell]),
                  kFastest_1_s * spacing_m * spacing_m));
-    month.eddies[cell] = static_cast<float>(model_.eddy_rain * eddies[cell]);
+    month.own_eddies[cell] = static_cast<float>(model_.eddy_rain * eddies[cell]);
     month.gust_m_s[cell] =
         static_cast<float>(model_.gust_m_s * std::pow(eddies[cell], 1.0 / model_.eddy_exponent));
   }
@@ -357,8 +357,8 @@ void SeasonalYear::activate(Month& month) const {
   for (std::size_t cell = 0; cell < size_; ++cell) {
     const double lighter = model_.convection_1_k * excess_k[cell];
     month.activity[cell] = static_cast<float>(
-        ascent_[cell] *
-        (month.eddies[cell] + std::exp(std::clamp(rising[cell] + lighter, -kMost, kMost))));
+        ascent_[cell] * std::exp(std::clamp(rising[cell] + lighter, -kMost, kMost)));
+    month.eddies[cell] = ascent_[cell] * month.own_eddies[cell];
   }
 }
 
@@ -373,7 +373,7 @@ void SeasonalYear::exchange() {
           month.land_evaporation_mm_d[cell] + month.cold_air_evaporation_mm_d[cell];
     }
     seasons.push_back({month.wind_east, month.wind_north, month.diffusivity, month.activity,
-                       month.saturated_mm, month.open_water_1_d, month.given_evaporation_mm_d,
+                       month.eddies, month.saturated_mm, month.open_water_1_d, month.given_evaporation_mm_d,
                        month.column_mm});
   }
   budgets_.resize(kMonths / kTogether);
@@ -399,7 +399,8 @@ void SeasonalYear::rain(bool closed) {
       if (closed) budgets_[m / kTogether]->close(m % kTogether);
       for (std::size_t cell = 0; cell < size_; ++cell) {
         month.rain_mm_d[cell] = rain_mm_d(model_.moisture, month.column_mm[cell],
-                                          month.saturated_mm[cell], month.activity[cell]);
+                                          month.saturated_mm[cell], month.activity[cell],
+                                          month.eddies[cell]);
       }
     });
   }

@@ -22,7 +22,8 @@ struct MoistureBudget {
 struct MoistureSeason {
   std::span<const float> wind_east, wind_north;  ///< u, m s-1
   std::span<const float> diffusivity;            ///< K, m2 s-1
-  std::span<const float> eddy_activity;          ///< e
+  std::span<const float> activity;               ///< a, of ascent
+  std::span<const float> eddies;                 ///< e
   std::span<const float> saturated_mm;           ///< W_s
   std::span<const float> open_water_1_d;         ///< v times the fraction of water
   std::span<const float> land_evaporation;       ///< mm d-1, averaged over the cell
@@ -30,9 +31,10 @@ struct MoistureSeason {
 };
 
 /// Steady moisture budgets of the air column on a sphere or torus:
-///   div(u W - K grad W) = E - P,   P = e W (W/W_s)^n / tau,   E = water v (W_s - W)+ + land part,
-/// W column water (mm), W_s what the column holds at saturation, e the activity of eddies and of
-/// ascent. Finite volumes, upwind; nonlinear Gauss-Seidel in four alternating directions, which
+///   div(u W - K grad W) = E - P,   P = W (a (W/W_s)^n + e W/W_s) / tau,   E = water v (W_s - W)+ + land part,
+/// W column water (mm), W_s what the column holds at saturation, a the activity of ascent,
+/// which rains the more sharply the more humid the air is on the whole, and e that of eddies, whose
+/// own moist air rises wherever that is. Finite volumes, upwind; nonlinear Gauss-Seidel in four alternating directions, which
 /// leaves some thousandths of the water unaccounted for, then Newton's method with a sparse solver,
 /// which leaves none. Sequential: seasons are independent, a few are swept side by side in the
 /// lanes of vector registers, and more by threads. Bits do not depend on which seasons are solved
@@ -59,7 +61,7 @@ class SteadyMoisture {
   struct alignas(32) DoubleLanes : std::array<double, kSeasons> {};
   /// Exchange of one cell with its neighbours, per day: out W_here - sum from_k W_k; and its air.
   struct Air {
-    DoubleLanes rain_rate_1_d, out, from_east, from_west, from_north, from_south;
+    DoubleLanes rain_rate_1_d, eddy_rate_1_d, out, from_east, from_west, from_north, from_south;
     Lanes saturated_mm, open_water_1_d;
   };
   struct Field;
@@ -81,6 +83,6 @@ class SteadyMoisture {
 
 /// Rain of a column, mm d-1.
 [[nodiscard]] double rain_mm_d(const MoistureBudget& model, double column_mm, double saturated_mm,
-                               double eddy_activity);
+                               double activity, double eddies);
 
 }  // namespace geo
