@@ -11,6 +11,7 @@
 #include "geo/kernels/climate/orography.hpp"
 #include "geo/kernels/climate/thermodynamics.hpp"
 #include "geo/kernels/remapping/conservative_remapping.hpp"
+#include "kernels/climate/sea_evaporation.hpp"
 
 namespace geo {
 namespace {
@@ -75,20 +76,21 @@ struct Air {
         east(size, 6.0F),
         north(size, 0.0F),
         mixing(size, 2e5F),
-        eddies(size, 1.0F),
+        activity(size, 1.0F),
+        eddies(size, 0.0F),
         saturated(size, 40.0F),
         water(size, 0.0F),
         land_evaporation(size, 0.0F),
         column(size, 20.0) {}
   [[nodiscard]] MoistureSeason season() {
-    return {east, north, mixing, eddies, saturated, water, land_evaporation, column};
+    return {east, north, mixing, activity, eddies, saturated, water, land_evaporation, column};
   }
   void solve(const Grid& grid, const MoistureBudget& model) {
     const MoistureSeason one = season();
     SteadyMoisture(grid, model, {&one, 1}).solve();
   }
   std::size_t size;
-  std::vector<float> east, north, mixing, eddies, saturated, water, land_evaporation;
+  std::vector<float> east, north, mixing, activity, eddies, saturated, water, land_evaporation;
   std::vector<double> column;
 };
 
@@ -103,7 +105,7 @@ TEST(Moisture, WhatEvaporatesRains) {
   for (Index c = 0; c < grid.size(); ++c) {
     const double area = grid.area_m2(grid.row(c));
     evaporation += area * air.water[c] * std::max(0.0, air.saturated[c] - air.column[c]);
-    rain += area * rain_mm_d(model, air.column[c], air.saturated[c], 1.0);
+    rain += area * rain_mm_d(model, air.column[c], air.saturated[c], 1.0, 0.0);
   }
   EXPECT_NEAR(rain / evaporation, 1.0, 1e-4);
 }
@@ -115,7 +117,8 @@ TEST(Moisture, ClosedBudgetHasRainForAllThatEvaporates) {
     const int i = grid.column(c), j = grid.row(c);
     air.water[c] = i < 40 ? 0.2F : 0.0F;
     air.saturated[c] = static_cast<float>(2.0 + 45.0 * std::cos(grid.latitude_deg(j) / 57.3));
-    air.eddies[c] = i == 50 ? 3.0F : 1.0F;  // a range that lifts the air
+    air.activity[c] = i == 50 ? 3.0F : 1.0F;  // a range that lifts the air
+    air.eddies[c] = i > 30 ? 0.5F : 0.0F;
     air.land_evaporation[c] = i < 40 ? 0.0F : 0.1F;
     air.mixing[c] = 8e5F;
   }
@@ -128,7 +131,7 @@ TEST(Moisture, ClosedBudgetHasRainForAllThatEvaporates) {
     const double area = grid.area_m2(grid.row(c)), w = air.column[c];
     evaporation +=
         area * (air.water[c] * std::max(0.0, air.saturated[c] - w) + air.land_evaporation[c]);
-    rain += area * rain_mm_d({}, w, air.saturated[c], air.eddies[c]);
+    rain += area * rain_mm_d({}, w, air.saturated[c], air.activity[c], air.eddies[c]);
   }
   EXPECT_NEAR(rain / evaporation, 1.0, 1e-7);  // what close() promises
 }
@@ -138,7 +141,7 @@ TEST(Moisture, WhatARangeTakesTheAirLacksBehindIt) {
   Air air(grid), level(grid);
   for (Index c = 0; c < grid.size(); ++c) {
     air.water[c] = level.water[c] = grid.column(c) < 36 ? 0.2F : 0.0F;
-    if (grid.column(c) == 42) air.eddies[c] = 2.5F;
+    if (grid.column(c) == 42) air.activity[c] = 2.5F;
   }
   for (Air* each : {&air, &level}) {
     const MoistureSeason season = each->season();
@@ -147,7 +150,8 @@ TEST(Moisture, WhatARangeTakesTheAirLacksBehindIt) {
     steady.close(0);
   }
   const Index on = grid.cell(42, 18), behind = grid.cell(43, 18);
-  EXPECT_GT(rain_mm_d({}, air.column[on], 40.0, 2.5), rain_mm_d({}, level.column[on], 40.0, 1.0));
+  EXPECT_GT(rain_mm_d({}, air.column[on], 40.0, 2.5, 0.0),
+            rain_mm_d({}, level.column[on], 40.0, 1.0, 0.0));
   EXPECT_LT(air.column[behind], 0.97 * level.column[behind]);
 }
 
@@ -172,8 +176,8 @@ TEST(Moisture, LeeOfARangeIsDry) {
   const MoistureBudget model;
   air.solve(grid, model);
   flat.solve(grid, model);
-  EXPECT_GT(rain_mm_d(model, air.column[grid.cell(42, 18)], 12.0, 1.0),
-            1.5 * rain_mm_d(model, flat.column[grid.cell(42, 18)], 40.0, 1.0));
+  EXPECT_GT(rain_mm_d(model, air.column[grid.cell(42, 18)], 12.0, 1.0, 0.0),
+            1.5 * rain_mm_d(model, flat.column[grid.cell(42, 18)], 40.0, 1.0, 0.0));
   EXPECT_LT(air.column[grid.cell(44, 18)], 0.8 * flat.column[grid.cell(44, 18)]);
 }
 
@@ -196,6 +200,37 @@ TEST(Moisture, SeasonsSideBySideDoNotTouchEachOther) {
     EXPECT_EQ(together[k].column, alone[k].column) << k;
   }
   EXPECT_NE(together[0].column, together[1].column);
+}
+
+// Of twice as humid air eddies wring four times as much, ascent eight times.
+TEST(Moisture, AscentRainsMoreSharplyThanEddies) {
+  MoistureBudget model;
+  model.humidity_exponent = 2;
+  EXPECT_NEAR(rain_mm_d(model, 20.0, 40.0, 0.0, 1.0), 4.0 * rain_mm_d(model, 10.0, 40.0, 0.0, 1.0),
+              1e-12);
+  EXPECT_NEAR(rain_mm_d(model, 20.0, 40.0, 1.0, 0.0), 8.0 * rain_mm_d(model, 10.0, 40.0, 1.0, 0.0),
+              1e-12);
+}
+
+TEST(SeaEvaporation, WindIsThatOfAirEddiesAndGusts) {
+  EXPECT_DOUBLE_EQ(wind_over_sea_m_s(0.0, 0.0, 0.0), 4.0);
+  EXPECT_DOUBLE_EQ(wind_over_sea_m_s(-3.0, 0.0, 0.0), 5.0);
+  EXPECT_DOUBLE_EQ(wind_over_sea_m_s(4.0, -4.0, 4.0), 8.0);
+}
+
+TEST(SeaEvaporation, ColdAirIsThatWhichComesFromTheCold) {
+  const Grid grid = Grid::sphere(72, 36);
+  const auto size = static_cast<std::size_t>(grid.size());
+  std::vector<float> warmer_north(size), east(size, 8.0F), north(size, -5.0F);
+  for (Index c = 0; c < grid.size(); ++c) {
+    warmer_north[c] = static_cast<float>(0.5 * grid.latitude_deg(grid.row(c)));
+  }
+  const double slope_k_m = 2.5 / grid.spacing_north_m(18);
+  const Index here = grid.cell(10, 18);
+  EXPECT_EQ(cold_advection_k_s(grid, warmer_north, east, north)[here], 0.0F);
+  for (float& wind : north) wind = 5.0F;
+  EXPECT_NEAR(cold_advection_k_s(grid, warmer_north, east, north)[here], 5.0 * slope_k_m,
+              1e-5 * slope_k_m);
 }
 
 TEST(UpwindLift, WindwardRisesLeeSinks) {

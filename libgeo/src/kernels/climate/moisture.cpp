@@ -158,8 +158,8 @@ TERRANE_WIDE void SteadyMoisture::sweep(const Field& field, bool northward, bool
                             quad(air.from_north) * quad(field.column[north]) +
                             quad(air.from_south) * quad(field.column[south]) +
                             quad(field.land_evaporation[here]);
-        // supply + open (W_s - w)+ = out w + c w (w/W_s)^n + e w w/W_s: two Newton steps from the present
-        // value, which lies on the convex side after the first.
+        // supply + open (W_s - w)+ = out w + c w (w/W_s)^n + e w w/W_s: two Newton steps from the
+        // present value, which lies on the convex side after the first.
         Quad w = quad(field.column[here]);
         for (int newton = 0; newton < 2; ++newton) {
           const Quad humidity = w / capacity;

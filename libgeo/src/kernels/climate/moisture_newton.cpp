@@ -78,7 +78,9 @@ void SteadyMoisture::close(std::size_t lane) const {
       const double open = season.open_water_1_d[c];
       excess[c] = arriving - air.out[lane] * w + season.land_evaporation[c] +
                   sea_evaporation_mm_d(w, capacity, open) - rain[c];
-      const double drying = w > 0.0 ? ((model_.humidity_exponent + 1.0) * (rain[c] - by_eddies) + 2.0 * by_eddies) / w : 0.0;
+      const double drying =
+          w > 0.0 ? ((model_.humidity_exponent + 1.0) * (rain[c] - by_eddies) + 2.0 * by_eddies) / w
+                  : 0.0;
       entries.emplace_back(c, c, air.out[lane] + drying + (w < capacity ? open : 0.0));
     }
     if (mean_size(grid_, excess) <= kClosed * mean_size(grid_, rain)) return;

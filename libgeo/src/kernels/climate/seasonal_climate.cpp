@@ -13,6 +13,7 @@
 #include "geo/kernels/climate/thermodynamics.hpp"
 #include "geo/kernels/numerics/area_sum.hpp"
 #include "geo/kernels/numerics/smoothing.hpp"
+#include "kernels/climate/sea_evaporation.hpp"
 #include "kernels/climate/zonal.hpp"
 
 namespace geo {
@@ -184,8 +185,8 @@ void SeasonalYear::begin_month(int m, const TemperatureCycle& temperature) {
 void SeasonalYear::clear(Month& month) const {
   for (auto* values :
        {&month.temperature_c, &month.pressure_hpa, &month.wind_east, &month.wind_north,
-        &month.descent_1_s, &month.open_flow, &month.diffusivity, &month.own_eddies, &month.eddies, &month.activity,
-        &month.saturated_mm, &month.open_water_1_d, &month.gust_m_s,
+        &month.descent_1_s, &month.open_flow, &month.diffusivity, &month.own_eddies, &month.eddies,
+        &month.activity, &month.saturated_mm, &month.open_water_1_d, &month.gust_m_s,
         &month.potential_evapotranspiration_mm_d, &month.land_evaporation_mm_d,
         &month.cold_air_evaporation_mm_d, &month.given_evaporation_mm_d, &month.heating_w_m2}) {
     values->assign(size_, 0.0F);
@@ -261,33 +262,23 @@ void SeasonalYear::heat_air(Month& month) const {
   }
 }
 
-/// What the sea gives to the air above it: the more, the faster that blows, and besides it warms and
-/// moistens air that comes from colder places.
+/// What the sea gives to the air above it: the more, the faster that blows, and besides it warms
+/// and moistens air that comes from colder places.
 void SeasonalYear::evaporate_sea(Month& month) const {
-  constexpr double kReference_m_s = 8.0, kGustOfCalm_m_s = 4.0;
-  for (int j = 0; j < grid_.ny(); ++j) {
-    for (int i = 0; i < grid_.nx(); ++i) {
-      const Index cell = grid_.cell(i, j);
-      const double water = 1.0 - land_[cell];
-      if (water <= 0.0) continue;
-      const double east = month.wind_east[cell], north = month.wind_north[cell];
-      const double speed_m_s = std::hypot(std::hypot(east, north), month.gust_m_s[cell],
-                                          kGustOfCalm_m_s);
-      const double resistance_d =
-          kReference_m_s / (model_.moisture.evaporation_velocity_1_d * speed_m_s) +
-          month.saturated_mm[cell] / most_evaporation_mm_d_[j];
-      month.open_water_1_d[cell] = static_cast<float>(water / resistance_d);
-      const auto colder_k = [&](double wind, int behind, int ahead) {
-        const Index upwind = grid_.neighbour(i, j, wind > 0.0 ? behind : ahead);
-        return month.temperature_c[cell] - month.temperature_c[upwind];
-      };
-      const double cooling_k_s =
-          std::abs(east) * colder_k(east, kWest, kEast) / grid_.spacing_east_m(j) +
-          std::abs(north) * colder_k(north, kSouth, kNorth) / grid_.spacing_north_m(j);
-      month.cold_air_evaporation_mm_d[cell] =
-          static_cast<float>(water * model_.cold_air_heat_j_m2_k * std::max(0.0, cooling_k_s) /
-                             kWattsPerMillimetreADay);
-    }
+  constexpr double kReference_m_s = 8.0;
+  const std::vector<float> cooling_k_s =
+      cold_advection_k_s(grid_, month.temperature_c, month.wind_east, month.wind_north);
+  for (std::size_t cell = 0; cell < size_; ++cell) {
+    const double water = 1.0 - land_[cell];
+    const double speed_m_s =
+        wind_over_sea_m_s(month.wind_east[cell], month.wind_north[cell], month.gust_m_s[cell]);
+    const double velocity_1_d =
+        model_.moisture.evaporation_velocity_1_d * speed_m_s / kReference_m_s;
+    const int row = grid_.row(static_cast<Index>(cell));
+    month.open_water_1_d[cell] = static_cast<float>(
+        water / (1.0 / velocity_1_d + month.saturated_mm[cell] / most_evaporation_mm_d_[row]));
+    month.cold_air_evaporation_mm_d[cell] = static_cast<float>(
+        water * model_.cold_air_heat_j_m2_k * cooling_k_s[cell] / kWattsPerMillimetreADay);
   }
 }
 
@@ -373,8 +364,8 @@ void SeasonalYear::exchange() {
           month.land_evaporation_mm_d[cell] + month.cold_air_evaporation_mm_d[cell];
     }
     seasons.push_back({month.wind_east, month.wind_north, month.diffusivity, month.activity,
-                       month.eddies, month.saturated_mm, month.open_water_1_d, month.given_evaporation_mm_d,
-                       month.column_mm});
+                       month.eddies, month.saturated_mm, month.open_water_1_d,
+                       month.given_evaporation_mm_d, month.column_mm});
   }
   budgets_.resize(kMonths / kTogether);
   ParallelErrors errors;
@@ -398,9 +389,9 @@ void SeasonalYear::rain(bool closed) {
       Month& month = months_[m];
       if (closed) budgets_[m / kTogether]->close(m % kTogether);
       for (std::size_t cell = 0; cell < size_; ++cell) {
-        month.rain_mm_d[cell] = rain_mm_d(model_.moisture, month.column_mm[cell],
-                                          month.saturated_mm[cell], month.activity[cell],
-                                          month.eddies[cell]);
+        month.rain_mm_d[cell] =
+            rain_mm_d(model_.moisture, month.column_mm[cell], month.saturated_mm[cell],
+                      month.activity[cell], month.eddies[cell]);
       }
     });
   }

@@ -16,35 +16,35 @@ namespace geo {
 struct EnergyBalance {
   double solar_constant_w_m2 = 1361.0;
   Orbit orbit;
-  double outgoing_w_m2 = 194;              ///< A at 0 degC
-  double outgoing_slope_w_m2_k = 2.21;     ///< B
-  double diffusivity_w_m2_k = 0.524;       ///< D at 15 degC, on the unit sphere
-  double moist_transport = 0.762;          ///< share of latent heat in D's change with temperature
-  double advected_heat_j_m2_k = 6.29e+06;  ///< of the air that winds move
-  double coalbedo = 0.665;                 ///< mean absorbed share without snow and ice
-  double coalbedo_p2 = -0.0662;            ///< its second Legendre coefficient in latitude
-  double snow_coalbedo = 0.65;             ///< of snow that melts in summer
+  double outgoing_w_m2 = 193;              ///< A at 0 degC
+  double outgoing_slope_w_m2_k = 2.4;      ///< B
+  double diffusivity_w_m2_k = 0.609;       ///< D at 15 degC, on the unit sphere
+  double moist_transport = 1.09;           ///< share of latent heat in D's change with temperature
+  double advected_heat_j_m2_k = 6.82e+06;  ///< of the air that winds move
+  double coalbedo = 0.667;                 ///< mean absorbed share without snow and ice
+  double coalbedo_p2 = -0.12;              ///< its second Legendre coefficient in latitude
+  double snow_coalbedo = 0.57;             ///< of snow that melts in summer
   double ice_coalbedo = 0.34;              ///< of land whose snow stays
-  double sea_ice_coalbedo = 0.544;         ///< of sea ice, broken and wet in summer
-  double snow_temperature_c = -1.16;       ///< monthly mean at which half the land is under snow
-  double ice_temperature_c = -8.39;        ///< annual mean at which half the sea is ice
+  double sea_ice_coalbedo = 0.55;          ///< of sea ice, broken and wet in summer
+  double snow_temperature_c = -10;         ///< monthly mean at which half the land is under snow
+  double ice_temperature_c = -9;           ///< annual mean at which half the sea is ice
   double ice_width_k = 2.45;               ///< width of both transitions; 0: no ice and snow at all
-  double land_heat_capacity_w_yr_m2_k = 0.132;
-  double ocean_heat_capacity_w_yr_m2_k = 8.43;
-  double ice_heat_capacity_w_yr_m2_k = 0.797;  ///< of sea ice that does not melt
-  double melt_w_m2_k = 14.3;     ///< heat that melting sea ice takes for each kelvin above -1 degC
-  double gyre_heat_w_m2 = 14.8;  ///< heat that gyres release along a western coast of an ocean
-  double gyre_reach_km = 1.48e+03;   ///< e-folding distance of a coast's influence
-  double subpolar_heat_w_m2 = 34.8;  ///< heat that subpolar gyres release along an eastern coast
-  double subpolar_reach_km = 2.16e+03;
-  double blocking_height_m = 1.6e+03;  ///< of topography that halves the heat passing over
+  double land_heat_capacity_w_yr_m2_k = 0.05;
+  double ocean_heat_capacity_w_yr_m2_k = 5.05;
+  double ice_heat_capacity_w_yr_m2_k = 1.54;  ///< of sea ice that does not melt
+  double melt_w_m2_k = 2;        ///< heat that melting sea ice takes for each kelvin above -1 degC
+  double gyre_heat_w_m2 = 26.5;  ///< heat that gyres release along a western coast of an ocean
+  double gyre_reach_km = 1.6e+03;  ///< e-folding distance of a coast's influence
+  double subpolar_heat_w_m2 = 47;  ///< heat that subpolar gyres release along an eastern coast
+  double subpolar_reach_km = 2.43e+03;
+  double blocking_height_m = 1.49e+03;  ///< of topography that halves the heat passing over
   double lapse_k_m = 0.005;
-  double heat_wind_share = 0.197;  ///< of the zonal wind in mid-troposphere that carries heat
+  double heat_wind_share = 0.223;  ///< of the zonal wind in mid-troposphere that carries heat
   double heat_wave_share = 0;      ///< of the winds about warm and cold ground that carries it
-  double upwelling_w_m2 = 150;     ///< heat that water welling up along the equator takes
-  double upwelling_reach_km = 2.98e+03;  ///< to the west of a coast, over which that falls by e
-  double dry_warming_k_m2_w = 0.0524;  ///< by which dry ground is warmer for each W m-2 of sunlight
-  double dry_warming_from_w_m2 = 273;  ///< above this
+  double upwelling_w_m2 = 149;     ///< heat that water welling up along the equator takes
+  double upwelling_reach_km = 2.78e+03;  ///< to the west of a coast, over which that falls by e
+  double dry_warming_k_m2_w = 0.0355;  ///< by which dry ground is warmer for each W m-2 of sunlight
+  double dry_warming_from_w_m2 = 232;  ///< above this
 };
 
 /// Share of the heat carried over level ground that passes over a cell of a mean height:

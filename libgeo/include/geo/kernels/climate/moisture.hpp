@@ -11,10 +11,10 @@ namespace geo {
 
 /// Constants of the moisture budget.
 struct MoistureBudget {
-  double rain_time_d = 0.819;          ///< rain-out time of a saturated column
+  double rain_time_d = 0.876;          ///< rain-out time of a saturated column
   std::int64_t humidity_exponent = 2;  ///< how sharply rain follows the column's relative humidity
-  double evaporation_velocity_1_d = 0.196;  ///< v over open water that energy does not limit
-  double evaporating_share = 0.802;         ///< of the annual insolation, at most
+  double evaporation_velocity_1_d = 0.31;  ///< v over open water that energy does not limit
+  double evaporating_share = 0.552;        ///< of the annual insolation, at most
   int sweeps = 44;
 };
 
@@ -31,14 +31,15 @@ struct MoistureSeason {
 };
 
 /// Steady moisture budgets of the air column on a sphere or torus:
-///   div(u W - K grad W) = E - P,   P = W (a (W/W_s)^n + e W/W_s) / tau,   E = water v (W_s - W)+ + land part,
+///   div(u W - K grad W) = E - P,   P = W (a (W/W_s)^n + e W/W_s) / tau,   E = water v (W_s - W)+ +
+///   land part,
 /// W column water (mm), W_s what the column holds at saturation, a the activity of ascent,
 /// which rains the more sharply the more humid the air is on the whole, and e that of eddies, whose
-/// own moist air rises wherever that is. Finite volumes, upwind; nonlinear Gauss-Seidel in four alternating directions, which
-/// leaves some thousandths of the water unaccounted for, then Newton's method with a sparse solver,
-/// which leaves none. Sequential: seasons are independent, a few are swept side by side in the
-/// lanes of vector registers, and more by threads. Bits do not depend on which seasons are solved
-/// together.
+/// own moist air rises wherever that is. Finite volumes, upwind; nonlinear Gauss-Seidel in four
+/// alternating directions, which leaves some thousandths of the water unaccounted for, then
+/// Newton's method with a sparse solver, which leaves none. Sequential: seasons are independent, a
+/// few are swept side by side in the lanes of vector registers, and more by threads. Bits do not
+/// depend on which seasons are solved together.
 class SteadyMoisture {
  public:
   static constexpr int kSeasons = 4;
