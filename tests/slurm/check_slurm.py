@@ -15,6 +15,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -116,6 +117,15 @@ class Cluster:
 
     def kill_slurmd(self, node):
         os.kill(int(self.pid_file(node).read_text()), signal.SIGKILL)
+
+    def lose(self, node, job):
+        """As if the power of the node had failed."""
+        self.kill_slurmd(node)
+        for number, _ in job.processes():
+            try:
+                os.kill(number, signal.SIGKILL)
+            except ProcessLookupError:
+                pass
 
     def start_slurmd(self, node):
         subprocess.run(["slurmd", "-N", node], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
@@ -226,12 +236,7 @@ class Checks:
         job = self.submit(out)
         kept = self.under_way(job, out)
         node = job.facts()["NodeList"]
-        self.cluster.kill_slurmd(node)
-        for number, _ in job.processes():
-            try:
-                os.kill(number, signal.SIGKILL)
-            except ProcessLookupError:
-                pass
+        self.cluster.lose(node, job)
         job.wait_for_second_life()
         job.wait_for("COMPLETED")
         require(job.facts()["NodeList"] != node, "the lost node made the planet")
@@ -325,7 +330,7 @@ class Checks:
         command = ["snakemake", *targets, "--profile", str(ROOT / "workflows/profiles/slurm"), "-s",
                    str(ROOT / "workflows/Snakefile"), "--directory", str(out), "--configfile", str(out / "small.json"),
                    "--default-resources", "mem_mb=1000", "runtime=20", "slurm_account=planets",
-                   "slurm_partition=planets"]
+                   "slurm_partition=planets", "slurm_extra=--no-requeue"]
         begun = time.monotonic()
         since = time.strftime("%Y-%m-%dT%H:%M:%S")
         done = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
@@ -351,6 +356,25 @@ class Checks:
         require("Nothing to be done" in subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True,
                                                        env=self.environment).stderr, "a second call does it again")
         print(f"   {len(jobs)} jobs, 16 planets and 2 fits: {seconds:.0f} s", flush=True)
+
+    def check_workflow_lost(self):
+        """A node is lost with a job of the workflow: Snakemake submits another, and the workflow ends."""
+        lost = []
+
+        def lose():
+            number, node = wait_until("a job of the workflow", lambda: call("squeue", "-h", "-t", "R", "-o", "%i %N").split())
+            job = Job(number, self.work / "none.log")
+            wait_until("its planets", lambda: any(f"{self.program} sweep" in words for _, words in job.processes()))
+            self.cluster.lose(node, job)
+            lost.append(job)
+        losing = threading.Thread(target=lose)
+        losing.start()
+        _, _, jobs, _ = self.snakemake("workflow-lost", "results/earth/before/part-1",
+                                       settings={"sweep_seeds": [21, 22, 23], "planets_per_job": 3})
+        losing.join()
+        require(lost and [job[2] for job in jobs] == ["NODE_FAIL", "COMPLETED"], f"jobs of Slurm's: {jobs}")
+        call(self.program, "run", *SWEEP, "--seed", "22", "--no-vtk", "--no-maps", "--quiet", "-o", self.work / "seed-22")
+        call(self.program, "diff", self.work / "seed-22", self.work / "workflow-lost/results/earth/before/part-1/seed-22")
 
     def measure(self):
         """The same planets with a job each and with eight in a job."""
