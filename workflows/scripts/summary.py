@@ -2,7 +2,7 @@
 """The summary figure of a sweep: curves, distances to the target, and parameters of each preset.
 
 Reads RESULTS/PRESET/fit/{calibration.json,hypsometry.csv} and the planets in
-RESULTS/PRESET/{before,after}/seed-N, as the last stage left them, and writes a figure and a table.
+RESULTS/PRESET/{before,after}/part-N/seed-M, as the last stage left them, and writes a figure and a table.
 """
 import argparse
 import csv
@@ -18,6 +18,12 @@ import netCDF4
 import numpy as np
 
 INK, GREY, RED = "#20262d", "#8c949e", "#bd3829"
+
+
+def planet_of(folder, seed):
+    """terrane sweep gives all seeds of a part as many digits."""
+    return next(planet for planet in sorted(folder.glob("part-*/seed-*"))
+                if int(planet.name.removeprefix("seed-")) == seed)
 
 
 def relief_of(folder):
@@ -58,8 +64,7 @@ class Sweep:
         self.fit = json.loads((folder / "fit" / "calibration.json").read_text())
         self.quantile, self.target = read_target(folder / "fit" / "hypsometry.csv")
         self.curves = {
-            when: [bin_means(folder / when / f"seed-{seed}", self.target.size)
-                   for seed in seeds]
+            when: [bin_means(planet_of(folder / when, seed), self.target.size) for seed in seeds]
             for when in ("before", "after")
         }
 
