@@ -38,7 +38,8 @@ std::array<double, 2> EqualAreaProjection::project(Centre position) const {
   const double dlon = (position.longitude_deg - centre_.longitude_deg) * kRadians;
   const double sine = std::sin(beta), cosine = std::cos(beta);
   const double towards = 1.0 + sine_ * sine + cosine_ * cosine * std::cos(dlon);
-  if (towards <= 0.0) {
+  constexpr double kAntipode = 1e-12;  // within some ten metres of it only rounding is left
+  if (towards <= kAntipode) {
     constexpr double kNowhere = std::numeric_limits<double>::infinity();
     return {kNowhere, kNowhere};
   }

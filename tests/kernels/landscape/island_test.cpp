@@ -116,6 +116,20 @@ TEST(EqualArea, ProjectsThereAndBackAndKeepsAreas) {
   EXPECT_NEAR(std::abs(area) * 6371e3 * 6371e3, 4e10, 4e4);
 }
 
+// Rounding put the antipode of a cell's centre at the centre of the map, with the rivers there.
+TEST(EqualArea, AntipodeIsNowhere) {
+  const Grid grid = Grid::sphere(256, 128);
+  for (Index c = 0; c < grid.size(); c += 37) {
+    const Centre centre = grid.position(grid.column(c), grid.row(c));
+    const EqualAreaProjection map(centre, grid.figure());
+    const auto [x, y] = map.project({-centre.latitude_deg, centre.longitude_deg + 180.0});
+    EXPECT_FALSE(std::isfinite(x)) << "cell " << c;
+    EXPECT_FALSE(std::isfinite(y)) << "cell " << c;
+    const auto [far_x, far_y] = map.project({-centre.latitude_deg, centre.longitude_deg + 178.0});
+    EXPECT_GT(std::hypot(far_x, far_y), 1.9 * grid.figure().radius_m);
+  }
+}
+
 TEST(RegionScore, IsTheFormulaOverTrueAreas) {
   const Grid planet = Grid::sphere(72, 36);
   const Noise noise(4, "heights");
@@ -437,6 +451,37 @@ TEST(RiverCourses, LeaveNoDamAndRaiseNothing) {
     if (c == crossings.rivers.front().edge_cell || c == crossings.rivers.back().edge_cell) continue;
     ASSERT_EQ(river.z[c], before[c]);
   }
+}
+
+// A hairpin whose arms a low saddle joins: over it the water took the short way.
+TEST(RiverCourses, KeepTheirWaterAllTheWayRoundABend) {
+  const Grid grid = Grid::plane(40, 40, 1000.0, 1000.0);
+  std::vector<float> z(grid.size(), 200.0F);
+  for (int j = 16; j < 25; ++j) z[grid.cell(30, j)] = 110.0F;
+  std::vector<Index> way;  // downstream
+  for (int i = 36; i > 5; --i) way.push_back(grid.cell(i, 25));
+  for (int j = 25; j > 15; --j) way.push_back(grid.cell(5, j));
+  for (int i = 5; i < 40; ++i) way.push_back(grid.cell(i, 15));
+  std::vector<std::uint8_t> outlets = find_outlets(grid, z);
+  const auto water_at_the_bend = [&](int shortcut) {
+    RiverCourses courses;
+    courses.shortcut = shortcut;
+    const auto n = static_cast<std::int32_t>(way.size());
+    for (std::int32_t k = 0; k < n; ++k) {
+      courses.cell.push_back(way[n - 1 - k]);
+      courses.next.push_back(k == 0 ? kCourseEnds : k - 1);
+      courses.level_m.push_back(80.0F + 100.0F * static_cast<float>(k) / static_cast<float>(n));
+      courses.least_m.push_back(0.0F);
+    }
+    std::vector<float> opened = z;
+    open_river_courses(grid, outlets, courses, opened);
+    std::vector<double> water(grid.size(), 0.0);
+    water[way.front()] = 1.0;
+    route_water(grid, opened, outlets).graph.accumulate(water);
+    return water[grid.cell(5, 20)];
+  };
+  EXPECT_EQ(water_at_the_bend(8), 1.0);
+  EXPECT_EQ(water_at_the_bend(1000), 0.0) << "the saddle is no case";
 }
 
 // Even sides are planes, on which brooks run side by side.

@@ -14,11 +14,14 @@ namespace {
 using Front = std::priority_queue<std::pair<float, Index>, std::vector<std::pair<float, Index>>,
                                   std::greater<>>;
 
-/// Which places of the courses lie upstream of which.
+/// Which places of the courses lie upstream of which, and how far.
 class Kinship {
  public:
   explicit Kinship(const RiverCourses& courses)
-      : first_(courses.cell.size()), size_(courses.cell.size(), 1) {
+      : first_(courses.cell.size()),
+        size_(courses.cell.size(), 1),
+        steps_(courses.cell.size()),
+        shortcut_(courses.shortcut) {
     const auto n = static_cast<std::int32_t>(first_.size());
     for (std::int32_t k = n - 1; k >= 0; --k) {
       if (courses.next[k] != kCourseEnds) size_[courses.next[k]] += size_[k];
@@ -31,17 +34,21 @@ class Kinship {
       first_[k] = next;
       next += size_[k];
       free[k] = first_[k] + 1;
+      steps_[k] = courses.next[k] == kCourseEnds ? 0 : steps_[courses.next[k]] + 1;
     }
   }
   [[nodiscard]] bool is_upstream(std::int32_t a, std::int32_t b) const {
     return first_[a] >= first_[b] && first_[a] < first_[b] + size_[b];
   }
-  [[nodiscard]] bool related(std::int32_t a, std::int32_t b) const {
-    return is_upstream(a, b) || is_upstream(b, a);
+  /// Whether water of a place may go to another: upstream, to come back, or a little downstream.
+  [[nodiscard]] bool may_go(std::int32_t from, std::int32_t to) const {
+    return is_upstream(to, from) ||
+           (is_upstream(from, to) && steps_[from] - steps_[to] <= shortcut_);
   }
 
  private:
-  std::vector<std::int32_t> first_, size_;
+  std::vector<std::int32_t> first_, size_, steps_;
+  std::int32_t shortcut_;
 };
 
 /// Passes over which the water of courses would leave them.
@@ -101,7 +108,7 @@ class Leaks {
       const Index next = fine_.neighbour(from, k);
       if (next == kNoCell) continue;
       if (const std::int32_t other = course_[next]; other != kNone) {
-        if (!kin_.related(other, place)) front_.push({std::max(z_[next], levels_m[other]), next});
+        if (!kin_.may_go(place, other)) front_.push({std::max(z_[next], levels_m[other]), next});
         continue;
       }
       const std::int32_t earlier = search_[next];
@@ -110,7 +117,7 @@ class Leaks {
       if (earlier != kNone) {
         const Found& then = found_[earlier];
         if (then.runs_away) {
-          if (then.into == kNone || !kin_.related(then.into, place)) {
+          if (then.into == kNone || !kin_.may_go(place, then.into)) {
             front_.push({std::max(z_[next], then.level_m), -1 - earlier});
           }
         } else if (found_[place].level_m <= then.level_m && kin_.is_upstream(earlier, place)) {

@@ -94,7 +94,7 @@ class Network {
         const int i = fine_.column(next), j = fine_.row(next);
         // Water that touches the edge leaves.
         if (!box.holds(i, j) || (fine_.is_open_edge(i, j) && next != to.cell)) continue;
-        if (!may_touch && (touches_others(next, from, to, joins) || (!to_sea && z_[next] < 0.0F)))
+        if (!may_touch && (touches_others(next, from, to, joins) || (!to_sea && touches_sea(next))))
           continue;
         const double length_m = fine_.distances_m(j)[k];
         const double more = length_m * resistance(next, from, to);
@@ -148,6 +148,14 @@ class Network {
     }
     return false;
   }
+  [[nodiscard]] bool touches_sea(Index c) const {
+    if (z_[c] < 0.0F) return true;
+    for (int k = 0; k < kDirections; ++k) {
+      const Index next = fine_.neighbour(c, k);
+      if (next != kNoCell && z_[next] < 0.0F) return true;
+    }
+    return false;
+  }
   [[nodiscard]] Box around(Index a, Index b, int margin) const {
     const auto [west, east] = std::minmax({fine_.column(a), fine_.column(b)});
     const auto [south, north] = std::minmax({fine_.row(a), fine_.row(b)});
@@ -157,7 +165,7 @@ class Network {
   /// Cost of a metre at a cell: low ground is easy, no ground is quite even, and the edge, which is
   /// nothing on the ground, does not lead rivers along it.
   [[nodiscard]] double resistance(Index c, const End& from, const End& to) const {
-    constexpr double kDigging_m = 20.0, kHollow_m = 100.0, kWinding = 1.2, kStrip = 6.0;
+    constexpr double kDigging_m = 20.0, kHollow_m = 100.0, kWinding = 1.6, kStrip = 6.0;
     const double di = fine_.column(to.cell) - fine_.column(from.cell);
     const double dj = fine_.row(to.cell) - fine_.row(from.cell);
     const double along = (fine_.column(c) - fine_.column(from.cell)) * di +
@@ -205,11 +213,12 @@ class Beds {
     const double cell_m = std::min(planet.spacing_east_m(row), planet.step_north_m());
     return static_cast<int>(0.25 * cell_m / cells_.fine().spacing_east_m(0));
   }
+  /// That of the first row.
+  [[nodiscard]] int quarter() const { return reach(cells_.planet().cell(0, cells_.first_row())); }
   /// Half of that, as long as it is little of the plane.
   [[nodiscard]] int strip() const {
     const Grid& fine = cells_.fine();
-    const int quarter = reach(cells_.planet().cell(0, cells_.first_row()));
-    return std::clamp(quarter / 2, 1, std::max(1, std::min(fine.nx(), fine.ny()) / 16));
+    return std::clamp(quarter() / 2, 1, std::max(1, std::min(fine.nx(), fine.ny()) / 16));
   }
 
  private:
@@ -310,9 +319,13 @@ class Tracing {
     // One that begins at the edge where another ends, or in the sea, has nowhere to go.
     if (network_.place(source.cell) != Network::kNone || z_[source.cell] < 0.0F) return;
     const auto joins = [&](std::int32_t place) { return goal_of_[place] == to; };
-    const int margin = std::max(2, 2 * beds_.reach(from));
-    if (!network_.connect(source, goal, margin, joins, false)) {
-      network_.connect(source, goal, margin, joins, true);
+    // Clear of other rivers, if need be on a long way round.
+    const int near = std::max(2, 2 * beds_.reach(from));
+    const auto clear = [&](int margin) {
+      return network_.connect(source, goal, margin, joins, /*may_touch=*/false);
+    };
+    if (!clear(near) && !clear(3 * near)) {
+      network_.connect(source, goal, near, joins, /*may_touch=*/true);
     }
     goal_of_.resize(network_.size(), to);
     on_lake_.resize(network_.size(), beds_.on_lake(from) && beds_.on_lake(to) ? 1 : 0);
@@ -335,6 +348,7 @@ class Tracing {
   [[nodiscard]] RiverCourses take() {
     constexpr float kShare = 0.25F, kAnywhere_m = 30.0F;
     RiverCourses courses = network_.take();
+    courses.shortcut = std::max(courses.shortcut, 2 * beds_.quarter());
     for (std::size_t k = 0; k < courses.cell.size(); ++k) {
       const float level_m = courses.level_m[k];
       const float sunk_m = std::max(0.0F, std::min(kShare * level_m, level_m - kAnywhere_m));
