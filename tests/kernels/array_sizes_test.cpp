@@ -43,6 +43,7 @@
 #include "geo/kernels/water/surface_rivers.hpp"
 #include "geo/kernels/water/valley_width.hpp"
 #include "geo/kernels/water/water_balance.hpp"
+#include "kernels/climate/sea_evaporation.hpp"
 
 namespace geo {
 namespace {
@@ -369,18 +370,22 @@ TEST(ArraySizes, OfClimateAreChecked) {
     Floats east(n(cells())), north(n(cells())), descent(n(cells()));
     stationary_wave(grid, {}, 7e-5, latitude, wind, heating, height, east, north, descent);
   });
+  expect_refused("cold_advection_k_s", 3, [&](Lengths& n) {
+    const Floats warm(n(cells())), east(n(cells())), north(n(cells()));
+    static_cast<void>(cold_advection_k_s(grid, warm, east, north));
+  });
   expect_refused("blueprint_orographic_precipitation", 4, [&](Lengths& n) {
     const Doubles latitude(n(rows()));
     const Floats land(n(cells())), height(n(cells()));
     Floats rain(n(cells()));
     blueprint_orographic_precipitation(grid, {}, latitude, land, height, rain);
   });
-  expect_refused("moisture", 8, [&](Lengths& n) {
-    Floats arrays[7];
+  expect_refused("moisture", 9, [&](Lengths& n) {
+    Floats arrays[8];
     for (Floats& array : arrays) array.resize(n(cells()));
     Doubles column(n(cells()));
-    const MoistureSeason season{arrays[0], arrays[1], arrays[2], arrays[3],
-                                arrays[4], arrays[5], arrays[6], column};
+    const MoistureSeason season{arrays[0], arrays[1], arrays[2], arrays[3], arrays[4],
+                                arrays[5], arrays[6], arrays[7], column};
     const SteadyMoisture moisture(grid, {}, {&season, 1});
   });
 }

@@ -105,11 +105,16 @@ TEST(Ice, OfColdTimesWorksWhereThatOfTodayDoesNotReach) {
   EXPECT_EQ(none.count("ice_m3"), 0U);
 }
 
+// Without rivers and creep, which wear ground that is free of ice and so change the difference.
 TEST(Ice, HoldsTheGroundDownAsFarAsMantleFloatsIt) {
+  const std::map<std::string, std::string> unworn{{"erosion.ice.abrasion", "0"},
+                                                  {"erosion.erodibility_yr", "0"},
+                                                  {"erosion.diffusivity_m2_yr", "0"}};
+  auto bare = unworn;
+  bare["erosion.ice.model"] = "none";
   Budget with, without;
-  const State state = freeze_planet(with, {{"erosion.ice.abrasion", "0"}});
-  const State stiff =
-      freeze_planet(without, {{"erosion.ice.abrasion", "0"}, {"erosion.ice.model", "none"}});
+  const State state = freeze_planet(with, unworn);
+  const State stiff = freeze_planet(without, bare);
   const auto ice = state.read(field::ice_thickness);
   const auto surface = state.read(field::elevation), ground = stiff.read(field::elevation);
   double sunk = 0.0, load = 0.0;
@@ -120,7 +125,7 @@ TEST(Ice, HoldsTheGroundDownAsFarAsMantleFloatsIt) {
     load += grid.area_m2(grid.row(c)) * ice[c];
   }
   // 910 / 3300, less what the plate carries beside the ice and at sea.
-  EXPECT_GT(sunk / load, 0.12);
+  EXPECT_GT(sunk / load, 0.16);
   EXPECT_LT(sunk / load, 0.28);
 }
 

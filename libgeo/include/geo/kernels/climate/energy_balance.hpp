@@ -24,9 +24,9 @@ struct EnergyBalance {
   double coalbedo = 0.667;                 ///< mean absorbed share without snow and ice
   double coalbedo_p2 = -0.12;              ///< its second Legendre coefficient in latitude
   double snow_coalbedo = 0.57;             ///< of snow that melts in summer
-  double ice_coalbedo = 0.34;              ///< of land whose snow stays
+  double ice_coalbedo = 0.3;               ///< of land whose snow stays
   double sea_ice_coalbedo = 0.55;          ///< of sea ice, broken and wet in summer
-  double snow_temperature_c = -10;         ///< monthly mean at which half the land is under snow
+  double snow_temperature_c = -6;          ///< monthly mean at which half the land is under snow
   double ice_temperature_c = -9;           ///< annual mean at which half the sea is ice
   double ice_width_k = 2.45;               ///< width of both transitions; 0: no ice and snow at all
   double land_heat_capacity_w_yr_m2_k = 0.05;
@@ -38,7 +38,7 @@ struct EnergyBalance {
   double subpolar_heat_w_m2 = 47;  ///< heat that subpolar gyres release along an eastern coast
   double subpolar_reach_km = 2.43e+03;
   double blocking_height_m = 1.49e+03;  ///< of topography that halves the heat passing over
-  double lapse_k_m = 0.005;
+  double lapse_k_m = 0.0054;
   double heat_wind_share = 0.223;  ///< of the zonal wind in mid-troposphere that carries heat
   double heat_wave_share = 0;      ///< of the winds about warm and cold ground that carries it
   double upwelling_w_m2 = 149;     ///< heat that water welling up along the equator takes
