@@ -2,8 +2,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "cli/program.hpp"
 #include "cli/relief_file.hpp"
@@ -43,6 +46,60 @@ TEST_F(Export, WritesEveryFormatOfARunAndNamesItsFiles) {
   for (const auto& entry : fs::directory_iterator(folder.path())) {
     EXPECT_NE(entry.path().filename().string().front(), '.') << "left behind: " << entry.path();
   }
+}
+
+/// Lines of a rotation file as numbers: moving plate, time, pole, angle, fixed plate.
+std::vector<std::array<double, 6>> rotations_in(const fs::path& file) {
+  std::vector<std::array<double, 6>> rows;
+  for (const std::string& line : lines_of(text_of(file))) {
+    auto& row = rows.emplace_back();
+    std::istringstream words(line);
+    for (double& number : row) words >> number;
+    EXPECT_TRUE(words) << line;
+  }
+  return rows;
+}
+
+TEST(ExportForGplates, OfAModelWithoutTimeIsOneFrameAndARotationPerPlate) {
+  const TemporaryFolder folder;
+  const fs::path run = folder / "run", out = folder / "gplates";
+  ASSERT_EQ(terrane({"run", "--grid", "64x32", "--to", "plates", "--no-maps", "-o", run}).code, 0);
+  const Outcome outcome = terrane({"export", run, "--format", "gplates", "-o", out});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  for (const auto& line : lines_of(outcome.out)) EXPECT_TRUE(fs::exists(line)) << line;
+  std::map<double, int> of_plate;
+  for (const auto& row : rotations_in(out / "rotations.rot")) {
+    ++of_plate[row[0]];
+    EXPECT_GE(row[0], 1000.0);
+    EXPECT_EQ(row[5], 0.0);
+    EXPECT_TRUE(row[1] == 0.0 ? row[4] == 0.0 : row[1] == 1.0 && row[4] < 5.0);
+  }
+  EXPECT_GT(of_plate.size(), 5U);
+  for (const auto& [plate, lines] : of_plate) EXPECT_EQ(lines, 2) << plate;
+  const auto plates = nlohmann::json::parse(text_of(out / "plates.geojson"));
+  EXPECT_EQ(plates.at("features").size(), of_plate.size());
+  EXPECT_EQ(plates.at("features")[0].at("properties").at("FROMAGE"), 1.0);
+}
+
+TEST(ExportForGplates, RefusesWhatIsNoRunOfPlates) {
+  const TemporaryFolder folder;
+  const fs::path run = folder / "run";
+  ASSERT_EQ(terrane({"run", "--preset", "hypsography", "--grid", "32x16", "--to", "plates",
+                     "--no-maps", "-o", run})
+                .code,
+            0);
+  const auto refused = [&](std::vector<std::string> arguments, const char* words) {
+    arguments.insert(arguments.begin(), {"export", "--format", "gplates"});
+    const Outcome outcome = terrane(arguments);
+    EXPECT_EQ(outcome.code, 2) << outcome.out << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(words));
+    EXPECT_EQ(lines_of(outcome.err).size(), 1U) << outcome.err;
+  };
+  refused({run}, "one plate, which does not move");
+  refused({run / "01-plates.nc"}, "takes the folder of a run");
+  refused({folder.path()}, "holds no run");
+  refused({run, "--field", "elevation"},
+          "--field goes with --format png16, r16, geotiff, zarr, healpix or glb, not with gplates");
 }
 
 TEST_F(Export, OfAFieldOfAnotherStageTakesItFromThere) {
