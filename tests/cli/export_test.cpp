@@ -6,6 +6,7 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "cli/program.hpp"
@@ -79,6 +80,41 @@ TEST(ExportForGplates, OfAModelWithoutTimeIsOneFrameAndARotationPerPlate) {
   const auto plates = nlohmann::json::parse(text_of(out / "plates.geojson"));
   EXPECT_EQ(plates.at("features").size(), of_plate.size());
   EXPECT_EQ(plates.at("features")[0].at("properties").at("FROMAGE"), 1.0);
+}
+
+TEST(ExportForGplates, OfADriftHasEachStepOnceAndNamesWhatIsWrongInItsTables) {
+  const TemporaryFolder folder;
+  const fs::path run = folder / "run", out = folder / "gplates";
+  ASSERT_EQ(terrane({"run", "--preset", "sphere", "--grid", "64x32", "--to", "plates", "--no-maps",
+                     "--set", "plates.sphere.samples=3000", "--set", "plates.sphere.time_myr=6",
+                     "--set", "plates.sphere.frames_myr=4", "-o", run})
+                .code,
+            0);
+  ASSERT_EQ(terrane({"export", run, "--format", "gplates", "-o", out}).code, 0);
+  std::map<double, std::set<double>> times;
+  for (const auto& row : rotations_in(out / "rotations.rot")) {
+    EXPECT_TRUE(times[row[0]].insert(row[1]).second || row[5] != 0.0) << row[0] << " " << row[1];
+  }
+  EXPECT_EQ(times.begin()->second, (std::set<double>{0.0, 2.0, 4.0, 6.0}));
+  std::set<double> frames;
+  const auto plates = nlohmann::json::parse(text_of(out / "plates.geojson"));
+  for (const auto& plate : plates.at("features")) {
+    frames.insert(plate.at("properties").at("FROMAGE").get<double>());
+  }
+  EXPECT_EQ(frames, (std::set<double>{0.0, 2.0, 6.0}));
+
+  const fs::path table = run / "01-plates-rotations.csv";
+  const std::string whole = text_of(table);
+  const auto refused = [&](const std::string& text, const char* words) {
+    std::ofstream(table) << text;
+    const Outcome outcome = terrane({"export", run, "--format", "gplates", "-o", out});
+    EXPECT_EQ(outcome.code, 3) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(words));
+    EXPECT_EQ(lines_of(outcome.err).size(), 1U) << outcome.err;
+  };
+  refused(whole + "0,2,0,north,0,0\n", "pole_latitude_deg: must be a number");
+  refused(whole + "0,2,777,10,0,0\n", "rotations of plate 777: it is in no list of plates");
+  refused("from_myr,to_myr\n0,2\n", "has no column plate_id");
 }
 
 TEST(ExportForGplates, RefusesWhatIsNoRunOfPlates) {
