@@ -152,18 +152,18 @@ Boundary boundary_at(const Fields& fields, const BorderPoint& point) {
 }
 
 /// What most of the five points about a place of a line are, so that single cells make no pieces.
-Boundary commonest_about(const std::vector<Boundary>& line, std::ptrdiff_t place) {
+Boundary dominant_about(const std::vector<Boundary>& line, std::ptrdiff_t place) {
   const auto from = line.begin() + std::max<std::ptrdiff_t>(0, place - 2);
   const auto to = line.begin() + std::min(std::ssize(line), place + 3);
-  Boundary commonest;
+  Boundary dominant;
   std::ptrdiff_t most = 0;
   for (auto at = from; at != to; ++at) {
     const auto votes = at->type == nullptr ? 0 : std::count(from, to, *at);
     if (votes <= most) continue;
     most = votes;
-    commonest = *at;
+    dominant = *at;
   }
-  return commonest;
+  return dominant;
 }
 
 /// Points that do not know what they are take it from the nearest one of their line that does.
@@ -183,7 +183,7 @@ std::vector<Boundary> boundaries_along(const Fields& fields, const std::vector<B
   for (const BorderPoint& point : line) {
     raw.push_back(point.left == kNoCell ? Boundary{} : boundary_at(fields, point));
   }
-  for (std::ptrdiff_t k = 0; k < std::ssize(raw); ++k) smooth.push_back(commonest_about(raw, k));
+  for (std::ptrdiff_t k = 0; k < std::ssize(raw); ++k) smooth.push_back(dominant_about(raw, k));
   fill_gaps(smooth);
   return smooth;
 }
