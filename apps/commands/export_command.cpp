@@ -105,7 +105,10 @@ void add_export_command(CLI::App& program, Action& action) {
                    "Stage or island of the run (default: the last of the planet that wrote the "
                    "field)")
       ->type_name("NAME");
-  command->add_option("-o,--output", o.request.output, "File to write (default: FIELD.EXTENSION)")
+  command
+      ->add_option("-o,--output", o.request.output,
+                   "File to write (default: FIELD.EXTENSION); gplates: folder (default: "
+                   "gplates)")
       ->type_name("FILE");
   command
       ->add_option("--tiles", o.tiles,

@@ -2,8 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
 
 #include "cli/program.hpp"
 #include "cli/relief_file.hpp"
@@ -43,6 +47,95 @@ TEST_F(Export, WritesEveryFormatOfARunAndNamesItsFiles) {
   for (const auto& entry : fs::directory_iterator(folder.path())) {
     EXPECT_NE(entry.path().filename().string().front(), '.') << "left behind: " << entry.path();
   }
+}
+
+/// Lines of a rotation file as numbers: moving plate, time, pole, angle, fixed plate.
+std::vector<std::array<double, 6>> rotations_in(const fs::path& file) {
+  std::vector<std::array<double, 6>> rows;
+  for (const std::string& line : lines_of(text_of(file))) {
+    auto& row = rows.emplace_back();
+    std::istringstream words(line);
+    for (double& number : row) words >> number;
+    EXPECT_TRUE(words) << line;
+  }
+  return rows;
+}
+
+TEST(ExportForGplates, OfAModelWithoutTimeIsOneFrameAndARotationPerPlate) {
+  const TemporaryFolder folder;
+  const fs::path run = folder / "run", out = folder / "gplates";
+  ASSERT_EQ(terrane({"run", "--grid", "64x32", "--to", "plates", "--no-maps", "-o", run}).code, 0);
+  const Outcome outcome = terrane({"export", run, "--format", "gplates", "-o", out});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  for (const auto& line : lines_of(outcome.out)) EXPECT_TRUE(fs::exists(line)) << line;
+  std::map<double, int> of_plate;
+  for (const auto& row : rotations_in(out / "rotations.rot")) {
+    ++of_plate[row[0]];
+    EXPECT_GE(row[0], 1000.0);
+    EXPECT_EQ(row[5], 0.0);
+    EXPECT_TRUE(row[1] == 0.0 ? row[4] == 0.0 : row[1] == 1.0 && row[4] < 5.0);
+  }
+  EXPECT_GT(of_plate.size(), 5U);
+  for (const auto& [plate, lines] : of_plate) EXPECT_EQ(lines, 2) << plate;
+  const auto plates = nlohmann::json::parse(text_of(out / "plates.geojson"));
+  EXPECT_EQ(plates.at("features").size(), of_plate.size());
+  EXPECT_EQ(plates.at("features")[0].at("properties").at("FROMAGE"), 1.0);
+}
+
+TEST(ExportForGplates, OfADriftHasEachStepOnceAndNamesWhatIsWrongInItsTables) {
+  const TemporaryFolder folder;
+  const fs::path run = folder / "run", out = folder / "gplates";
+  ASSERT_EQ(terrane({"run", "--preset", "sphere", "--grid", "64x32", "--to", "plates", "--no-maps",
+                     "--set", "plates.sphere.samples=3000", "--set", "plates.sphere.time_myr=6",
+                     "--set", "plates.sphere.frames_myr=4", "-o", run})
+                .code,
+            0);
+  ASSERT_EQ(terrane({"export", run, "--format", "gplates", "-o", out}).code, 0);
+  std::map<double, std::set<double>> times;
+  for (const auto& row : rotations_in(out / "rotations.rot")) {
+    EXPECT_TRUE(times[row[0]].insert(row[1]).second || row[5] != 0.0) << row[0] << " " << row[1];
+  }
+  EXPECT_EQ(times.begin()->second, (std::set<double>{0.0, 2.0, 4.0, 6.0}));
+  std::set<double> frames;
+  const auto plates = nlohmann::json::parse(text_of(out / "plates.geojson"));
+  for (const auto& plate : plates.at("features")) {
+    frames.insert(plate.at("properties").at("FROMAGE").get<double>());
+  }
+  EXPECT_EQ(frames, (std::set<double>{0.0, 2.0, 6.0}));
+
+  const fs::path table = run / "01-plates-rotations.csv";
+  const std::string whole = text_of(table);
+  const auto refused = [&](const std::string& text, const char* words) {
+    std::ofstream(table) << text;
+    const Outcome outcome = terrane({"export", run, "--format", "gplates", "-o", out});
+    EXPECT_EQ(outcome.code, 3) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(words));
+    EXPECT_EQ(lines_of(outcome.err).size(), 1U) << outcome.err;
+  };
+  refused(whole + "0,2,0,north,0,0\n", "pole_latitude_deg: must be a number");
+  refused(whole + "0,2,777,10,0,0\n", "rotations of plate 777: it is in no list of plates");
+  refused("from_myr,to_myr\n0,2\n", "has no column plate_id");
+}
+
+TEST(ExportForGplates, RefusesWhatIsNoRunOfPlates) {
+  const TemporaryFolder folder;
+  const fs::path run = folder / "run";
+  ASSERT_EQ(terrane({"run", "--preset", "hypsography", "--grid", "32x16", "--to", "plates",
+                     "--no-maps", "-o", run})
+                .code,
+            0);
+  const auto refused = [&](std::vector<std::string> arguments, const char* words) {
+    arguments.insert(arguments.begin(), {"export", "--format", "gplates"});
+    const Outcome outcome = terrane(arguments);
+    EXPECT_EQ(outcome.code, 2) << outcome.out << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(words));
+    EXPECT_EQ(lines_of(outcome.err).size(), 1U) << outcome.err;
+  };
+  refused({run}, "one plate, which does not move");
+  refused({run / "01-plates.nc"}, "takes the folder of a run");
+  refused({folder.path()}, "holds no run");
+  refused({run, "--field", "elevation"},
+          "--field goes with --format png16, r16, geotiff, zarr, healpix or glb, not with gplates");
 }
 
 TEST_F(Export, OfAFieldOfAnotherStageTakesItFromThere) {

@@ -115,6 +115,24 @@ TEST(PlateMotion, VelocitiesOfKnownPlates) {
   }
 }
 
+TEST(PlateMotion, RotationIsFoundAgainFromVelocities) {
+  constexpr double kRadius_km = 6371.0;
+  const RandomStream random(5, "velocities");
+  const Vector3 rotation = euler_rotation(-20.0, 130.0, 0.7);
+  VelocityFit fit;
+  for (std::uint64_t k = 0; k < 50; ++k) {
+    const Vector3 at = normalised(add({1.0, 0.5, -0.3}, random.direction(k), 0.4));
+    fit.add(at, east_north(velocity_mm_yr(rotation, at, kRadius_km), at), 1.0 + 0.01 * k);
+  }
+  EXPECT_LT(length(add(fit.rotation_rad_myr(kRadius_km), rotation, -1.0)), 1e-12);
+  EXPECT_EQ(VelocityFit().rotation_rad_myr(kRadius_km), Vector3{});
+  // Of one place the turn about itself cannot be told, and is left out.
+  VelocityFit single;
+  const Vector3 at{0.0, 0.6, 0.8};
+  single.add(at, east_north(velocity_mm_yr(rotation, at, kRadius_km), at), 2.0);
+  EXPECT_LT(length(add(single.rotation_rad_myr(kRadius_km), tangent(rotation, at), -1.0)), 1e-12);
+}
+
 TEST(PlateMotion, NetRotationOfOnePlateIsItsOwnAndOfNoneIsLeft) {
   const CubedSphere mesh(32);
   std::vector<Vector3> unit(mesh.size());

@@ -28,12 +28,13 @@ struct FormatRow {
   ExportFormat format;
   const char* extension;
 };
-constexpr std::array<FormatRow, 6> kFormats{{{"png16", ExportFormat::png16, ".png"},
+constexpr std::array<FormatRow, 7> kFormats{{{"png16", ExportFormat::png16, ".png"},
                                              {"r16", ExportFormat::r16, ".r16"},
                                              {"geotiff", ExportFormat::geotiff, ".tif"},
                                              {"zarr", ExportFormat::zarr, ".zarr"},
                                              {"healpix", ExportFormat::healpix, ".nc"},
-                                             {"glb", ExportFormat::glb, ".glb"}}};
+                                             {"glb", ExportFormat::glb, ".glb"},
+                                             {"gplates", ExportFormat::gplates, ""}}};
 
 const FormatRow& row_of(ExportFormat format) {
   return *std::find_if(kFormats.begin(), kFormats.end(),
@@ -59,6 +60,11 @@ void check_goes_together(const ExportRequest& request) {
     if (request.cube) refuse("--layout cube", "png16 or r16");
     if (!request.masks.empty()) refuse("--masks", "png16 or r16");
     if (request.range) refuse("--range", "png16 or r16");
+  }
+  if (request.format == ExportFormat::gplates) {
+    constexpr std::string_view kOfFields = "png16, r16, geotiff, zarr, healpix or glb";
+    if (!request.field.empty()) refuse("--field", kOfFields);
+    if (!request.stage.empty()) refuse("--stage", kOfFields);
   }
   if (request.nside != 0) {
     if (request.format != ExportFormat::healpix) refuse("--nside", "healpix");
@@ -188,6 +194,9 @@ std::string proj_words(const Grid& grid) {
 
 std::vector<fs::path> export_field(const ExportRequest& request) {
   check_goes_together(request);
+  if (request.format == ExportFormat::gplates) {
+    return export_gplates(request.place, request.output.empty() ? "gplates" : request.output);
+  }
   const ExportSource source = read_export_source(request);
   fs::path output = request.output;
   if (output.empty()) {
@@ -211,6 +220,8 @@ std::vector<fs::path> export_field(const ExportRequest& request) {
     case ExportFormat::glb:
       write_glb(output, source, request.exaggeration);
       break;
+    case ExportFormat::gplates:
+      throw Bug("an export for GPlates is of a run, not of a field");
   }
   return {output};
 }

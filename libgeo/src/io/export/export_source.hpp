@@ -36,6 +36,10 @@ std::shared_ptr<const Values> shared_values(const ExportSource& source, const Fi
 /// Words for a coordinate system that PROJ reads; empty for a plane without a place.
 std::string proj_words(const Grid& grid);
 
+/// Files for GPlates of the plates of the run in a folder.
+std::vector<std::filesystem::path> export_gplates(const std::filesystem::path& place,
+                                                  const std::filesystem::path& folder);
+
 // One per format; `output` is resolved.
 std::vector<std::filesystem::path> export_height_map(const ExportRequest& request,
                                                      const ExportSource& source,

@@ -9,7 +9,7 @@
 namespace geo::io {
 
 /// Formats that other programs take a planet or an island in.
-enum class ExportFormat { png16, r16, geotiff, zarr, healpix, glb };
+enum class ExportFormat { png16, r16, geotiff, zarr, healpix, glb, gplates };
 /// One by its name; ConfigurationError that lists them.
 ExportFormat parse_export_format(const std::string& name);
 /// Their names, in the order above.
@@ -38,8 +38,8 @@ struct ExportRequest {
   double exaggeration = 15.0;  ///< of heights on a globe of glb; islands stand true to scale
 };
 
-/// Writes a field of a planet or an island for other programs and returns the paths of the files,
-/// each whole or not there:
+/// Writes a field of a planet or an island, or the plates of a run, for other programs and returns
+/// the paths of the files, each whole or not there:
 ///
 /// - png16, r16: 16-bit samples, rows from the north, PNG or bare little-endian numbers. A JSON
 ///   beside them, of the same name, says range, offset and scale (value = offset + scale * sample),
@@ -53,6 +53,12 @@ struct ExportRequest {
 ///   that of the largest area.
 /// - glb: glTF 2.0, a mesh of the surface with the field's map as texture. Axes as glTF has them: y
 ///   to the north pole, z to longitude 0; islands lie in x (east) and z (south).
+/// - gplates: of the folder of a run, not of a field: a folder with the finite rotations of its
+///   plates through time (rotations.rot) and, each as GeoJSON and as GPML, plates, boundaries,
+///   coastlines, continents and isochrons of each of its frames. Numbers of plates are those of the
+///   run plus 1000. Times are Ma before the end of the run; places, where the crust of the plate is
+///   then, so that GPlates reconstructs them to where they were. Latitudes count as those of a
+///   sphere.
 ///
 /// Throws ConfigurationError for what does not go together, InputError, IoError.
 std::vector<std::filesystem::path> export_field(const ExportRequest& request);

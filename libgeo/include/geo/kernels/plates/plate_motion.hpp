@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 
@@ -25,6 +26,19 @@ struct EastNorth {
   double east, north;
 };
 [[nodiscard]] EastNorth east_north(const Vector3& vector, const Vector3& unit);
+
+/// The rotation that velocities over a plate tell: the Ω of the least ∫ |v - Ω × r|² dA.
+class VelocityFit {
+ public:
+  /// Adds a piece of the plate: its unit vector, velocity (mm/yr) and weight.
+  void add(const Vector3& unit, const EastNorth& velocity_mm_yr, double area);
+  /// rad/Myr; of a plate so small that its turn about itself cannot be told, without that.
+  [[nodiscard]] Vector3 rotation_rad_myr(double radius_km) const;
+
+ private:
+  Vector3 moment_{}, centre_{};
+  std::array<Vector3, 3> inertia_{};  // ∫ (1 - r rᵀ) dA
+};
 
 /// Net rotation of the lithosphere, (3 / 8 pi) Σ ∫ r × (Ω × r) dA over all plates; subtracting it
 /// from every plate leaves none.
