@@ -107,6 +107,8 @@ void prepare_memory() {
   reserve_stack();
 }
 
+void give_back_memory() { malloc_trim(0); }
+
 double memory_of_machine_bytes() {
   const double machine =
       static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));

@@ -14,6 +14,10 @@ namespace terrane {
 /// not: in libraries written in C, in OpenMP's own, in a parallel region without a guard.
 void prepare_memory();
 
+/// Gives what nobody holds any more back to the system, as between two stages: the rasters of the
+/// next have other sizes, and would else come to lie behind the gaps that those of the last left.
+void give_back_memory();
+
 /// Memory that there is for this process: the machine's, or less where its group is kept to that.
 double memory_of_machine_bytes();
 

@@ -109,6 +109,7 @@ void run(const RunOptions& options) {
                                                         : ProgressStyle::bar);
   geo::io::RunEvents events;
   events.stage_begins = [&](std::string_view stage, double cells) {
+    give_back_memory();
     progress.begin(stage, cells);
     progress.update(0.0);
   };

@@ -36,6 +36,27 @@ TEST(BackgroundWriter, FirstErrorComesBackAndStopsTheQueue) {
   EXPECT_NO_THROW(writer.wait()) << "an error is told once";
 }
 
+TEST(BackgroundWriter, WaitsUntilNoMoreThanSoManyJobsAreLeft) {
+  std::promise<void> first, second;
+  std::atomic<int> done = 0;
+  BackgroundWriter writer;
+  writer.submit([&] {
+    first.get_future().wait();
+    ++done;
+  });
+  writer.submit([&] {
+    second.get_future().wait();
+    ++done;
+  });
+  writer.wait_until_left(2);  // at once
+  first.set_value();
+  writer.wait_until_left(1);
+  EXPECT_EQ(done, 1);
+  second.set_value();
+  writer.wait_until_left(0);
+  EXPECT_EQ(done, 2);
+}
+
 TEST(BackgroundWriter, StopFinishesTheJobAtHandAndDropsTheRest) {
   std::promise<void> started, gate;
   std::atomic<bool> finished = false, second = false;

@@ -69,7 +69,7 @@ struct Valley {
       if (i == 0) ground[c] = IceGround::away;
     }
   }
-  std::vector<double> erode(const GlacialErosion& law, double years) {
+  SparseValues<double> erode(const GlacialErosion& law, double years) {
     const Glaciation ice = glaciate(grid, z, ground, std::vector<float>(grid.size(), 1.0F));
     return erode_under_ice(grid, law, years, ice.surface, ice.flux, ground, {}, z);
   }

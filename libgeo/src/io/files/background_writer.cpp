@@ -32,9 +32,9 @@ void BackgroundWriter::submit(std::function<void()> job) {
   changed_.notify_all();
 }
 
-void BackgroundWriter::wait() {
+void BackgroundWriter::wait_until_left(std::size_t most) {
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [this] { return jobs_.empty() && !busy_; });
+  changed_.wait(lock, [&] { return jobs_.size() + (busy_ ? 1 : 0) <= most; });
   rethrow();
 }
 

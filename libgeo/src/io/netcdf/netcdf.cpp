@@ -247,13 +247,15 @@ void write_frame(const std::filesystem::path& path, const Snapshot& snapshot,
   file.close();
 }
 
-void write_rasters(const std::filesystem::path& path, const Snapshot& snapshot, int level) {
+void write_rasters(const std::filesystem::path& path, const Snapshot& snapshot, int level,
+                   const std::function<void(const FieldSpec&)>& written) {
   const Grid& grid = *snapshot.grid;
   const ChunkShape chunk = chunk_shape(grid);
   ChunkWriter file(path, level);
   file.write(kCellArea, cell_areas(grid), grid.ny(), grid.nx(), chunk);
   for (const auto& [spec, values] : snapshot.fields) {
     file.write(spec->name, *values, grid.ny(), grid.nx(), chunk);
+    if (written && !snapshot.months) written(*spec);  // months are made from those of the year
   }
   if (snapshot.months) {
     Values month = std::vector<float>(static_cast<std::size_t>(grid.size()));
@@ -271,12 +273,13 @@ void write_rasters(const std::filesystem::path& path, const Snapshot& snapshot, 
 }  // namespace
 
 void write_netcdf(const std::filesystem::path& path, const Snapshot& snapshot,
-                  const Provenance& provenance, int compression) {
+                  const Provenance& provenance, int compression,
+                  const std::function<void(const FieldSpec&)>& written) {
   check_snapshot(snapshot);
   AtomicFile whole(path);
   try {
     write_frame(whole.temporary(), snapshot, provenance);
-    write_rasters(whole.temporary(), snapshot, compression);
+    write_rasters(whole.temporary(), snapshot, compression, written);
   } catch (const nc::Failure& failure) {
     whole.fail(failure.what());
   }

@@ -18,7 +18,9 @@ constexpr double kVtkCompression = 0.51;     // the same without shuffling, in V
 constexpr double kMaps_s = 1.3;              // all maps at their default width, one thread
 constexpr double kMaps_bytes = 12e6;
 constexpr double kMapWidth_px = 1800.0;
-constexpr double kParallelShare = 0.67;  // of the time, Amdahl
+constexpr double kPictures_bytes = 60e6;         // memory of all maps at that width, drawn at once
+constexpr double kPicturesOfCell_bytes = 118.0;  // of the fields that they are drawn from
+constexpr double kParallelShare = 0.67;          // of the time, Amdahl
 constexpr double kReference_s = 0.0102;  // MachineSpeed::one_thread_s where the costs were measured
 
 double value_bytes(const FieldSpec& spec) {
@@ -75,6 +77,10 @@ Prediction predict(const Pipeline& pipeline, int first, int last, double cells,
   sum.seconds *=
       ((1.0 - kParallelShare) * speed.one_thread_s + kParallelShare * speed.all_threads_s) /
       kReference_s;
+  if (map_area > 0.0) {
+    sum.memory_bytes =
+        std::max(sum.memory_bytes, map_area * kPictures_bytes + kPicturesOfCell_bytes * cells);
+  }
   sum.memory_bytes += kBaseMemory_bytes;
   return sum;
 }

@@ -148,6 +148,8 @@ void RunSession::compute(const RunEvents& events) {
   Clock::time_point start;
   Pipeline::Observer observer;
   observer.before = [&](int position) {
+    // Of the stages before, the last alone may still hold its fields for its files.
+    writer.wait_until_left(1);
     tell(events.stage_begins, run_.name_of(position), static_cast<double>(grid().size()));
     context.warnings.clear();
     running = position;

@@ -51,20 +51,26 @@ std::string references_of(const RunConfiguration& run, int position) {
 }  // namespace
 
 void StageJob::write(const RunSettings& settings) {
-  write_netcdf(netcdf, snapshot, provenance, static_cast<int>(settings.compression));
-  const auto folder = netcdf.parent_path();
-  record.list(folder, netcdf.filename().string());
+  for (const auto& [spec, values] : snapshot.fields) {
+    record.fields.push_back(summarise(*spec, *values, *snapshot.grid));
+  }
+  // What reads all fields at once comes first: to NetCDF they go one by one, and leave memory.
   if (settings.vtk) {
     write_vti(vti, snapshot, provenance, static_cast<int>(settings.vtk_compression));
-    record.list(folder, vti.filename().string());
   }
+  const auto release = [&](const FieldSpec& written) {
+    for (auto& [spec, values] : snapshot.fields) {
+      if (spec == &written) values.reset();
+    }
+  };
+  write_netcdf(netcdf, snapshot, provenance, static_cast<int>(settings.compression), release);
+  const auto folder = netcdf.parent_path();
+  record.list(folder, netcdf.filename().string());
+  if (settings.vtk) record.list(folder, vti.filename().string());
   if (!steps.rows.empty()) write_table(csv, text_of(steps));
   for (const TextTable& table : tables) {
     write_table(csv.parent_path() / fmt::format("{}-{}.csv", csv.stem().string(), table.name),
                 text_of(table));
-  }
-  for (const auto& [spec, values] : snapshot.fields) {
-    record.fields.push_back(summarise(*spec, *values, *snapshot.grid));
   }
 }
 void StageJob::write_table(const std::filesystem::path& path, const std::string& text) {

@@ -21,6 +21,7 @@ struct StageJob {
   std::vector<TextTable> tables;
   StageRecord record;
 
+  /// Fields leave the snapshot as soon as they are in all files.
   void write(const RunSettings& settings);
 
  private:

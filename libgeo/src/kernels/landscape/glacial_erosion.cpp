@@ -28,12 +28,12 @@ class Bed {
 
   /// Lowest bed that the ice can cut here, given those downstream.
   [[nodiscard]] double floor_m(Index cell) const {
-    const double s = surface_.height_m[cell];
+    const double s = surface_.height_m.of(cell);
     double floor = -1e9;
     bool meets_sea = false;
     outflow_.visit(cell, [&](Index to, double) {
       meets_sea = meets_sea || z_[to] < 0.0F;
-      const double fall = std::max(0.0, s - surface_.height_m[to]);
+      const double fall = std::max(0.0, s - surface_.height_m.of(to));
       floor = std::max(floor, z_[to] - sunk(to) - law_.overdeepening * fall + sunk(cell));
     });
     // Ice floats where (s - b) rho_i = -b rho_w, b the bed as it is sunk.
@@ -45,7 +45,7 @@ class Bed {
   /// Returns the height that was taken.
   double cut(Index cell, double through_m3_yr, double share, double time_yr) {
     const float before = z_[cell];
-    const double h = surface_.height_m[cell] - (before - sunk(cell));
+    const double h = surface_.height_m.of(cell) - (before - sunk(cell));
     if (!(h > 0.0)) return 0.0;
     const double room = before - floor_m(cell);
     if (!(room > 0.0)) return 0.0;
@@ -69,29 +69,30 @@ class Bed {
 
 }  // namespace
 
-std::vector<double> erode_under_ice(const Grid& grid, const GlacialErosion& law, double time_yr,
-                                    const IceSurface& surface, const IceFlux& flux,
-                                    std::span<const IceGround> ground,
-                                    std::span<const float> sunk_m, std::span<float> elevation_m) {
+SparseValues<double> erode_under_ice(const Grid& grid, const GlacialErosion& law, double time_yr,
+                                     const IceSurface& surface, const IceFlux& flux,
+                                     std::span<const IceGround> ground,
+                                     std::span<const float> sunk_m, std::span<float> elevation_m) {
   const auto size = static_cast<std::size_t>(grid.size());
-  if (elevation_m.size() != size || ground.size() != size || flux.share.size() != size ||
-      surface.height_m.size() != size || (!sunk_m.empty() && sunk_m.size() != size)) {
+  if (elevation_m.size() != size || ground.size() != size || flux.share.cells() != grid.size() ||
+      surface.height_m.cells() != grid.size() || (!sunk_m.empty() && sunk_m.size() != size)) {
     throw InputError(fmt::format("glacial erosion: fields must have {} values each", size));
   }
-  std::vector<double> debris_m3(size, 0.0);
+  SparseValues<double> debris_m3(surface.height_m.set());
   Bed bed(grid, law, surface, sunk_m, elevation_m);
   for (const Index cell : surface.order) {
-    if (ground[cell] != IceGround::iced || !(flux.share[cell] > 0.0F)) continue;
-    debris_m3[cell] = grid.area_m2(grid.row(cell)) *
-                      bed.cut(cell, flux.through_m3_yr[cell], flux.share[cell], time_yr);
+    const float share = flux.share.of(cell);
+    if (ground[cell] != IceGround::iced || !(share > 0.0F)) continue;
+    debris_m3.of(cell) =
+        grid.area_m2(grid.row(cell)) * bed.cut(cell, flux.through_m3_yr.of(cell), share, time_yr);
   }
   const IceOutflow outflow(grid, surface);
   for (auto at = surface.order.rbegin(); at != surface.order.rend(); ++at) {
     const Index cell = *at;
-    const double carried = debris_m3[cell];
+    const double carried = debris_m3.of(cell);
     if (!(carried > 0.0)) continue;
-    double let_out = flux.melted[cell] * carried;
-    if (!(flux.through_m3_yr[cell] > 0.0)) let_out = carried;
+    double let_out = flux.melted.of(cell) * carried;
+    if (!(flux.through_m3_yr.of(cell) > 0.0)) let_out = carried;
     const double goes_on = carried - let_out;
     if (elevation_m[cell] >= 0.0F) {
       const double area_m2 = grid.area_m2(grid.row(cell));
@@ -100,9 +101,9 @@ std::vector<double> erode_under_ice(const Grid& grid, const GlacialErosion& law,
           static_cast<float>(std::min(law.most_till_m, law.till_share * let_out / area_m2));
       let_out -= area_m2 * (static_cast<double>(elevation_m[cell]) - before);
     }
-    debris_m3[cell] = let_out;
+    debris_m3.of(cell) = let_out;
     if (goes_on <= 0.0) continue;
-    outflow.visit(cell, [&](Index to, double part) { debris_m3[to] += part * goes_on; });
+    outflow.visit(cell, [&](Index to, double part) { debris_m3.of(to) += part * goes_on; });
   }
   return debris_m3;
 }

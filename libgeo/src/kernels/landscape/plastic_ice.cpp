@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <queue>
 #include <utility>
 
@@ -43,41 +44,58 @@ double rise_between(double bed, double a, double dx, double c, double dy, double
   return s;
 }
 
+/// Cells that are not away, and those beside them.
+std::shared_ptr<const CellSet> reach_of(const Grid& grid, std::span<const IceGround> ground) {
+  std::vector<std::uint8_t> within(ground.size(), 0);
+  for (Index cell = 0; cell < grid.size(); ++cell) {
+    if (ground[cell] == IceGround::away) continue;
+    within[cell] = 1;
+    for (int k = 0; k < kDirections; ++k) {
+      const Index beside = grid.neighbour(cell, k);
+      if (beside != kNoCell) within[beside] = 1;
+    }
+  }
+  return std::make_shared<const CellSet>(grid.size(), [&](Index c) { return within[c] != 0; });
+}
+
 class March {
  public:
   March(const Grid& grid, double k_m, std::span<const float> bed_m,
         std::span<const IceGround> ground)
-      : grid_(grid), k_m_(k_m), bed_m_(bed_m), ground_(ground) {
-    surface_.height_m.assign(bed_m.size(), kUnreached);
-    surface_.lowest.resize(bed_m.size());
-    settled_.assign(bed_m.size(), 0);
+      : grid_(grid), k_m_(k_m), bed_m_(bed_m), ground_(ground), reach_(reach_of(grid, ground)) {
+    surface_.height_m = SparseValues<float>(reach_);
+    surface_.lowest = SparseValues<Index>(reach_, kNoCell);
+    settled_ = SparseValues<std::uint8_t>(reach_);
   }
 
   IceSurface run() {
-    bool any = false;
-    for (Index cell = 0; cell < grid_.size(); ++cell) {
-      surface_.lowest[cell] = cell;
-      if (ground_[cell] != IceGround::away) continue;
+    std::size_t margins = 0;
+    reach_->visit([&](Index cell) {
+      surface_.height_m.of(cell) = kUnreached;
+      surface_.lowest.of(cell) = cell;
+      if (ground_[cell] != IceGround::away) return;
       settle_margin(cell);
-      any = true;
-    }
-    if (!any) {
+      ++margins;
+    });
+    surface_.order.reserve(reach_->size() - margins);
+    // A world without a margin.
+    if (margins == 0 && reach_->size() == bed_m_.size()) {
       const auto lowest = std::min_element(bed_m_.begin(), bed_m_.end()) - bed_m_.begin();
       surface_.order.push_back(static_cast<Index>(lowest));
       settle_margin(static_cast<Index>(lowest));
     }
-    for (Index cell = 0; cell < grid_.size(); ++cell) {
-      if (settled_[cell] != 0) continue;
+    reach_->visit([&](Index cell) {
+      if (settled_.of(cell) != 0) return;
       for (int k = 0; k < kDirections; ++k) {
         const Index margin = grid_.neighbour(cell, k);
-        if (margin != kNoCell && settled_[margin] != 0) reach(cell, margin, k);
+        if (margin != kNoCell && settled_.of(margin) != 0) reach(cell, margin, k);
       }
-    }
+    });
     while (!front_.empty()) {
       const auto [height, cell] = front_.top();
       front_.pop();
-      if (settled_[cell] != 0 || height > surface_.height_m[cell]) continue;
-      settled_[cell] = 1;
+      if (settled_.of(cell) != 0 || height > surface_.height_m.of(cell)) continue;
+      settled_.of(cell) = 1;
       surface_.order.push_back(cell);
       reach_neighbours(cell);
     }
@@ -88,27 +106,29 @@ class March {
   using Entry = std::pair<float, Index>;
 
   void settle_margin(Index cell) {
-    surface_.height_m[cell] = std::max(bed_m_[cell], 0.0F);
-    settled_[cell] = 1;
+    surface_.height_m.of(cell) = std::max(bed_m_[cell], 0.0F);
+    settled_.of(cell) = 1;
   }
   void reach_neighbours(Index from) {
     const int i = grid_.column(from), j = grid_.row(from);
     for (int k = 0; k < kDirections; ++k) {
       const Index cell = grid_.neighbour(i, j, k);
-      if (cell == kNoCell || settled_[cell] != 0) continue;
+      if (cell == kNoCell || settled_.of(cell) != 0) continue;
       reach(cell, from, grid_.back_direction(j, k));
     }
   }
   /// From a settled neighbour, which lies in direction k of `cell`.
   void reach(Index cell, Index from, int k) {
-    const float height = std::max(static_cast<float>(rise(cell, from, k)), surface_.height_m[from]);
-    if (height >= surface_.height_m[cell]) return;
-    surface_.height_m[cell] = height;
-    surface_.lowest[cell] = from;
+    const float height =
+        std::max(static_cast<float>(rise(cell, from, k)), surface_.height_m.of(from));
+    float& now = surface_.height_m.of(cell);
+    if (height >= now) return;
+    now = height;
+    surface_.lowest.of(cell) = from;
     front_.emplace(height, cell);
   }
   [[nodiscard]] double rise(Index cell, Index from, int back) const {
-    const double bed = bed_m_[cell], below = surface_.height_m[from];
+    const double bed = bed_m_[cell], below = surface_.height_m.of(from);
     if (ground_[cell] == IceGround::bare) return std::max(bed, below);
     const int i = grid_.column(cell), j = grid_.row(cell);
     const auto& distance = grid_.distances_m(j);
@@ -119,8 +139,9 @@ class March {
       double best = kUnreached, apart = 1.0;
       for (const int side : {first, second}) {
         const Index to = grid_.neighbour(i, j, side);
-        if (to == kNoCell || settled_[to] == 0) continue;
-        if (surface_.height_m[to] < best) best = surface_.height_m[to], apart = distance[side];
+        if (to == kNoCell || settled_.of(to) == 0) continue;
+        const float height = surface_.height_m.of(to);
+        if (height < best) best = height, apart = distance[side];
       }
       return std::pair{best, apart};
     };
@@ -133,8 +154,9 @@ class March {
   double k_m_;
   std::span<const float> bed_m_;
   std::span<const IceGround> ground_;
+  std::shared_ptr<const CellSet> reach_;
   IceSurface surface_;
-  std::vector<std::uint8_t> settled_;
+  SparseValues<std::uint8_t> settled_;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front_;
 };
 
@@ -155,16 +177,16 @@ IceFlux ice_flux(const Grid& grid, std::span<const float> bed_m, std::span<const
   check_shape(grid, bed_m.size(), "the bed");
   check_shape(grid, ground.size(), "the ground");
   check_shape(grid, balance_m_yr.size(), "the balance");
-  check_shape(grid, surface.height_m.size(), "the surface");
+  check_shape(grid, surface.height_m.cells(), "the surface");
   IceFlux flux;
-  flux.through_m3_yr.assign(bed_m.size(), 0.0);
-  flux.share.assign(bed_m.size(), 0.0F);
-  flux.melted.assign(bed_m.size(), 0.0F);
+  flux.through_m3_yr = SparseValues<double>(surface.height_m.set());
+  flux.share = SparseValues<float>(surface.height_m.set());
+  flux.melted = SparseValues<float>(surface.height_m.set());
   const IceOutflow outflow(grid, surface);
   for (auto at = surface.order.rbegin(); at != surface.order.rend(); ++at) {
     const Index cell = *at;
     const double area_m2 = grid.area_m2(grid.row(cell));
-    double& through = flux.through_m3_yr[cell];
+    double& through = flux.through_m3_yr.of(cell);
     const double own = balance_m_yr[cell] * area_m2;
     if (own > 0.0 && (bed_m[cell] >= 0.0F || through > 0.0)) {
       through += own;
@@ -172,14 +194,14 @@ IceFlux ice_flux(const Grid& grid, std::span<const float> bed_m, std::span<const
     }
     if (through <= 0.0) continue;
     double melt = std::clamp(-own, 0.0, through);
-    flux.share[cell] = own < 0.0 ? static_cast<float>(std::min(1.0, through / -own)) : 1.0F;
-    if (surface.lowest[cell] == cell) melt = through;  // a world without a margin
-    flux.melted[cell] = static_cast<float>(melt / through);
+    flux.share.of(cell) = own < 0.0 ? static_cast<float>(std::min(1.0, through / -own)) : 1.0F;
+    if (surface.lowest.of(cell) == cell) melt = through;  // a world without a margin
+    flux.melted.of(cell) = static_cast<float>(melt / through);
     flux.melted_m3_yr += melt;
     const double leaves = through - melt;
     if (leaves <= 0.0) continue;
     outflow.visit(cell, [&](Index to, double part) {
-      flux.through_m3_yr[to] += part * leaves;
+      flux.through_m3_yr.of(to) += part * leaves;
       if (ground[to] != IceGround::away) return;
       (bed_m[to] < 0.0F ? flux.calved_m3_yr : flux.melted_m3_yr) += part * leaves;
     });

@@ -15,7 +15,7 @@ namespace {
 
 /// Which source cells make up a target cell, and their shares, which add up to one. Cells are
 /// consecutive; on an axis that wraps the first may be negative or the last beyond the end.
-struct Share {
+struct AxisShare {
   int first = 0;
   std::vector<double> weights;
 };
@@ -41,7 +41,7 @@ double unrolled(std::span<const double> table, int n, double period, int i) {
 }
 
 /// Shares of source cells in [low, high] by length of overlap.
-Share overlap_share(const Axis& axis, const Measure& edges, double low, double high) {
+AxisShare overlap_share(const Axis& axis, const Measure& edges, double low, double high) {
   const int n = axis.size();
   const auto edge = [&](int i) { return unrolled(edges, n, axis.period, i); };
   int first =
@@ -49,7 +49,7 @@ Share overlap_share(const Axis& axis, const Measure& edges, double low, double h
   if (first < 0) first = axis.period == 0.0 ? 0 : -1;
   while (axis.period != 0.0 && edge(first) > low) --first;
   while (edge(first + 1) <= low && (axis.period != 0.0 || first < n - 1)) ++first;
-  Share share{first, {}};
+  AxisShare share{first, {}};
   double sum = 0.0;
   for (int i = first; axis.period != 0.0 || i < n; ++i) {
     if (edge(i) >= high && i > first) break;
@@ -63,7 +63,7 @@ Share overlap_share(const Axis& axis, const Measure& edges, double low, double h
 }
 
 /// Shares of the two source centres about a position.
-Share linear_share(const Axis& axis, double position) {
+AxisShare linear_share(const Axis& axis, double position) {
   const int n = axis.size();
   const auto centre = [&](int i) { return unrolled(axis.centres, n, axis.period, i); };
   int left = static_cast<int>(std::upper_bound(axis.centres.begin(), axis.centres.end(), position) -
@@ -86,10 +86,10 @@ double mean_step(const Axis& axis) {
 
 /// `to_area` turns edges into a coordinate of equal areas.
 template <class ToArea>
-std::vector<Share> shares_of(const Axis& source, const Axis& target, const ToArea& to_area) {
+std::vector<AxisShare> shares_of(const Axis& source, const Axis& target, const ToArea& to_area) {
   // Half a millionth: steps that differ by rounding alone count as equal.
   const bool coarser = mean_step(target) >= mean_step(source) * (1.0 - 5e-7);
-  std::vector<Share> shares(target.size());
+  std::vector<AxisShare> shares(target.size());
   const Measure source_edges = to_area(source.edges), target_edges = to_area(target.edges);
   for (int i = 0; i < target.size(); ++i) {
     shares[i] = coarser ? overlap_share(source, source_edges, target_edges[i], target_edges[i + 1])
@@ -110,22 +110,13 @@ void check_within(const Axis& source, const Axis& target, const char* what) {
   }
 }
 
-/// A pole between the last row and itself half-way round: shares of the polar row's mean.
-struct PoleBlend {
-  double share = 0.0;  ///< of the mean, the rest is the row itself
-  int row = 0;
-};
-
-PoleBlend pole_blend(const Axis& rows, bool round, double latitude_deg) {
-  if (!round) return {};
+/// How much of a polar row's mean a latitude beyond it takes; the rest is the row itself, which
+/// goes on half-way round.
+double share_of_pole(const Axis& rows, double latitude_deg) {
   const double south = rows.centres.front(), north = rows.centres.back();
-  if (latitude_deg < south && south > -90.0) {
-    return {(south - latitude_deg) / (south + 90.0), 0};
-  }
-  if (latitude_deg > north && north < 90.0) {
-    return {(latitude_deg - north) / (90.0 - north), rows.size() - 1};
-  }
-  return {};
+  if (latitude_deg < south && south > -90.0) return (south - latitude_deg) / (south + 90.0);
+  if (latitude_deg > north && north < 90.0) return (latitude_deg - north) / (90.0 - north);
+  return 0.0;
 }
 
 double row_mean(std::span<const float> row) {
@@ -174,59 +165,80 @@ Raster raster_of(const Grid& grid) {
   return raster;
 }
 
-void resample_raster(const Raster& source_raster, std::span<const float> source,
-                     const Raster& target_raster, std::span<float> target,
-                     const Ellipsoid& figure) {
-  const bool geographic = source_raster.geographic;
-  if (geographic != target_raster.geographic) {
+RowResampling::RowResampling(const Raster& source, const Raster& target, const Ellipsoid& figure)
+    : source_columns_(static_cast<std::size_t>(source.columns.size())) {
+  const bool geographic = source.geographic;
+  if (geographic != target.geographic) {
     throw InputError("raster and grid have no coordinates in common: one is in degrees, one in m");
   }
-  check_within(source_raster.rows, target_raster.rows, geographic ? "latitudes" : "y");
-  check_within(source_raster.columns, target_raster.columns, geographic ? "longitudes" : "x");
-
+  check_within(source.rows, target.rows, geographic ? "latitudes" : "y");
+  check_within(source.columns, target.columns, geographic ? "longitudes" : "x");
   const auto same = [](const std::vector<double>& edges) { return edges; };
   const auto sines = [&](const std::vector<double>& edges) {
     return geographic ? authalic_sines(edges, figure) : edges;
   };
-  const auto row_shares = shares_of(source_raster.rows, target_raster.rows, sines);
-  const auto column_shares = shares_of(source_raster.columns, target_raster.columns, same);
-  const bool round = source_raster.columns.period != 0.0;
-  const bool finer_rows = mean_step(target_raster.rows) < mean_step(source_raster.rows);
-  const int nx = source_raster.columns.size(), ny = target_raster.rows.size();
-  const int target_nx = target_raster.columns.size();
+  const int nx = source.columns.size();
+  const auto keep = [&](const std::vector<AxisShare>& shares, std::vector<Share>& kept) {
+    for (const AxisShare& share : shares) {
+      kept.push_back({share.first, static_cast<int>(share.weights.size()), weights_.size()});
+      weights_.insert(weights_.end(), share.weights.begin(), share.weights.end());
+    }
+  };
+  keep(shares_of(source.rows, target.rows, sines), row_shares_);
+  keep(shares_of(source.columns, target.columns, same), columns_);
+  for (Share& share : columns_) share.first = (share.first % nx + nx) % nx;
 
+  poles_.resize(target.rows.size());
+  const bool round = source.columns.period != 0.0;
+  if (!round || !(mean_step(target.rows) < mean_step(source.rows))) return;
+  for (std::size_t j = 0; j < poles_.size(); ++j) {
+    const double latitude_deg = target.rows.centres[j];
+    const bool is_south = latitude_deg < source.rows.centres.front();
+    poles_[j] = {share_of_pole(source.rows, latitude_deg), is_south ? 0 : source.rows.size() - 1};
+  }
+}
+
+void RowResampling::row(std::span<const float> source, int j, std::span<float> out,
+                        std::span<double> scratch) const {
+  const std::size_t nx = source_columns_;
+  const Share& rows = row_shares_[j];
+  const std::span<double> blended = scratch.first(nx);
+  std::fill(blended.begin(), blended.end(), 0.0);
+  for (int k = 0; k < rows.count; ++k) {
+    const double weight = weights_[rows.weights + k];
+    const float* const from = source.data() + static_cast<std::size_t>(rows.first + k) * nx;
+    for (std::size_t i = 0; i < nx; ++i) blended[i] += weight * from[i];
+  }
+  if (const PoleBlend& pole = poles_[j]; pole.share > 0.0) {
+    const double mean = row_mean(source.subspan(static_cast<std::size_t>(pole.row) * nx, nx));
+    for (double& value : blended) value += pole.share * (mean - value);
+  }
+  for (std::size_t i = 0; i < columns_.size(); ++i) {
+    const Share& share = columns_[i];
+    auto from = static_cast<std::size_t>(share.first);
+    double sum = 0.0;
+    for (int k = 0; k < share.count; ++k) {
+      sum += weights_[share.weights + k] * blended[from];
+      if (++from == nx) from = 0;
+    }
+    out[i] = static_cast<float>(sum);
+  }
+}
+
+void resample_raster(const Raster& source_raster, std::span<const float> source,
+                     const Raster& target_raster, std::span<float> target,
+                     const Ellipsoid& figure) {
+  const RowResampling rows(source_raster, target_raster, figure);
+  const auto target_nx = static_cast<std::size_t>(rows.columns());
   ParallelErrors errors;
 #pragma omp parallel
   {
-    auto blended = errors.make<std::vector<double>>(nx);
+    auto scratch = errors.make<std::vector<double>>(rows.scratch_size());
 #pragma omp for schedule(static)
-    for (int j = 0; j < ny; ++j) {
+    for (int j = 0; j < rows.rows(); ++j) {
       if (errors.any()) continue;
-      const Share& rows = row_shares[j];
-      std::fill(blended.begin(), blended.end(), 0.0);
-      for (std::size_t k = 0; k < rows.weights.size(); ++k) {
-        const double weight = rows.weights[k];
-        const float* const row = source.data() + static_cast<std::size_t>(rows.first + k) * nx;
-        for (int i = 0; i < nx; ++i) blended[i] += weight * row[i];
-      }
-      const PoleBlend pole =
-          pole_blend(source_raster.rows, round && finer_rows, target_raster.rows.centres[j]);
-      if (pole.share > 0.0) {
-        const double mean = row_mean(source.subspan(static_cast<std::size_t>(pole.row) * nx, nx));
-        for (double& value : blended) value += pole.share * (mean - value);
-      }
-      float* const out = target.data() + static_cast<std::size_t>(j) * target_nx;
-      for (int i = 0; i < target_nx; ++i) {
-        const Share& columns = column_shares[i];
-        int from = columns.first % nx;
-        if (from < 0) from += nx;
-        double sum = 0.0;
-        for (const double weight : columns.weights) {
-          sum += weight * blended[from];
-          if (++from == nx) from = 0;
-        }
-        out[i] = static_cast<float>(sum);
-      }
+      rows.row(source, j, target.subspan(static_cast<std::size_t>(j) * target_nx, target_nx),
+               scratch);
     }
   }
   errors.rethrow();

@@ -40,6 +40,15 @@ struct Run {
   std::array<std::int32_t, kRun> lower;  ///< bit k: neighbour k is lower
 };
 
+/// Which neighbours of n cells in a row are lower, bit k for neighbour k.
+TERRANE_WIDE void find_lower(const float* surface_m, const std::array<Index, kDirections>& offset,
+                             int n, std::array<std::int32_t, kRun>& lower) {
+  for (int k = 0; k < kDirections; ++k) {
+    const float* beside = surface_m + offset[k];
+    for (int c = 0; c < n; ++c) lower[c] |= (beside[c] < surface_m[c] ? 1 : 0) << k;
+  }
+}
+
 /// Weights of n cells in a row, before those of contours.
 TERRANE_WIDE void weigh(const float* surface_m, const std::array<Index, kDirections>& offset,
                         const std::array<double, kDirections>& distance_m, float exponent, int n,
@@ -132,31 +141,51 @@ void FlowWeights::face_contours(int row, Weights& weight) const {
   for (int k = 0; k < kDirections; ++k) weight[k] *= contour[k];
 }
 
-int FlowWeights::share(int column, int row, std::uint8_t* receivers, Weights* weights) const {
+int FlowWeights::receivers_of_run(int column, int row, std::uint8_t* receivers) const {
   const Index cell = grid_.cell(column, row);
-  if (partition_.method != FlowMethod::multiple || !grid_.is_interior(column, row)) {
-    receivers[0] = this->receivers(column, row);
-    if ((receivers[0] & (receivers[0] - 1)) != 0) {
-      weights[0] = this->weights(row, cell, neighbours(column, row), receivers[0]);
-    }
-    return 1;
-  }
-  const int n = std::min(kRun, grid_.nx() - 1 - column);
+  const bool together = begins_run(column, row);
+  const int n = together ? std::min(kRun, grid_.nx() - 1 - column) : 1;
   const auto is_root = [&](int c) { return receiver_[cell + c] == cell + c; };
   int first = 0;
   while (first < n && is_root(first)) ++first;
   std::fill_n(receivers, first, std::uint8_t{0});
   if (first == n) return n;
-
-  Run run;
-  weigh(surface_.data() + cell, offset_, grid_.distances_m(row),
-        static_cast<float>(partition_.exponent), n, run);
+  std::array<std::int32_t, kRun> lower{};
+  if (together) find_lower(surface_.data() + cell, offset_, n, lower);
   for (int c = first; c < n; ++c) {
-    const auto lower = static_cast<std::uint8_t>(is_root(c) ? 0 : run.lower[c]);
-    receivers[c] = lower == 0 ? this->receivers(column + c, row) : lower;
-    if ((lower & (lower - 1)) == 0) continue;
-    for (int k = 0; k < kDirections; ++k) weights[c][k] = run.weight[k][c];
-    if (partition_.contour_weights) face_contours(row, weights[c]);
+    receivers[c] = static_cast<std::uint8_t>(is_root(c) ? 0 : lower[c]);
+    if (receivers[c] == 0) receivers[c] = this->receivers(column + c, row);
+  }
+  return n;
+}
+
+int FlowWeights::weights_of_run(int column, int row, const std::uint8_t* receivers,
+                                float* weights) const {
+  const Index cell = grid_.cell(column, row);
+  const bool together = begins_run(column, row);
+  const int n = together ? std::min(kRun, grid_.nx() - 1 - column) : 1;
+  const auto has_several = [](std::uint8_t to) { return (to & (to - 1)) != 0; };
+  Run run;
+  if (together && std::any_of(receivers, receivers + n, has_several)) {
+    weigh(surface_.data() + cell, offset_, grid_.distances_m(row),
+          static_cast<float>(partition_.exponent), n, run);
+  }
+  for (int c = 0; c < n; ++c) {
+    const std::uint8_t to = receivers[c];
+    if (!has_several(to)) {
+      if (to != 0) *weights++ = 1.0F;
+      continue;
+    }
+    Weights of_cell{};
+    if (together) {
+      for (int k = 0; k < kDirections; ++k) of_cell[k] = run.weight[k][c];
+      if (partition_.contour_weights) face_contours(row, of_cell);
+    } else {
+      of_cell = this->weights(row, cell + c, neighbours(column + c, row), to);
+    }
+    for (unsigned rest = to; rest != 0; rest &= rest - 1) {
+      *weights++ = of_cell[std::countr_zero(rest)];
+    }
   }
   return n;
 }

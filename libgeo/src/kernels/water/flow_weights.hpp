@@ -42,11 +42,18 @@ class FlowWeights {
   [[nodiscard]] Weights weights(int row, Index cell, const Neighbours& cells,
                                 std::uint8_t receivers) const;
 
-  /// Receivers and weights of the cells from here eastwards that are best worked out together;
-  /// weights only where there are several receivers. Returns how many cells these are.
-  int share(int column, int row, std::uint8_t* receivers, Weights* weights) const;
+  /// Receivers of the cells from here eastwards that are best worked out together, a byte each.
+  /// Returns how many cells these are.
+  int receivers_of_run(int column, int row, std::uint8_t* receivers) const;
+  /// The weights of the same cells, given their receivers: those of a cell in the order of the bits
+  /// of its receivers, as many as there are, and then those of the next. A single receiver's is 1.
+  int weights_of_run(int column, int row, const std::uint8_t* receivers, float* weights) const;
 
  private:
+  /// Whether cells from here eastwards are worked out together.
+  [[nodiscard]] bool begins_run(int column, int row) const {
+    return partition_.method == FlowMethod::multiple && grid_.is_interior(column, row);
+  }
   [[nodiscard]] Weights slope_weights(int row, Index cell, const Neighbours& cells,
                                       std::uint8_t receivers) const;
   /// Times the length of contour towards each neighbour.

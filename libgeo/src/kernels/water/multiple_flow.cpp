@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <functional>
 #include <memory>
 #include <string>
@@ -31,26 +32,61 @@ void check(const Grid& grid, std::size_t surface, std::size_t receiver, std::siz
   }
 }
 
-/// How all cells share: to whom, and how much.
-struct Shares {
-  std::vector<std::uint8_t> receivers;  ///< bit k: neighbour k
-  /// Not normalised; only where there are several receivers, so memory that roots and single
-  /// flow would take is never touched.
-  std::unique_ptr<Weights[]> weights;
-};
+/// How all cells share: to whom, and how much. Weights of all cells stand one after the other,
+/// those of a cell in the order of the bits of its receivers; most cells have few.
+class Shares {
+ public:
+  Shares(const Grid& grid, const FlowWeights& flow)
+      : receivers_(grid.size() + kBlock), first_(grid.size() / kBlock + 1) {
+    by_runs(grid, [&](int i, int j, Index cell) {
+      return flow.receivers_of_run(i, j, receivers_.data() + cell);
+    });
+    std::size_t next = 0;
+    for (std::size_t block = 0; block < first_.size(); ++block) {
+      first_[block] = next;
+      next += count_bits(block * kBlock, kBlock);
+    }
+    weights_ = std::make_unique_for_overwrite<float[]>(next);
+    by_runs(grid, [&](int i, int j, Index cell) {
+      return flow.weights_of_run(i, j, receivers_.data() + cell, weights_.get() + first(cell));
+    });
+  }
 
-Shares shares_of_all(const Grid& grid, const FlowWeights& flow) {
-  Shares shares{std::vector<std::uint8_t>(grid.size()),
-                std::make_unique_for_overwrite<Weights[]>(grid.size())};
+  /// Bit k: neighbour k. After those of all cells a few zeros.
+  [[nodiscard]] const std::vector<std::uint8_t>& receivers() const { return receivers_; }
+  /// Not normalised, as many as the cell has receivers.
+  [[nodiscard]] const float* weights(Index cell) const { return weights_.get() + first(cell); }
+
+ private:
+  static constexpr std::size_t kBlock = 16;  // cells whose weights are found from one number
+  static_assert(std::endian::native == std::endian::little, "first bytes are a word's lowest");
+
+  template <class Work>
+  static void by_runs(const Grid& grid, Work&& work) {
 #pragma omp parallel for schedule(dynamic, 16) if (grid.size() > kWorthThreads)
-  for (int j = 0; j < grid.ny(); ++j) {
-    const Index begin = grid.cell(0, j);
-    for (int i = 0; i < grid.nx();) {
-      i += flow.share(i, j, &shares.receivers[begin + i], &shares.weights[begin + i]);
+    for (int j = 0; j < grid.ny(); ++j) {
+      for (int i = 0; i < grid.nx();) i += work(i, j, grid.cell(i, j));
     }
   }
-  return shares;
-}
+  /// Receivers of `cells` of a block, up to 16 of them from its first on.
+  [[nodiscard]] std::size_t count_bits(std::size_t from, std::size_t cells) const {
+    std::array<std::uint64_t, 2> words{};
+    std::memcpy(words.data(), receivers_.data() + from, sizeof words);
+    const auto of_first = [](std::uint64_t word, std::size_t bytes) {
+      return bytes < 8 ? word & ((std::uint64_t{1} << 8 * bytes) - 1) : word;
+    };
+    const std::size_t second = cells > 8 ? cells - 8 : 0;
+    return std::popcount(of_first(words[0], cells)) + std::popcount(of_first(words[1], second));
+  }
+  [[nodiscard]] std::size_t first(Index cell) const {
+    const auto at = static_cast<std::size_t>(cell), block = at / kBlock;
+    return first_[block] + count_bits(block * kBlock, at % kBlock);
+  }
+
+  std::vector<std::uint8_t> receivers_;
+  std::vector<std::size_t> first_;  ///< weight of each block of cells
+  std::unique_ptr<float[]> weights_;
+};
 
 // Number of neighbours that give to each cell. Every direction is counted at its target's end, so
 // rows can be counted at once.
@@ -85,7 +121,7 @@ std::vector<std::uint8_t> count_donors(const Grid& grid, const FlowWeights& weig
 /// sums are the same whatever the threads.
 void walk_down(const Grid& grid, const FlowWeights& weights, const Shares& shares,
                std::vector<std::uint8_t>& waiting, std::span<double> values) {
-  const std::vector<std::uint8_t>& receivers = shares.receivers;
+  const std::vector<std::uint8_t>& receivers = shares.receivers();
   constexpr std::uint8_t kDone = 255;
   std::vector<Index> ready;
   const auto give = [&](Index next, double value) {
@@ -112,13 +148,12 @@ void walk_down(const Grid& grid, const FlowWeights& weights, const Shares& share
         give(cells[std::countr_zero(to)], values[cell]);
         continue;
       }
-      const Weights& weight = shares.weights[cell];
+      const float* weight = shares.weights(cell);
       double sum = 0.0;
-      for (const float w : weight) sum += w;
+      for (int k = 0; k < std::popcount(to); ++k) sum += weight[k];
       const double per_weight = values[cell] / sum;
       for (unsigned rest = to; rest != 0; rest &= rest - 1) {
-        const int k = std::countr_zero(rest);
-        give(cells[k], per_weight * weight[k]);
+        give(cells[std::countr_zero(rest)], per_weight * *weight++);
       }
     }
   }
@@ -147,8 +182,8 @@ void accumulate_flow(const Grid& grid, std::span<const float> surface_m,
                      std::span<double> values, const std::function<void()>& meanwhile) {
   check(grid, surface_m.size(), receiver.size(), values.size(), partition);
   const FlowWeights weights(grid, surface_m, receiver, partition);
-  const Shares shares = shares_of_all(grid, weights);
-  std::vector<std::uint8_t> waiting = count_donors(grid, weights, shares.receivers);
+  const Shares shares(grid, weights);
+  std::vector<std::uint8_t> waiting = count_donors(grid, weights, shares.receivers());
   const auto walk = [&] { walk_down(grid, weights, shares, waiting, values); };
   if (meanwhile) return run_side_by_side(walk, meanwhile);
   walk();

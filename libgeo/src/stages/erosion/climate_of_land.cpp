@@ -48,19 +48,17 @@ LandClimate climate_of_land(const Grid& grid, std::span<const float> elevation_m
   stage->run(io, inner);
 
   LandClimate climate;
-  const auto lay = [&](std::span<const float> values, std::vector<float>& on) {
-    on.resize(grid.size());
-    resample_raster(coarse, values, fine, on, grid.figure());
+  climate.between = std::make_shared<const RowResampling>(coarse, fine, grid.figure());
+  const auto keep = [](std::span<const float> values) {
+    return std::vector<float>(values.begin(), values.end());
   };
-  lay(scratch.read(field::precipitation), climate.precipitation_mm_yr);
-  lay(scratch.read(field::potential_evapotranspiration), climate.potential_mm_yr);
-  lay(scratch.read(field::temperature_range), climate.range_k);
-  std::vector<float> at_sea_level(scratch.grid().size());
-  const auto temperature = scratch.read(field::temperature);
-  for (std::size_t c = 0; c < at_sea_level.size(); ++c) {
-    at_sea_level[c] = temperature[c] + kLapse_K_m * std::max(0.0F, height_m[c]);
+  climate.precipitation_mm_yr = keep(scratch.read(field::precipitation));
+  climate.potential_mm_yr = keep(scratch.read(field::potential_evapotranspiration));
+  climate.range_k = keep(scratch.read(field::temperature_range));
+  climate.sea_level_temperature_c = keep(scratch.read(field::temperature));
+  for (std::size_t c = 0; c < height_m.size(); ++c) {
+    climate.sea_level_temperature_c[c] += kLapse_K_m * std::max(0.0F, height_m[c]);
   }
-  lay(at_sea_level, climate.sea_level_temperature_c);
   return climate;
 }
 

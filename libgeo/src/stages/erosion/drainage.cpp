@@ -1,8 +1,11 @@
 #include "geo/stages/erosion/drainage.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
+#include "geo/core/parallel_errors.hpp"
+#include "geo/core/release.hpp"
 #include "geo/kernels/landscape/river_sediment.hpp"
 #include "geo/kernels/water/depressions.hpp"
 #include "geo/kernels/water/lakes.hpp"
@@ -20,7 +23,8 @@ void shed_rain(const ErosionParameters& p, const Grid& grid, std::span<const flo
   std::vector<std::uint8_t> sea(grid.size());
 #pragma omp parallel for schedule(static)
   for (Index c = 0; c < grid.size(); ++c) sea[c] = elevation_m[c] < 0.0F ? 1 : 0;
-  land_water(grid, sea, climate.precipitation_mm_yr, climate.potential_mm_yr, shed, loss_m3_s);
+  land_water(grid, sea, climate.on_cells(climate.precipitation_mm_yr, grid),
+             climate.on_cells(climate.potential_mm_yr, grid), shed, loss_m3_s);
   const double m2_per_m3_s = kSecondsPerYear / (1e-3 * p.reference_runoff_mm_yr);
   const double least = p.least_runoff_mm_yr / p.reference_runoff_mm_yr / m2_per_m3_s;
 #pragma omp parallel for schedule(static)
@@ -32,6 +36,7 @@ void shed_rain(const ErosionParameters& p, const Grid& grid, std::span<const flo
   std::vector<Index> receiver(grid.size());
   steepest_receivers(grid, elevation_m, outlets, receiver);
   const auto hierarchy = build_depression_hierarchy(grid, elevation_m, outlets, receiver);
+  release(receiver);
   const Lakes lakes = balance_lakes(grid, elevation_m, hierarchy, shed, loss_m3_s);
 #pragma omp parallel for schedule(static)
   for (Index c = 0; c < grid.size(); ++c) shed[c] *= m2_per_m3_s;
@@ -53,14 +58,45 @@ void keep_some_water(const ErosionParameters& p, const Grid& grid, std::span<dou
 
 }  // namespace
 
+LandClimate::Reader::Reader(const LandClimate& climate, const Grid& grid,
+                            const std::vector<float>& field)
+    : between_(climate.between.get()), nx_(grid.nx()), field_(field) {
+  if (between_ == nullptr) return;
+  values_.resize(static_cast<std::size_t>(nx_));
+  scratch_.resize(between_->scratch_size());
+}
+
+std::span<const float> LandClimate::Reader::row(int j) {
+  const auto nx = static_cast<std::size_t>(nx_);
+  if (between_ == nullptr) return field_.subspan(static_cast<std::size_t>(j) * nx, nx);
+  between_->row(field_, j, values_, scratch_);
+  return values_;
+}
+
+std::vector<float> LandClimate::on_cells(const std::vector<float>& field, const Grid& grid) const {
+  std::vector<float> values(static_cast<std::size_t>(grid.size()));
+  ParallelErrors errors;
+#pragma omp parallel
+  {
+    auto reader = errors.make<std::optional<Reader>>(std::in_place, *this, grid, field);
+#pragma omp for schedule(static)
+    for (int j = 0; j < grid.ny(); ++j) {
+      if (errors.any()) continue;
+      const auto row = reader->row(j);
+      std::copy(row.begin(), row.end(), values.begin() + grid.cell(0, j));
+    }
+  }
+  errors.rethrow();
+  return values;
+}
+
 void drain(const ErosionParameters& p, const Grid& grid, std::span<const float> elevation_m,
            std::span<const std::uint8_t> outlets, Drainage& drainage, const LandClimate* climate,
            std::span<const double> inflow_area_m2) {
   const bool spread = p.flow_routing == "mfd";
   FlowGraph& graph = drainage.graph;
   graph = {};
-  Routing routing = route_unordered(grid, elevation_m, outlets, spread);
-  graph = std::move(routing.graph);
+  release(drainage.flooded);
   std::vector<double>& area_m2 = drainage.area_m2;
   area_m2.resize(grid.size());
 #pragma omp parallel for schedule(static)
@@ -68,6 +104,8 @@ void drain(const ErosionParameters& p, const Grid& grid, std::span<const float> 
     std::fill_n(area_m2.begin() + grid.cell(0, j), grid.nx(), grid.area_m2(j));
   }
   if (climate != nullptr) shed_rain(p, grid, elevation_m, outlets, *climate, area_m2);
+  Routing routing = route_unordered(grid, elevation_m, outlets, spread);
+  graph = std::move(routing.graph);
   for (std::size_t c = 0; c < inflow_area_m2.size(); ++c) area_m2[c] += inflow_area_m2[c];
   const auto put_in_order = [&] { graph.order = downstream_order(graph.receiver); };
   if (spread) {
@@ -77,8 +115,8 @@ void drain(const ErosionParameters& p, const Grid& grid, std::span<const float> 
     put_in_order();
     graph.accumulate(area_m2);
   }
+  release(routing.filled_m);
   if (climate != nullptr) keep_some_water(p, grid, area_m2);
-  drainage.flooded.clear();
   if (p.deposits() && p.depressions == "fill") {
     drainage.flooded = flooded_cells(graph, elevation_m);
   }

@@ -33,7 +33,7 @@ class ErosionStage final : public Stage {
     const double ice_ns = follows_rain && parameters_.freezes() ? kIce_ns : 0.0;
     return {.per_cell_ns = kStep_ns * steps + ice_ns,
             .fixed_s = climates * climate_of_land_seconds(configuration),
-            .cell_bytes = 170.0};
+            .cell_bytes = 150.0};
   }
 
   void run(StageIo& io, Context& context) const override {

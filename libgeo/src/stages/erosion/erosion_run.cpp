@@ -6,6 +6,7 @@
 
 #include "climate_of_land.hpp"
 #include "finish_surface.hpp"
+#include "geo/core/release.hpp"
 #include "geo/stages/erosion/finishing.hpp"
 #include "geo/stages/erosion/ground.hpp"
 #include "geo/stages/erosion/seas.hpp"
@@ -120,7 +121,9 @@ void ErosionRun::wear() {
        .after =
            [&](std::int64_t step) {
              context_.advance(static_cast<double>(step + 1) / static_cast<double>(p_.steps + 1));
-           }},
+           },
+       .done = {.area = [&] { release(drainage_.area_m2), release(drainage_.flooded); },
+                .graph = [&] { drainage_.graph = {}; }}},
       landscape_);
   landscape_.dry_filled_seas();
   landscape_.set_outlets(find_outlets(grid_, elevation_m_));
@@ -147,8 +150,7 @@ IceWork ErosionRun::ice_of(std::int64_t step) {
   const double before_today_yr = static_cast<double>(p_.steps - step - 1) * p_.time_step_yr;
   const double years_yr = ice_->years_of_step(before_today_yr);
   if (years_yr <= 0.0) return {};
-  return [this, years_yr](std::span<float> bed_m) {
-    const std::vector<float> before_m(bed_m.begin(), bed_m.end());
+  return [this, years_yr](std::span<float> bed_m, std::span<const float> before_m) {
     std::vector<double> let_out_m3 = ice_->work(*climate_, years_yr, bed_m);
 #pragma omp parallel for schedule(static)
     for (std::size_t c = 0; c < bed_m.size(); ++c) scoured_m_[c] += before_m[c] - bed_m[c];

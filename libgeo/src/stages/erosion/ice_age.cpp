@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "climate_of_land.hpp"
+#include "geo/core/parallel_errors.hpp"
+#include "geo/core/release.hpp"
 #include "geo/kernels/numerics/area_sum.hpp"
 #include "geo/kernels/numerics/smoothing.hpp"
 
@@ -28,8 +31,6 @@ IceAge::IceAge(const ErosionParameters& parameters, const Grid& grid, const Plan
   erosion_.overdeepening = p_.overdeepening;
   erosion_.till_share = p_.till_share;
   k_m_ = 1e3 * p_.ice_stress_kpa / (snow_.ice_kg_m3 * planet.gravity_m_s2);
-  next_.assign(grid.size(), IceGround::bare);
-  sunk_m_.assign(grid.size(), 0.0F);
 }
 
 double IceAge::years_of_step(double before_today_yr) const {
@@ -45,11 +46,11 @@ std::vector<double> IceAge::work(const LandClimate& climate, double years_yr,
   const auto live = [&](const Age& age, double share) {
     if (share <= 0.0) return;
     settle(climate, age, elevation_m);
-    const std::vector<double> let_out = erode_under_ice(
+    const SparseValues<double> let_out = erode_under_ice(
         grid_, erosion_, share * years_yr / cycles, surface_, flux_, ground_, sunk_m_, elevation_m);
-#pragma omp parallel for schedule(static)
-    for (std::size_t c = 0; c < let_out.size(); ++c) let_out_m3[c] += let_out[c];
+    let_out.set()->visit([&](Index c) { let_out_m3[c] += let_out.of(c); });
     weigh(elevation_m);
+    melt_away();
   };
   for (int cycle = 0; cycle < cycles; ++cycle) {
     live({p_.glacial_cooling_k, p_.grounding_m, kGrowing}, p_.glacial_share);
@@ -69,31 +70,44 @@ void IceAge::settle_today(const LandClimate& climate, std::span<const float> ele
   for (Index c = 0; c < grid_.size(); ++c) {
     if (elevation_m[c] < 0.0F) continue;
     if (ground_[c] == IceGround::iced) {
-      const float whole = surface_.height_m[c] - bed_m_[c];
-      thickness_m_[c] = flux_.share[c] * whole;
+      const float whole = surface_.height_m.of(c) - bed_m_[c];
+      thickness_m_[c] = flux_.share.of(c) * whole;
       if (thickness_m_[c] < kThinnest_m) thickness_m_[c] = 0.0F;
     }
     sunk_m_[c] =
         std::clamp(sunk_m_[c], 0.0F, std::max(0.0F, elevation_m[c] + thickness_m_[c] - kAshore_m));
   }
+  melt_away();
+}
+
+/// What only ice that works needs leaves memory; its sums stay.
+void IceAge::melt_away() {
+  release(ground_);
+  release(bed_m_);
+  surface_ = {};
+  flux_.through_m3_yr = {};
+  flux_.share = flux_.melted = {};
 }
 
 void IceAge::settle(const LandClimate& climate, const Age& age,
                     std::span<const float> elevation_m) {
+  next_.resize(elevation_m.size(), IceGround::bare);
+  sunk_m_.resize(elevation_m.size(), 0.0F);
   bed_m_.resize(elevation_m.size());
 #pragma omp parallel for schedule(static)
   for (std::size_t c = 0; c < bed_m_.size(); ++c) bed_m_[c] = elevation_m[c] - sunk_m_[c];
   sort_ground(climate, age, elevation_m);
+  const Cold cold = cold_cells(climate);
   std::vector<float> balance_m_yr(elevation_m.size());
   for (int round = 0; round < age.rounds; ++round) {
+    surface_ = {};
+    flux_ = {};
     ground_ = next_;
     surface_ = plastic_ice_surface(grid_, k_m_, bed_m_, ground_);
-    balance(climate, age, elevation_m, balance_m_yr);
+    balance(cold, age, elevation_m, balance_m_yr);
     flux_ = ice_flux(grid_, bed_m_, ground_, surface_, balance_m_yr);
-#pragma omp parallel for schedule(static)
-    for (std::size_t c = 0; c < next_.size(); ++c) {
-      if (next_[c] == IceGround::away) continue;
-      next_[c] = flux_.share[c] > kLeastShare ? IceGround::iced : IceGround::bare;
+    for (const Index c : cold.cells) {
+      next_[c] = flux_.share.of(c) > kLeastShare ? IceGround::iced : IceGround::bare;
     }
   }
 }
@@ -108,40 +122,77 @@ double IceAge::cooling_k(const Age& age, int row) const {
 void IceAge::sort_ground(const LandClimate& climate, const Age& age,
                          std::span<const float> elevation_m) {
   const double warmest = 1e3 * kMostMelt_m_yr / snow_.ice_melt_mm_k_d;
-#pragma omp parallel for schedule(dynamic, 8)
-  for (int j = 0; j < grid_.ny(); ++j) {
+  const auto sort_row = [&](int j, LandClimate::Reader& temperatures, LandClimate::Reader& ranges) {
     const double cooling = cooling_k(age, j);
-    for (Index c = grid_.cell(0, j); c < grid_.cell(0, j) + grid_.nx(); ++c) {
+    const Index row = grid_.cell(0, j);
+    const auto temperature_c = temperatures.row(j), range_k = ranges.row(j);
+    for (int i = 0; i < grid_.nx(); ++i) {
+      const Index c = row + i;
       const bool stands = elevation_m[c] >= -age.grounding_m;
       if (stands) {
-        const double mean_c = climate.sea_level_temperature_c[c] - cooling -
-                              kLapse_K_m * std::max(0.0F, elevation_m[c]);
+        const double mean_c =
+            temperature_c[i] - cooling - kLapse_K_m * std::max(0.0F, elevation_m[c]);
         // The mean alone has so many degree-days.
         const bool may_be = snow_.year_d * mean_c <= warmest;
-        if (may_be && frost_of_year(snow_, mean_c, climate.range_k[c]).degree_days <= warmest) {
+        if (may_be && frost_of_year(snow_, mean_c, range_k[i]).degree_days <= warmest) {
           if (next_[c] == IceGround::away) next_[c] = IceGround::bare;
           continue;
         }
       }
       next_[c] = IceGround::away;
     }
+  };
+  ParallelErrors errors;
+#pragma omp parallel
+  {
+    auto temperatures = errors.make<std::optional<LandClimate::Reader>>(
+        std::in_place, climate, grid_, climate.sea_level_temperature_c);
+    auto ranges = errors.make<std::optional<LandClimate::Reader>>(std::in_place, climate, grid_,
+                                                                  climate.range_k);
+#pragma omp for schedule(dynamic, 8)
+    for (int j = 0; j < grid_.ny(); ++j) {
+      if (!errors.any()) sort_row(j, *temperatures, *ranges);
+    }
   }
+  errors.rethrow();
 }
 
-void IceAge::balance(const LandClimate& climate, const Age& age, std::span<const float> elevation_m,
-                     std::span<float> balance_m_yr) const {
-#pragma omp parallel for schedule(dynamic, 8)
-  for (int j = 0; j < grid_.ny(); ++j) {
-    const double cooling = cooling_k(age, j);
-    for (Index c = grid_.cell(0, j); c < grid_.cell(0, j) + grid_.nx(); ++c) {
-      if (ground_[c] == IceGround::away) continue;
-      const double ground = std::max(0.0F, elevation_m[c]), surface = surface_.height_m[c];
-      const double mean_c = climate.sea_level_temperature_c[c] - cooling - kLapse_K_m * surface;
-      const double colder_k = cooling + kLapse_K_m * std::max(0.0, surface - ground);
-      const double rain = climate.precipitation_mm_yr[c] * std::exp(-kDrier_1_K * colder_k);
-      balance_m_yr[c] =
-          static_cast<float>(snow_balance_m_yr(snow_, mean_c, climate.range_k[c], rain));
+IceAge::Cold IceAge::cold_cells(const LandClimate& climate) const {
+  Cold cold;
+  for (Index c = 0; c < grid_.size(); ++c) {
+    if (next_[c] != IceGround::away) cold.cells.push_back(c);
+  }
+  const auto gather = [&](const std::vector<float>& field) {
+    LandClimate::Reader reader(climate, grid_, field);
+    std::vector<float> values(cold.cells.size());
+    int row = -1;
+    std::span<const float> of_row;
+    for (std::size_t n = 0; n < values.size(); ++n) {
+      const Index c = cold.cells[n];
+      if (grid_.row(c) != row) of_row = reader.row(row = grid_.row(c));
+      values[n] = of_row[grid_.column(c)];
     }
+    return values;
+  };
+  cold.sea_level_temperature_c = gather(climate.sea_level_temperature_c);
+  cold.range_k = gather(climate.range_k);
+  cold.precipitation_mm_yr = gather(climate.precipitation_mm_yr);
+  return cold;
+}
+
+void IceAge::balance(const Cold& cold, const Age& age, std::span<const float> elevation_m,
+                     std::span<float> balance_m_yr) const {
+  std::vector<double> cooling_of_row(grid_.ny());
+  for (int j = 0; j < grid_.ny(); ++j) cooling_of_row[j] = cooling_k(age, j);
+#pragma omp parallel for schedule(static)
+  for (std::size_t n = 0; n < cold.cells.size(); ++n) {
+    const Index c = cold.cells[n];
+    const double cooling = cooling_of_row[grid_.row(c)];
+    const double ground = std::max(0.0F, elevation_m[c]), surface = surface_.height_m.of(c);
+    const double mean_c = cold.sea_level_temperature_c[n] - cooling - kLapse_K_m * surface;
+    const double colder_k = cooling + kLapse_K_m * std::max(0.0, surface - ground);
+    const double rain = cold.precipitation_mm_yr[n] * std::exp(-kDrier_1_K * colder_k);
+    balance_m_yr[c] = static_cast<float>(snow_balance_m_yr(snow_, mean_c, cold.range_k[n], rain));
   }
 }
 
@@ -152,7 +203,7 @@ void IceAge::weigh(std::span<const float> elevation_m) {
   for (Index c = 0; c < grid_.size(); ++c) {
     sunk_m_[c] = 0.0F;
     if (ground_[c] != IceGround::iced || elevation_m[c] < 0.0F) continue;
-    sunk_m_[c] = part * flux_.share[c] * std::max(0.0F, surface_.height_m[c] - bed_m_[c]);
+    sunk_m_[c] = part * flux_.share.of(c) * std::max(0.0F, surface_.height_m.of(c) - bed_m_[c]);
   }
   if (p_.rebound_length_km > 0.0) smooth_broadly(grid_, sunk_m_, 1e3 * p_.rebound_length_km);
 #pragma omp parallel for schedule(static)

@@ -45,10 +45,17 @@ class IceAge {
     double grounding_m;  ///< deepest sea that ice stands in
     int rounds;
   };
+  /// The climate of the cells that ice may come to, which are few.
+  struct Cold {
+    std::vector<Index> cells;  ///< ascending
+    std::vector<float> sea_level_temperature_c, range_k, precipitation_mm_yr;
+  };
   void settle(const LandClimate& climate, const Age& age, std::span<const float> elevation_m);
   void sort_ground(const LandClimate& climate, const Age& age, std::span<const float> elevation_m);
-  void balance(const LandClimate& climate, const Age& age, std::span<const float> elevation_m,
+  [[nodiscard]] Cold cold_cells(const LandClimate& climate) const;
+  void balance(const Cold& cold, const Age& age, std::span<const float> elevation_m,
                std::span<float> balance_m_yr) const;
+  void melt_away();
   void weigh(std::span<const float> elevation_m);
   [[nodiscard]] double cooling_k(const Age& age, int row) const;
 
@@ -57,8 +64,11 @@ class IceAge {
   SnowLaw snow_;
   GlacialErosion erosion_;
   double k_m_;
-  std::vector<IceGround> next_, ground_;  ///< what will be covered, and what the flux stands on
-  std::vector<float> bed_m_, sunk_m_, thickness_m_;
+  std::vector<IceGround> next_;  ///< what will be covered; empty before the first ice
+  std::vector<float> sunk_m_, thickness_m_;
+  // While ice works, and what its sums are told from afterwards:
+  std::vector<IceGround> ground_;  ///< what the flux stands on
+  std::vector<float> bed_m_;
   IceSurface surface_;
   IceFlux flux_;
 };

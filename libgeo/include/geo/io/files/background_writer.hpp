@@ -1,6 +1,7 @@
 #pragma once
 
 #include <condition_variable>
+#include <cstddef>
 #include <deque>
 #include <exception>
 #include <functional>
@@ -22,7 +23,10 @@ class BackgroundWriter {
   /// Appends a job. Throws the error of an earlier one.
   void submit(std::function<void()> job);
   /// Returns when all jobs are done. Throws the first error.
-  void wait();
+  void wait() { wait_until_left(0); }
+  /// Returns when no more than so many jobs are left, the one that runs included. Throws the first
+  /// error.
+  void wait_until_left(std::size_t most);
   /// Finishes the job that runs now and drops the rest. No job may be submitted afterwards.
   void stop();
 

@@ -39,9 +39,11 @@ struct Snapshot {
 
 /// Writes a snapshot as NetCDF-4 with CF-1.10 metadata: temporary name, flush, rename. Shuffled,
 /// chunked, deflated; at level 1, elevation hardly shrinks further however long one tries, level 0
-/// stores. Throws IoError (which names the path and the reason).
+/// stores. Calls `written`, if any, as soon as a field of the snapshot is read no more, which may
+/// then leave memory. Throws IoError (which names the path and the reason).
 void write_netcdf(const std::filesystem::path& path, const Snapshot& snapshot,
-                  const Provenance& provenance, int compression = 1);
+                  const Provenance& provenance, int compression = 1,
+                  const std::function<void(const FieldSpec&)>& written = {});
 /// Writes a snapshot as VTK XML ImageData: cell data, appended raw; deflated at levels 1 to 9, as
 /// it lies in memory at 0. Temporary name, flush, rename.
 void write_vti(const std::filesystem::path& path, const Snapshot& snapshot,

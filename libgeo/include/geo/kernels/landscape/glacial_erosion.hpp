@@ -1,8 +1,8 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
+#include "geo/core/cell_set.hpp"
 #include "geo/core/grid.hpp"
 #include "geo/kernels/landscape/plastic_ice.hpp"
 
@@ -41,11 +41,11 @@ struct GlacialErosion {
 /// `elevation_m`: rock, one value per cell, in and out. `sunk_m`: by how much the load holds the
 /// bed below it, or empty. `flux`, `surface`: of that bed. Returns the volume that each cell lets
 /// out to its water, m3. Cost: linear. One thread; the same bits always.
-[[nodiscard]] std::vector<double> erode_under_ice(const Grid& grid, const GlacialErosion& law,
-                                                  double time_yr, const IceSurface& surface,
-                                                  const IceFlux& flux,
-                                                  std::span<const IceGround> ground,
-                                                  std::span<const float> sunk_m,
-                                                  std::span<float> elevation_m);
+[[nodiscard]] SparseValues<double> erode_under_ice(const Grid& grid, const GlacialErosion& law,
+                                                   double time_yr, const IceSurface& surface,
+                                                   const IceFlux& flux,
+                                                   std::span<const IceGround> ground,
+                                                   std::span<const float> sunk_m,
+                                                   std::span<float> elevation_m);
 
 }  // namespace geo

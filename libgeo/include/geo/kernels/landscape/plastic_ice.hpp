@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "geo/core/cell_set.hpp"
 #include "geo/core/grid.hpp"
 
 namespace geo {
@@ -16,11 +17,12 @@ enum class IceGround : std::uint8_t {
   iced,
 };
 
-/// Surface of ice, and of the ground between, with the order in which it rises.
+/// Surface of ice, and of the ground between, with the order in which it rises. It is known where
+/// cells are not `away` and beside those: mostly a small part of a planet, and so is what it takes.
 struct IceSurface {
-  std::vector<float> height_m;  ///< bed plus ice; on bare ground that which drains to the margin
-  std::vector<Index> order;     ///< cells that are not `away`, lowest first
-  std::vector<Index> lowest;    ///< neighbour that each cell was reached from; itself where away
+  SparseValues<float> height_m;  ///< bed plus ice; on bare ground that which drains to the margin
+  std::vector<Index> order;      ///< cells that are not `away`, lowest first
+  SparseValues<Index> lowest;    ///< neighbour that each cell was reached from; itself where away
 };
 
 /// Perfectly plastic ice: its base bears the stress τ everywhere (Nye 1951; Reeh 1982), so that its
@@ -35,17 +37,17 @@ struct IceSurface {
 /// as it does not drain to one. On a world without a margin it is its lowest cell.
 ///
 /// `bed_m`, `ground`: one value per cell. `k_m` > 0, m. Throws InputError where shapes do not fit
-/// or k is not positive and finite. Cost: n log n in the cells that are not away. One thread; the
-/// same bits always.
+/// or k is not positive and finite. Cost: n log n in the cells that are not away, for which it
+/// takes memory. One thread; the same bits always.
 [[nodiscard]] IceSurface plastic_ice_surface(const Grid& grid, double k_m,
                                              std::span<const float> bed_m,
                                              std::span<const IceGround> ground);
 
-/// Ice that passes through the cells of a steady glacier.
+/// Ice that passes through the cells of a steady glacier; none beyond the cells of its surface.
 struct IceFlux {
-  std::vector<double> through_m3_yr;  ///< what a cell gets, snow of its own included
-  std::vector<float> share;           ///< of the cell that ice covers
-  std::vector<float> melted;          ///< share of the ice that ends in the cell
+  SparseValues<double> through_m3_yr;  ///< what a cell gets, snow of its own included
+  SparseValues<float> share;           ///< of the cell that ice covers
+  SparseValues<float> melted;          ///< share of the ice that ends in the cell
   double accumulated_m3_yr = 0.0, melted_m3_yr = 0.0, calved_m3_yr = 0.0;
 };
 
@@ -60,20 +62,20 @@ class IceOutflow {
   template <class Visit>
   void visit(Index cell, Visit&& visit) const {
     const int i = grid_.column(cell), j = grid_.row(cell);
-    const float s = surface_.height_m[cell];
+    const float s = surface_.height_m.of(cell);
     const auto& distance = grid_.distances_m(j);
     Index to[5];
     double weight[5];
     int count = 0;
     double sum = 0.0;
     const auto add = [&](Index neighbour, double face_m, double distance_m) {
-      const double w = face_m * (s - surface_.height_m[neighbour]) / distance_m;
+      const double w = face_m * (s - surface_.height_m.of(neighbour)) / distance_m;
       if (!(w > 0.0)) return;
       to[count] = neighbour, weight[count] = w, ++count;
       sum += w;
     };
     bool straight = false;
-    const Index lowest = surface_.lowest[cell];
+    const Index lowest = surface_.lowest.of(cell);
     for (const int k : {kNorth, kEast, kSouth, kWest}) {
       const Index neighbour = grid_.neighbour(i, j, k);
       if (neighbour == kNoCell) continue;

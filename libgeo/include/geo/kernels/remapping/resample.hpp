@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -41,5 +42,39 @@ Raster metric_raster_of(const Grid& grid);
 void resample_raster(const Raster& source_raster, std::span<const float> source,
                      const Raster& target_raster, std::span<float> target,
                      const Ellipsoid& figure = {});
+
+/// The same row by row, for who needs few rows at a time, and several fields between the same
+/// rasters. What is done once for all fields is done when it is made. Throws InputError if the
+/// target reaches beyond the source.
+class RowResampling {
+ public:
+  RowResampling(const Raster& source, const Raster& target, const Ellipsoid& figure = {});
+
+  [[nodiscard]] int rows() const noexcept { return static_cast<int>(row_shares_.size()); }
+  [[nodiscard]] int columns() const noexcept { return static_cast<int>(columns_.size()); }
+  /// Values of scratch that `row` needs, one thread's.
+  [[nodiscard]] std::size_t scratch_size() const noexcept { return source_columns_; }
+  /// Row j of the target into `out`, a value for each column. `source`: all of its values.
+  void row(std::span<const float> source, int j, std::span<float> out,
+           std::span<double> scratch) const;
+
+ private:
+  /// Which cells of a source axis make up one of the target's, and their shares, which add up to
+  /// one. Cells are consecutive; those of a column go on at 0 where the source ends.
+  struct Share {
+    int first = 0, count = 0;
+    std::size_t weights = 0;  ///< where they begin in `weights_`
+  };
+  /// Share of the mean of a polar row in one that lies beyond it.
+  struct PoleBlend {
+    double share = 0.0;
+    int row = 0;
+  };
+
+  std::size_t source_columns_;
+  std::vector<Share> row_shares_, columns_;
+  std::vector<PoleBlend> poles_;
+  std::vector<double> weights_;
+};
 
 }  // namespace geo

@@ -1,19 +1,41 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "geo/kernels/remapping/resample.hpp"
 #include "geo/kernels/water/flow_graph.hpp"
 #include "geo/stages/erosion/erosion.hpp"
 
 namespace geo {
 
-/// What falls on a planet and what the air would take, one value per cell.
+/// What falls on a planet and what the air would take: one value per cell, or, where the air is
+/// known on a coarser grid, per cell of that, and how rows of the planet lie between them.
 struct LandClimate {
   std::vector<float> precipitation_mm_yr, potential_mm_yr;
-  std::vector<float> sea_level_temperature_c;  ///< annual mean, brought down to the sea
-  std::vector<float> range_k;                  ///< warmest less coldest month
+  std::vector<float> sea_level_temperature_c;      ///< annual mean, brought down to the sea
+  std::vector<float> range_k;                      ///< warmest less coldest month
+  std::shared_ptr<const RowResampling> between{};  ///< null: values are those of the cells
+
+  /// What one thread reads the rows of a field with.
+  class Reader {
+   public:
+    Reader(const LandClimate& climate, const Grid& grid, const std::vector<float>& field);
+    /// Values of row j of the planet; they stay until the next are read.
+    std::span<const float> row(int j);
+
+   private:
+    const RowResampling* between_;
+    int nx_;
+    std::span<const float> field_;
+    std::vector<float> values_;
+    std::vector<double> scratch_;
+  };
+  /// A field on all cells of the planet.
+  [[nodiscard]] std::vector<float> on_cells(const std::vector<float>& field,
+                                            const Grid& grid) const;
 };
 
 /// The drainage of a surface: receivers, their order, the area that drains through each

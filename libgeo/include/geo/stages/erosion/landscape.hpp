@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "geo/core/numeric.hpp"
+#include "geo/core/release.hpp"
 #include "geo/kernels/landscape/deltas.hpp"
 #include "geo/kernels/landscape/marine_deposition.hpp"
 #include "geo/kernels/landscape/river_sediment.hpp"
@@ -44,8 +45,17 @@ struct SedimentRecord {
   std::vector<float> carried_m3_yr;
 };
 
-/// Ice that changes elevation, m: returns the rock that it lets out to the water of each cell, m3.
-using IceWork = std::function<std::vector<double>(std::span<float> elevation_m)>;
+/// Ice that changes elevation, m, from what it was `before_m`, which stays: returns the rock that
+/// it lets out to the water of each cell, m3.
+using IceWork = std::function<std::vector<double>(std::span<float> elevation_m,
+                                                  std::span<const float> before_m)>;
+
+/// Called within a step that water is routed after, as soon as the step reads no more of that part
+/// of its drainage: who holds it may let it go. Both may be empty.
+struct DrainageDone {
+  std::function<void()> area{};   ///< drained area, and what is flooded
+  std::function<void()> graph{};  ///< receivers and their order
+};
 
 /// One run of the landscape: rivers, hillslopes and rebound work on a surface, step by step, along
 /// the drainage that each step is given. V as in core/numeric.hpp; derivatives are those with the
@@ -97,12 +107,15 @@ class Landscape {
     breach_sills(grid_, drainage.graph, z_);
     book_lowering();
     carry(drainage.graph);
+    release(before_);
   }
 
   /// `builds_deltas`: the step ends at a time when the sea has stood still for a while. `ice`, if
-  /// any, works after the rivers; where it lets the sea in, the coast moves.
-  void step(const Drainage& drainage, bool builds_deltas = false, const IceWork& ice = {}) {
+  /// any, works after the rivers; where it lets the sea in, the coast moves. `done`: see there.
+  void step(const Drainage& drainage, bool builds_deltas = false, const IceWork& ice = {},
+            const DrainageDone& done = {}) {
     builds_deltas_ = builds_deltas;
+    release(sediment_.carried_m3_yr);
     raise();
     before_.assign(z_.begin(), z_.end());
     const std::span<const double> area_m2(drainage.area_m2);
@@ -112,12 +125,14 @@ class Landscape {
     } else {
       incise(grid_, drainage.graph, area_m2, erodibility_, law(), z_);
     }
+    if (done.area) done.area();
     creep();
     hold_outlets();
     widen_valleys<V>(grid_, before_, outlets_, z_);
     book_lowering();
-    carry(drainage.graph, ice);
+    carry(drainage.graph, ice, done.graph);
     if (p_.rebound_fraction > 0.0) rebound();
+    release(before_);
   }
 
   /// Rock that sinks under a load that is none of its own, m per cell, as a part of the rebound.
@@ -125,6 +140,7 @@ class Landscape {
     before_.assign(z_.begin(), z_.end());
     on_land([&](Index cell) { z_[cell] -= V(by_m[cell]); });
     book_land(rock_.rebound, [&](Index cell) { return Number(-Number(by_m[cell])); });
+    release(before_);
   }
 
   /// Blueprint 4.6: part of the way back to the isostatic elevation.
@@ -137,6 +153,7 @@ class Landscape {
       return Number(Number(active_(p_.relaxation_fraction)) *
                     (Number(initial_[cell]) - Number(before_[cell])));
     });
+    release(before_);
   }
 
   /// Lets `reshape` change elevation at will. Returns whether it did; land and sea are then to be
@@ -144,9 +161,10 @@ class Landscape {
   template <class Reshape>
   bool book_reshaping(Reshape&& reshape) {
     before_.assign(z_.begin(), z_.end());
-    if (!reshape()) return false;
-    rock_.reshaped += volume_since_before();
-    return true;
+    const bool did = reshape();
+    if (did) rock_.reshaped += volume_since_before();
+    release(before_);
+    return did;
   }
   /// Seas that land cuts off (landlocked_cells): rivers fill them to the brim.
   void set_landlocked(std::vector<std::uint8_t> cells) { landlocked_ = std::move(cells); }
@@ -318,24 +336,33 @@ class Landscape {
       on_land([&](Index cell) { crust_change_m_[cell] += Number(z_[cell]) - before_[cell]; });
     }
   }
-  /// Takes what this step lowered down the rivers and lays it at sea.
-  void carry(const FlowGraph& graph, const IceWork& ice = {}) {
+  /// Takes what this step lowered down the rivers and lays it at sea. `graph_done`: as in
+  /// DrainageDone.
+  void carry(const FlowGraph& graph, const IceWork& ice = {},
+             const std::function<void()>& graph_done = {}) {
+    if constexpr (kRecords) {
+      if (ice) return let_ice_work(graph, ice, graph_done);
+    }
     std::vector<Number> volume_m3;
     if (deposits()) {
-      volume_m3 =
-          sediment_outflow<V>(grid_, graph, std::span<const V>(before_), std::span<const V>(z_));
-      record_on_land(volume_m3);
+      volume_m3 = outflow(graph, before_, z_);
+      record_layers();
+      record_carried(volume_m3);
     }
-    if constexpr (kRecords) {
-      if (ice) return let_ice_work(graph, ice, volume_m3);
-    }
+    if (graph_done) graph_done();
     if (deposits()) spread_at_sea(volume_m3);
   }
-  /// What ice takes and what it lays down; what it lets out goes down the rivers with
-  /// `volume_m3`, which theirs have brought.
-  void let_ice_work(const FlowGraph& graph, const IceWork& ice, std::vector<double>& volume_m3) {
-    const std::vector<V> before_rivers = std::exchange(before_, {z_.begin(), z_.end()});
-    std::vector<double> let_out_m3 = ice(z_);
+  [[nodiscard]] std::vector<Number> outflow(const FlowGraph& graph, std::span<const V> before_m,
+                                            std::span<const V> after_m) const {
+    return sediment_outflow<V>(grid_, graph, before_m, after_m);
+  }
+  /// What rivers bring, what ice takes and what it lays down; what it lets out goes down the rivers
+  /// with theirs.
+  void let_ice_work(const FlowGraph& graph, const IceWork& ice,
+                    const std::function<void()>& graph_done) {
+    if (deposits()) record_layers();
+    std::vector<V> before_rivers = std::exchange(before_, {z_.begin(), z_.end()});
+    std::vector<double> let_out_m3 = ice(z_, before_);
     rock_.eroded -= volume_since_before();
 #pragma omp parallel for schedule(static)
     for (Index cell = 0; cell < grid_.size(); ++cell) {
@@ -347,25 +374,29 @@ class Landscape {
         const Index to = graph.receiver[cell];
         if (to != cell) let_out_m3[to] += let_out_m3[cell];
       }
+      std::vector<double> volume_m3 = outflow(graph, before_rivers, before_);
+      if (graph_done) graph_done();
 #pragma omp parallel for schedule(static)
       for (Index cell = 0; cell < grid_.size(); ++cell) volume_m3[cell] += let_out_m3[cell];
-      record_on_land(volume_m3);
+      release(let_out_m3);
+      record_layers();
+      record_carried(volume_m3);
       before_.assign(z_.begin(), z_.end());
       spread_at_sea(volume_m3);
     }
     outlets_ = find_outlets(grid_, z_);
-    before_ = before_rivers;
+    before_ = std::move(before_rivers);
   }
   /// Lays at sea what has come to its shores.
   void spread_at_sea(std::vector<Number>& volume_m3) {
     std::vector<std::uint8_t> sea(grid_.size());
-    std::vector<Number> room_m(grid_.size(), Number(0.0)), supply_m(grid_.size(), Number(0.0));
     const Number wave_base_m = active_(p_.wave_base_m);
 #pragma omp parallel for schedule(static)
     for (Index cell = 0; cell < grid_.size(); ++cell) {
       sea[cell] = outlets_[cell] != 0 && value_of(z_[cell]) < 0.0 ? 1 : 0;
     }
     build_at_mouths(sea, volume_m3);
+    std::vector<Number> room_m(grid_.size(), Number(0.0)), supply_m(grid_.size(), Number(0.0));
 #pragma omp parallel for schedule(static)
     for (Index cell = 0; cell < grid_.size(); ++cell) {
       if (sea[cell] == 0) continue;
@@ -378,8 +409,9 @@ class Landscape {
                  ? volume_m3[cell] / grid_.area_m2(grid_.row(cell))
                  : Number(0.0);
     });
-    volume_m3 = {};
+    release(volume_m3);
     lay_at_sea<Number>(grid_, sea, 1e3 * active_(p_.dispersal_km), room_m, supply_m);
+    release(room_m);
     std::vector<V> laid_m(grid_.size(), V(0.0F));
 #pragma omp parallel for schedule(static)
     for (Index cell = 0; cell < grid_.size(); ++cell) {
@@ -404,18 +436,19 @@ class Landscape {
     if constexpr (kRecords) {
       if (!builds_deltas_ || p_.highstand_yr <= 0.0) return;
       const double share = std::min(1.0, p_.highstand_yr / p_.time_step_yr);
-      std::vector<double> brought_m3(grid_.size());
+      const auto brought_m3 = [&](Index cell) {
+        return sea[cell] != 0 ? std::max(0.0, share * volume_m3[cell]) : 0.0;
+      };
       std::vector<float> laid_m(grid_.size());
-      for (Index cell = 0; cell < grid_.size(); ++cell) {
-        if (sea[cell] != 0) brought_m3[cell] = std::max(0.0, share * volume_m3[cell]);
-      }
-      std::vector<double> left_m3(brought_m3);
+      std::vector<double> left_m3(grid_.size());
+      for (Index cell = 0; cell < grid_.size(); ++cell) left_m3[cell] = brought_m3(cell);
       for (const auto& [cell, mouth] : build_deltas(grid_, {}, sea, z_, left_m3, laid_m)) {
         if (mouth != kNoCell) sediment_.carried_m3_yr[mouth] += sediment_.carried_m3_yr[cell];
       }
       for (Index cell = 0; cell < grid_.size(); ++cell) {
-        volume_m3[cell] -= brought_m3[cell] - left_m3[cell];
+        volume_m3[cell] -= brought_m3(cell) - left_m3[cell];
       }
+      release(left_m3);
       for (Index cell = 0; cell < grid_.size(); ++cell) {
         if (laid_m[cell] == 0.0F) continue;
         const float floor = z_[cell];
@@ -427,25 +460,30 @@ class Landscape {
       record_at_sea(laid_m);
     }
   }
-  void record_on_land(const std::vector<Number>& volume_m3) {
+  /// What has been laid on land and taken from it since `before_`.
+  void record_layers() {
     if constexpr (kRecords) {
-      sediment_.carried_m3_yr.resize(grid_.size());
       on_land([&](Index cell) {
         const float rise_m = z_[cell] - before_[cell];
         float& thickness_m = sediment_.thickness_m[cell];
         thickness_m = std::max(0.0F, thickness_m + rise_m);
         sediment_.laid_m[cell] += std::max(0.0F, rise_m);
       });
+    }
+    rock_.laid_on_land += area_sum<Number>(grid_, [&](Index c) {
+      return outlets_[c] == 0 ? greater(Number(Number(z_[c]) - Number(before_[c])), Number(0.0))
+                              : Number(0.0);
+    });
+  }
+  void record_carried(const std::vector<Number>& volume_m3) {
+    if constexpr (kRecords) {
+      sediment_.carried_m3_yr.resize(grid_.size());
 #pragma omp parallel for schedule(static)
       for (Index cell = 0; cell < grid_.size(); ++cell) {
         sediment_.carried_m3_yr[cell] =
             static_cast<float>(std::max(0.0, volume_m3[cell]) / p_.time_step_yr);
       }
     }
-    rock_.laid_on_land += area_sum<Number>(grid_, [&](Index c) {
-      return outlets_[c] == 0 ? greater(Number(Number(z_[c]) - Number(before_[c])), Number(0.0))
-                              : Number(0.0);
-    });
   }
   void record_at_sea(const std::vector<V>& laid_m) {
     if constexpr (kRecords) {

@@ -19,6 +19,8 @@ struct Surroundings {
   std::function<IceWork(std::int64_t step)> ice{};
   /// Called after each step.
   std::function<void(std::int64_t step)> after{};
+  /// See DrainageDone; `route` is asked again before the next step, or never.
+  DrainageDone done{};
 };
 
 /// The steps of a landscape, for every planet, island and fit. Water is routed again every
@@ -35,7 +37,9 @@ void wear_down(const ErosionParameters& p, const Surroundings& around, Landscape
       landscape.breach(*drainage);
     }
     const IceWork ice = around.ice ? around.ice(step) : IceWork{};
-    landscape.step(*drainage, /*builds_deltas=*/step + 1 == p.steps, ice);
+    const bool routed_again = ice || step + 1 == p.steps || (step + 1) % p.route_every == 0;
+    landscape.step(*drainage, /*builds_deltas=*/step + 1 == p.steps, ice,
+                   routed_again ? around.done : DrainageDone{});
     coast_moved = static_cast<bool>(ice);
     if (around.after) around.after(step);
   }
