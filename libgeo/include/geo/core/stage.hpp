@@ -59,7 +59,8 @@ struct Hypsography {
   std::vector<double> fraction, elevation_m;
 };
 
-struct ExemplarLibrary;  // kernels/exemplars/exemplar.hpp
+struct ExemplarLibrary;      // kernels/exemplars/exemplar.hpp
+struct PlateReconstruction;  // kernels/plates/plate_reconstruction.hpp
 
 /// What a stage takes: processor time of one thread of the machine that costs were measured on
 /// (an Intel Xeon at 2.5 GHz, planets of 128 x 64 to 1024 x 512 cells), and memory.
@@ -78,6 +79,8 @@ struct Context {
   /// Initial conditions of a history, plates and elevation; empty unless given.
   std::vector<PlateOutline> plates;
   std::shared_ptr<const GivenElevation> initial_elevation;
+  /// Finite rotations that drive those plates, and plates that appear later; empty unless given.
+  std::shared_ptr<const PlateReconstruction> reconstruction;
   /// What an island's terrain is made like, and a planet's, where exemplars are asked for; empty:
   /// stages grow their own.
   std::shared_ptr<const ExemplarLibrary> exemplars, planet_exemplars;

@@ -87,12 +87,19 @@ std::vector<Parameter> fields_rows(RunSettings& s) {
            "davidson2013"),
       text("fields.plates", s.plates,
            "plates from which drift begins: earth, a GeoJSON file of polygons with their Euler "
-           "poles, or FILE[:VARIABLE] with the number of the plate at each place, with "
-           "fields.plate_rotations; empty draws plates.count of them",
+           "poles, or, with fields.plate_rotations, static polygons of GPlates as GeoJSON or "
+           "FILE[:VARIABLE] with the number of the plate at each place; empty draws plates.count "
+           "of them",
            "bird2003"),
       text("fields.plate_rotations", s.plate_rotations,
            "CSV file with the motions of plates that fields.plates gives by number: plate_id, "
-           "pole_latitude_deg, pole_longitude_deg, rate_deg_myr; the last row of a plate counts",
+           "pole_latitude_deg, pole_longitude_deg, rate_deg_myr; the last row of a plate counts. "
+           "Or a file of GPlates that ends in .rot, whose finite rotations drive the static "
+           "polygons of fields.plates through time",
+           "design"),
+      real("fields.rotations_age_myr", s.rotations_from_ma, "Myr", 0.0, 1e5,
+           "age in such a file at which the drift begins; 0: plates.sphere.time_myr before its "
+           "youngest rotation",
            "design"),
       renamed(text("fields.initial_elevation", s.initial_elevation,
                    "FILE[:VARIABLE] of a planet's elevation from which drift begins where "

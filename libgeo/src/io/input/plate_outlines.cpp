@@ -6,9 +6,11 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <optional>
 
 #include "geo/core/error.hpp"
+#include "geo/core/place.hpp"
 #include "geo/io/config/config.hpp"
 #include "geo/io/files/embedded_data.hpp"
 #include "geo/kernels/plates/region_outline.hpp"
@@ -18,6 +20,29 @@ namespace {
 
 using Json = nlohmann::json;
 
+/// A ring whose edges are arcs of great circles, as one of short edges: longitudes go on from that
+/// of the place before.
+std::vector<Centre> along_great_circles(const std::vector<Centre>& ring) {
+  constexpr double kLongest = std::numbers::pi / 180.0;
+  std::vector<Centre> line;
+  for (std::size_t k = 0; k < ring.size(); ++k) {
+    line.push_back(ring[k]);
+    if (k + 1 == ring.size()) break;
+    const Vector3 from = unit_vector_of(ring[k]), to = unit_vector_of(ring[k + 1]);
+    const double angle = angle_between(from, to);
+    const auto parts = static_cast<int>(std::ceil(angle / kLongest));
+    for (int part = 1; part < parts; ++part) {
+      const double share = static_cast<double>(part) / parts;
+      Centre at = place_of(normalised(
+          add(scaled(from, std::sin((1.0 - share) * angle)), to, std::sin(share * angle))));
+      const double before_deg = line.back().longitude_deg;
+      at.longitude_deg = before_deg + std::remainder(at.longitude_deg - before_deg, 360.0);
+      line.push_back(at);
+    }
+  }
+  return line;
+}
+
 /// One feature while it is read; errors say where.
 class Feature {
  public:
@@ -26,12 +51,7 @@ class Feature {
     if (const auto found = json_.find("properties"); found != json_.end() && found->is_object()) {
       properties_ = &*found;
     }
-    if (const auto given = text("name", "Name", "PlateName", "Code")) {
-      name_ = *given;
-      where_ += fmt::format(" ({})", name_);
-    } else {
-      name_ = where_;
-    }
+    take_name(text("name", "Name", "PlateName", "Code"));
   }
 
   [[nodiscard]] PlateOutline outline() const {
@@ -39,8 +59,41 @@ class Feature {
     set_motion(plate);
     return plate;
   }
+  /// The same as GPlates writes it.
+  [[nodiscard]] DatedOutline dated() {
+    if (name_ == where_) take_name(text("NAME"));
+    const auto plate = number("PLATEID1", "PLATEID1");
+    if (!plate) refuse("needs the property PLATEID1, the number of its plate in the rotations");
+    constexpr double kMost = 999999999.0;
+    if (*plate != std::round(*plate) || *plate < 0.0 || *plate > kMost) {
+      refuse(fmt::format("PLATEID1 = {:g}: must be a whole number, 0 or more", *plate));
+    }
+    checks_crossings_ = false;
+    DatedOutline out{.plate = static_cast<int>(*plate),
+                     .where = where_,
+                     .outline = {.name = name_, .rings = {}, .pole = {}, .rate_deg_myr = 0.0}};
+    for (const auto& ring : rings()) out.outline.rings.push_back(along_great_circles(ring));
+    if (const auto from = number("FROMAGE", "FROMAGE"); from && *from < kAlways_ma) {
+      out.from_ma = *from;
+    }
+    if (const auto to = number("TOAGE", "TOAGE"); to && *to > -kAlways_ma) out.to_ma = *to;
+    if (out.from_ma < out.to_ma) {
+      refuse(fmt::format("FROMAGE = {:g} is younger than TOAGE = {:g}", out.from_ma, out.to_ma));
+    }
+    return out;
+  }
 
  private:
+  static constexpr double kAlways_ma = 999.0;  // GPlates' word for the distant past and future
+
+  void take_name(const std::optional<std::string>& given) {
+    if (given) {
+      name_ = *given;
+      where_ += fmt::format(" ({})", name_);
+    } else {
+      name_ = where_;
+    }
+  }
   [[noreturn]] void refuse(const std::string& what) const {
     throw InputError(fmt::format("{}: {}", where_, what));
   }
@@ -142,6 +195,7 @@ class Feature {
     if (ring.size() < 4 || !closed) {
       refuse("a ring must be four positions or more, the last one as the first");
     }
+    if (!checks_crossings_) return ring;
     if (const auto crossing = first_crossing(ring)) {
       refuse(fmt::format("a ring crosses itself: its edges behind positions {} and {} do",
                          crossing->first + 1, crossing->second + 1));
@@ -151,6 +205,7 @@ class Feature {
 
   const Json& json_;
   std::string where_, name_;
+  bool checks_crossings_ = true;
   const Json* properties_ = nullptr;
 };
 
@@ -180,17 +235,24 @@ void check_reference_system(const Json& json, const std::string& source) {
                   source, name.empty() ? "unknown" : name));
 }
 
-std::vector<PlateOutline> plates_of(const std::string& text, const std::string& source) {
+/// The features of a collection, each handed over with where it is: f(feature, where).
+template <class F>
+void for_each_feature(const std::string& text, const std::string& source, F f) {
   const Json json = parse(text, source);
   const auto features = json.is_object() ? json.find("features") : json.end();
   if (features == json.end() || !features->is_array()) {
     throw InputError(fmt::format("{}: must be a GeoJSON FeatureCollection", source));
   }
   check_reference_system(json, source);
-  std::vector<PlateOutline> plates;
   for (std::size_t k = 0; k < features->size(); ++k) {
-    PlateOutline plate =
-        Feature((*features)[k], fmt::format("{}: feature {}", source, k + 1)).outline();
+    f(Feature((*features)[k], fmt::format("{}: feature {}", source, k + 1)));
+  }
+}
+
+std::vector<PlateOutline> plates_of(const std::string& text, const std::string& source) {
+  std::vector<PlateOutline> plates;
+  for_each_feature(text, source, [&](const Feature& feature) {
+    PlateOutline plate = feature.outline();
     const auto known = std::find_if(plates.begin(), plates.end(), [&](const PlateOutline& other) {
       return other.name == plate.name;
     });
@@ -199,7 +261,7 @@ std::vector<PlateOutline> plates_of(const std::string& text, const std::string& 
     } else {
       known->rings.insert(known->rings.end(), plate.rings.begin(), plate.rings.end());
     }
-  }
+  });
   if (plates.size() < 2 || plates.size() > kMostPlates) {
     throw InputError(fmt::format("{}: has {} plate{}: must have 2 to {}", source, plates.size(),
                                  plates.size() == 1 ? "" : "s", kMostPlates));
@@ -207,18 +269,30 @@ std::vector<PlateOutline> plates_of(const std::string& text, const std::string& 
   return plates;
 }
 
+std::string text_of(const std::string& file, std::string_view what) {
+  if (std::filesystem::exists(file)) return read_text(file);
+  throw InputError(fmt::format("fields.plates: {}: no such file; must be {}", file, what));
+}
+
 }  // namespace
+
+bool DatedOutline::is_valid_at(double time_ma) const {
+  constexpr double kSameTime_myr = 1e-6;
+  return from_ma >= time_ma - kSameTime_myr && to_ma <= time_ma + kSameTime_myr;
+}
+
+std::vector<DatedOutline> read_dated_outlines(const std::string& file) {
+  std::vector<DatedOutline> outlines;
+  for_each_feature(text_of(file, "a GeoJSON file of polygons"), file,
+                   [&](Feature feature) { outlines.push_back(feature.dated()); });
+  return outlines;
+}
 
 std::vector<PlateOutline> read_plate_outlines(const std::string& name_or_file) {
   if (name_or_file == "earth") {
     return plates_of(std::string(embedded_file("plates/earth.geojson")), "earth");
   }
-  if (!std::filesystem::exists(name_or_file)) {
-    throw InputError(
-        fmt::format("fields.plates: {}: no such file; must be earth or a GeoJSON file of plates",
-                    name_or_file));
-  }
-  return plates_of(read_text(name_or_file), name_or_file);
+  return plates_of(text_of(name_or_file, "earth or a GeoJSON file of plates"), name_or_file);
 }
 
 }  // namespace geo::io

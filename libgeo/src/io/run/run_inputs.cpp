@@ -14,6 +14,7 @@
 #include "geo/io/input/hypsography.hpp"
 #include "geo/io/input/plate_outlines.hpp"
 #include "geo/io/input/plate_raster.hpp"
+#include "geo/io/input/reconstruction.hpp"
 #include "geo/io/input/table.hpp"
 #include "geo/io/netcdf/stage_file.hpp"
 #include "geo/kernels/landscape/impact_crater.hpp"
@@ -249,13 +250,41 @@ class Reader {
     }
   }
 
-  /// Outlines with their motions, or a raster of numbers and a table of motions.
+  /// Static polygons and their finite rotations.
+  void read_reconstructed_plates(bool has_polygons) {
+    const std::string& rotations = settings_.plate_rotations;
+    if (!has_polygons) {
+      throw ConfigurationError(
+          fmt::format("fields.plate_rotations = {}: rotations of GPlates need fields.plates, "
+                      "polygons of GPlates in a file that ends in .geojson or .json",
+                      rotations));
+    }
+    const std::string key = fmt::format("{}.sphere.time_myr", run_.name_of(0));
+    const Parameter* time_myr = find_parameter(run_.parameters, key);
+    if (time_myr == nullptr) throw Bug("a run without " + key + " begins with plates");
+    GivenReconstruction given =
+        read_reconstruction(settings_.plates, rotations, settings_.rotations_from_ma,
+                            std::get<double>(time_myr->value()));
+    inputs_.plates = std::move(given.plates);
+    inputs_.reconstruction = std::make_shared<const PlateReconstruction>(std::move(given.motion));
+  }
+
+  /// Outlines with their motions, with their finite rotations, or a raster of numbers and a table
+  /// of motions.
   void read_plates() {
     const std::string& given = settings_.plates;
     const std::string& rotations = settings_.plate_rotations;
     const auto [file, variable] = split_dem(given);
     const std::string ending = file.extension();
     const bool has_outlines = given == "earth" || ending == ".geojson" || ending == ".json";
+    const bool are_finite = std::filesystem::path(rotations).extension() == ".rot";
+    if (are_finite) return read_reconstructed_plates(has_outlines && given != "earth");
+    if (settings_.rotations_from_ma > 0.0) {
+      throw ConfigurationError(
+          fmt::format("fields.rotations_age_myr = {:g}: is for rotations of GPlates, and "
+                      "fields.plate_rotations is {}: must be 0",
+                      settings_.rotations_from_ma, rotations.empty() ? "empty" : rotations));
+    }
     if (!rotations.empty() && (given.empty() || has_outlines)) {
       throw ConfigurationError(
           fmt::format("fields.plate_rotations = {}: is for plates by number, and fields.plates is "
@@ -339,6 +368,7 @@ Context context_of(const RunInputs& inputs, const RunConfiguration& run, const R
   context.seed = static_cast<std::uint64_t>(run.settings.seed);
   context.hypsography = hypsography_of(run);
   context.plates = inputs.plates;
+  context.reconstruction = inputs.reconstruction;
   context.initial_elevation = inputs.initial_elevation;
   context.exemplars = inputs.exemplars;
   context.planet_exemplars = inputs.planet_exemplars;

@@ -129,8 +129,9 @@ std::vector<std::string> given_fields_of(const RunConfiguration& run, int positi
     keys.insert(keys.end(), {"fields.hypsography", "fields.hypsography_ocean"});
   }
   if (position == 0) {
-    keys.insert(keys.end(), {"fields.plates", "fields.plate_rotations", "fields.initial_elevation",
-                             "fields.initial_age", "fields.start_frame"});
+    keys.insert(keys.end(),
+                {"fields.plates", "fields.plate_rotations", "fields.rotations_age_myr",
+                 "fields.initial_elevation", "fields.initial_age", "fields.start_frame"});
   }
   if (has_choice(stage, fmt::format("{}.detail", info.name), "exemplars")) {
     keys.emplace_back("fields.exemplars");

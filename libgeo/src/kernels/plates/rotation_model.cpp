@@ -4,8 +4,6 @@
 #include <cmath>
 #include <string>
 
-#include "geo/core/error.hpp"
-
 namespace geo {
 namespace {
 
@@ -36,6 +34,13 @@ Vector3 rotation_vector(const Quaternion& rotation) {
   const double sign = rotation.w < 0.0 ? -1.0 : 1.0;
   return scaled(rotation.v, 2.0 * sign * std::atan2(sine, sign * rotation.w) / sine);
 }
+
+CircularPlates::CircularPlates(int plate_number, double at_ma)
+    : InputError("rotations of plate " + std::to_string(plate_number) +
+                 ": its circuit of fixed plates leads back to itself at " + std::to_string(at_ma) +
+                 " Ma"),
+      plate(plate_number),
+      time_ma(at_ma) {}
 
 RotationModel::RotationModel(std::vector<RotationSequence> sequences)
     : sequences_(std::move(sequences)) {
@@ -88,9 +93,7 @@ std::optional<Quaternion> RotationModel::at(int plate, double time_ma) const {
 std::optional<Quaternion> RotationModel::at(int plate, double time_ma, std::size_t depth) const {
   if (plate == 0) return Quaternion{};
   if (depth > of_plate_.size()) {
-    throw InputError("rotations of plate " + std::to_string(plate) +
-                     ": its circuit of fixed plates leads back to itself at " +
-                     std::to_string(time_ma) + " Ma");
+    throw CircularPlates(plate, time_ma);
   }
   const RotationSequence* const sequence = sequence_of(plate, time_ma);
   if (sequence == nullptr) return {};

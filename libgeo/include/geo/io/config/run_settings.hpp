@@ -36,11 +36,12 @@ struct RunSettings {
   std::string uplift_rate;  ///< FILE[:VARIABLE]
   std::string hypsography = "earth";
   std::string hypsography_ocean = "planet";
-  std::string ranking;            ///< FILE[:VARIABLE]
-  std::string plates;             ///< "earth" or a file
-  std::string plate_rotations;    ///< motions of plates that are given by number
-  std::string initial_elevation;  ///< FILE[:VARIABLE]
-  std::string initial_age;        ///< FILE[:VARIABLE]
+  std::string ranking;             ///< FILE[:VARIABLE]
+  std::string plates;              ///< "earth" or a file
+  std::string plate_rotations;     ///< motions of plates that are given by number
+  double rotations_from_ma = 0.0;  ///< where these are finite ones; 0: as late as they allow
+  std::string initial_elevation;   ///< FILE[:VARIABLE]
+  std::string initial_age;         ///< FILE[:VARIABLE]
   std::string start_frame;
   std::string exemplars;  ///< folder
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -22,5 +23,24 @@ constexpr double kHighestPlateNumber = 32767.0;
 /// Pacific at rest) by its `Code`. Throws InputError that names file, feature and what is wrong;
 /// IoError when the file cannot be read.
 [[nodiscard]] std::vector<PlateOutline> read_plate_outlines(const std::string& name_or_file);
+
+/// A polygon of GPlates: the outline of crust of a plate where it is today, over the time for which
+/// it is there.
+struct DatedOutline {
+  int plate = 0;      ///< PLATEID1: its number in rotation files
+  std::string where;  ///< file, feature and name, for messages
+  PlateOutline outline;
+  double from_ma = std::numeric_limits<double>::infinity();
+  double to_ma = -std::numeric_limits<double>::infinity();
+
+  [[nodiscard]] bool is_valid_at(double time_ma) const;
+};
+
+/// Polygons of a GeoJSON file with the attributes that GPlates writes: PLATEID1, and FROMAGE and
+/// TOAGE (Ma; 999 and -999, or none: always) and NAME where they are there. One for each feature.
+/// Edges are arcs of great circles, as GPlates has them: long ones are divided, every degree. Rings
+/// may cross themselves. Throws InputError that names file, feature and what is wrong; IoError when
+/// the file cannot be read.
+[[nodiscard]] std::vector<DatedOutline> read_dated_outlines(const std::string& file);
 
 }  // namespace geo::io

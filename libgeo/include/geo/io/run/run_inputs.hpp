@@ -15,6 +15,7 @@ namespace geo::io {
 struct RunInputs {
   std::optional<State> state;
   std::vector<PlateOutline> plates;
+  std::shared_ptr<const PlateReconstruction> reconstruction;
   std::shared_ptr<const GivenElevation> initial_elevation;
   std::shared_ptr<const ExemplarLibrary> exemplars, planet_exemplars;
   std::vector<std::string> warnings;  ///< of what was given

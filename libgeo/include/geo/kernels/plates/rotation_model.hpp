@@ -6,12 +6,20 @@
 #include <span>
 #include <vector>
 
+#include "geo/core/error.hpp"
 #include "geo/kernels/numerics/quaternion.hpp"
 
 namespace geo {
 
 /// The vector along the axis of a rotation, as long as its angle in radians, 0 to pi.
 [[nodiscard]] Vector3 rotation_vector(const Quaternion& rotation);
+
+/// Thrown where a plate is fixed to itself, by whatever circuit.
+struct CircularPlates : InputError {
+  CircularPlates(int plate_number, double at_ma);
+  int plate;
+  double time_ma;
+};
 
 /// A finite rotation: what lies at a place today lay at the rotated place then.
 struct FiniteRotation {
@@ -35,8 +43,8 @@ struct RotationSequence {
 class RotationModel {
  public:
   RotationModel() = default;
-  /// Throws InputError where a plate is fixed to itself, by whatever circuit, or where times do not
-  /// ascend.
+  /// Throws CircularPlates where a plate is fixed to itself, by whatever circuit, and InputError
+  /// where times do not ascend.
   explicit RotationModel(std::vector<RotationSequence> sequences);
 
   [[nodiscard]] std::span<const RotationSequence> sequences() const { return sequences_; }

@@ -21,10 +21,20 @@ void set_motion(SphereTectonics& model, int plate, const Vector3& axis, double s
   model.state.plates[plate].axis = normalised(axis);
   model.state.plates[plate].speed_rad_myr = speed_rad_myr;
   model.state.plates[plate].yielding = {};
+  model.state.plates[plate].driver = -1;
   derive_motion(model);
   if (!model.settings.hold_motions) return;
   model.state.plates[plate].is_held = true;
   model.state.kept_rotation_rad_myr = net_rotation(model);
+}
+
+void guide_plate(SphereTectonics& model, int plate, const Vector3& rotation_rad_myr) {
+  SpherePlate& guided = model.state.plates[plate];
+  guided.speed_rad_myr = length(rotation_rad_myr);
+  if (guided.speed_rad_myr > 0.0) guided.axis = normalised(rotation_rad_myr);
+  guided.yielding = {};
+  guided.is_held = true;
+  derive_motion(model);
 }
 
 void hold_motions(SphereTectonics& model) {

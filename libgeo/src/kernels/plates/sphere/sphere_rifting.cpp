@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -234,6 +235,31 @@ void rift_plate_along(SphereTectonics& model, int plate, const GreatCircleLine& 
     ++model.budget.rifts;
 }
 
+std::optional<std::pair<int, int>> split_plate(SphereTectonics& model, int plate,
+                                               std::span<const std::uint8_t> inside) {
+  auto& of = model.state.crust.plate;
+  std::vector<std::int8_t> fragment(of.size(), -1);
+  std::array<std::int32_t, 2> first{-1, -1};
+  for (std::int32_t i = 0; i < model.mesh->size(); ++i) {
+    if (of[i] != plate) continue;
+    fragment[i] = inside[i] != 0 ? 1 : 0;
+    if (first[fragment[i]] < 0) first[fragment[i]] = i;
+  }
+  if (first[0] < 0 || first[1] < 0) return {};
+  const SpherePlate whole = model.state.plates[plate];
+  const std::array<Vector3, 2> together{};
+  if (!part_plate(model, plate, fragment, together, 0.0, SphereEvent::Kind::rift)) return {};
+  ++model.budget.rifts;
+  const std::pair<int, int> parts{of[first[0]], of[first[1]]};
+  for (const int part : {parts.first, parts.second}) {
+    model.state.plates[part].axis = whole.axis;
+    model.state.plates[part].speed_rad_myr = whole.speed_rad_myr;
+    model.state.plates[part].driver = -1;
+  }
+  derive_motion(model);
+  return parts;
+}
+
 /// The largest fragment keeps the plate's number. One that has no samples comes to nothing.
 bool part_plate(SphereTectonics& model, int plate, std::span<const std::int8_t> fragment,
                 std::span<const Vector3> away, double speed_mm_yr, SphereEvent::Kind kind) {
@@ -254,6 +280,7 @@ bool part_plate(SphereTectonics& model, int plate, std::span<const std::int8_t> 
       part.id = state.begin_life(
           is_rift ? PlateLife::Origin::rift : PlateLife::Origin::subduction_initiation, whole.id);
       part.born_myr = state.time_myr;
+      part.driver = -1;
     }
     int number = plate;
     if (numbers.empty()) {

@@ -46,8 +46,10 @@ class InitialConditions {
 
  private:
   void take_plates() {
-    for (const Vector3& rotation : start_.rotation_rad_myr) {
+    for (std::size_t p = 0; p < start_.rotation_rad_myr.size(); ++p) {
+      const Vector3& rotation = start_.rotation_rad_myr[p];
       SpherePlate plate;
+      if (!start_.driver.empty()) plate.driver = start_.driver[p];
       plate.speed_rad_myr = length(rotation);
       if (plate.speed_rad_myr > 0.0) plate.axis = normalised(rotation);
       state_.add_plate(plate);

@@ -6,11 +6,13 @@
 #include <memory>
 
 #include "geo/core/error.hpp"
+#include "geo/kernels/plates/plate_reconstruction.hpp"
 #include "geo/kernels/plates/sphere/sphere_start.hpp"
 #include "sphere_checkpoint.hpp"
 #include "sphere_history.hpp"
 #include "sphere_initial_conditions.hpp"
 #include "sphere_on_grid.hpp"
+#include "sphere_reconstruction.hpp"
 #include "sphere_timeline.hpp"
 
 namespace geo {
@@ -31,6 +33,7 @@ SphereSettings settings_of(const PlatesParameters& p, double radius_km, const Co
   settings.floor_by_age = p.ocean_floor == "age";
   settings.no_net_rotation = p.no_net_rotation;
   settings.hold_motions = p.given_motions == "held";
+  if (context.reconstruction) let_rotations_lead(settings);
   settings.mean_area_km2 =
       4.0 * std::acos(-1.0) * radius_km * radius_km / static_cast<double>(first_plates(p, context));
   return settings;
@@ -180,6 +183,7 @@ SphereState beginning(const PlatesParameters& parameters, const SphereMesh& mesh
     SphereState state =
         start_sphere(mesh, sphere_start(parameters, mesh, io, context), settings, context.seed);
     state.plumes = first_plumes(parameters, context.seed);
+    if (context.reconstruction) state.reconstruction_ma = context.reconstruction->start_ma;
     return state;
   }
   SphereState state = state_of(*context.checkpoint);
@@ -191,6 +195,7 @@ SphereState beginning(const PlatesParameters& parameters, const SphereMesh& mesh
                      " samples: plates.sphere.samples must be that, not " +
                      std::to_string(mesh.size()));
   }
+  if (context.reconstruction) check_reconstruction(*context.reconstruction, state);
   return state;
 }
 
@@ -266,6 +271,7 @@ void drift(const PlatesParameters& parameters, const StageInfo& info, StageIo& i
     if (settings.no_net_rotation) subtract_net_rotation(model);
     if (settings.hold_motions) hold_motions(model);
   }
+  if (context.reconstruction) drive_plates(*context.reconstruction, model, context);
   MassBalance balance;
   SphereHistory history(io.grid());
   context.steps.columns = MassBalance::columns();
@@ -282,6 +288,7 @@ void drift(const PlatesParameters& parameters, const StageInfo& info, StageIo& i
     if (shows && k == 0) show(parameters, model, info, io.grid(), context);
     context.advance(0.9 * static_cast<double>(k) / static_cast<double>(steps));
     begin_step(model);
+    if (context.reconstruction) follow_reconstruction(*context.reconstruction, model, context);
     strike_plates(io.grid(), from_myr, from_myr + settings.law.step_myr, model, context);
     history.enter(model);
     advance(model);

@@ -32,7 +32,7 @@ Directions directions(const std::vector<float>& values) {
 /// Refuses numbers that nothing could go on from: steps would never reach a time of them.
 void check_numbers(const Checkpoint& from) {
   for (const char* name : {"plate_numbers", "clock", "kept_rotation_rad_myr", "plate_yielding",
-                           "plumes", "volcanoes"}) {
+                           "plumes", "volcanoes", "reconstruction_ma"}) {
     if (!from.arrays.contains(name)) continue;
     for (const double value : from.get<double>(name)) {
       if (!std::isfinite(value)) refuse();
@@ -272,6 +272,24 @@ void get_later_additions(const Checkpoint& from, SphereState& state) {
   }
 }
 
+/// Which plates a reconstruction drives, where one does.
+void put_drivers(const SphereState& state, Arrays& to) {
+  if (!state.reconstruction_ma) return;
+  std::vector<std::int32_t> driver;
+  for (const SpherePlate& plate : state.plates) driver.push_back(plate.driver);
+  to["plate_driver"] = driver;
+  to["reconstruction_ma"] = std::vector<double>{*state.reconstruction_ma};
+}
+
+void get_drivers(const Checkpoint& from, SphereState& state) {
+  if (!from.arrays.contains("plate_driver")) return;
+  const auto& driver = from.get<std::int32_t>("plate_driver");
+  const auto& start_ma = from.get<double>("reconstruction_ma");
+  if (driver.size() != state.plates.size() || start_ma.size() != 1) refuse();
+  for (std::size_t p = 0; p < driver.size(); ++p) state.plates[p].driver = driver[p];
+  state.reconstruction_ma = start_ma[0];
+}
+
 void put_plumes(const SphereState& state, Arrays& to) {
   std::vector<double> plumes, volcanoes;
   for (const SpherePlume& plume : state.plumes) {
@@ -319,6 +337,7 @@ Checkpoint checkpoint_of(const SphereState& state) {
   put_plumes(state, out.arrays);
   put_lives(state, out.arrays);
   put_past(state, out.arrays);
+  put_drivers(state, out.arrays);
   const Vector3& kept = state.kept_rotation_rad_myr;
   out.arrays["kept_rotation_rad_myr"] = std::vector<double>{kept[0], kept[1], kept[2]};
   out.arrays["clock"] =
@@ -342,6 +361,7 @@ SphereState state_of(const Checkpoint& from) {
   state.steps = static_cast<std::int64_t>(clock[1]);
   state.resampled_myr = clock[2];
   get_later_additions(from, state);
+  get_drivers(from, state);
   get_plumes(from, state);
   if (from.arrays.contains("plate_id")) get_lives(from, state);
   if (from.arrays.contains("plate_past")) {

@@ -10,6 +10,7 @@
 #include "geo/core/error.hpp"
 #include "geo/core/place.hpp"
 #include "geo/core/random.hpp"
+#include "geo/kernels/plates/plate_reconstruction.hpp"
 #include "geo/kernels/plates/region_outline.hpp"
 #include "geo/kernels/plates/sphere/sphere_boundaries.hpp"
 #include "stages/plates/hypsography.hpp"
@@ -22,12 +23,28 @@ constexpr double kDegrees = 180.0 / std::numbers::pi;
 // What is given as files lies on the planet as it is before a grid is turned over it: in the frame
 // of the samples.
 
+/// From where places are at the beginning to where they are in the outline of each plate: that of
+/// today where a reconstruction drives it. Empty: they are where they are.
+std::vector<Matrix3> ways_to_outlines(const Context& context) {
+  std::vector<Matrix3> ways;
+  if (!context.reconstruction) return ways;
+  const PlateReconstruction& given = *context.reconstruction;
+  for (const int number : given.first) {
+    const Matrix3 there = given.rotations.at(number, given.start_ma).value().matrix();
+    ways.push_back({{{there[0][0], there[1][0], there[2][0]},
+                     {there[0][1], there[1][1], there[2][1]},
+                     {there[0][2], there[1][2], there[2][2]}}});
+  }
+  return ways;
+}
+
 /// The plate of each sample: the last one whose outline holds it, in gaps the nearest.
 std::vector<std::int16_t> plates_at_samples(const SphereMesh& mesh, Context& context) {
   const std::vector<PlateOutline>& outlines = context.plates;
   std::vector<RegionOutline> regions;
   regions.reserve(outlines.size());
   for (const PlateOutline& outline : outlines) regions.emplace_back(outline.rings);
+  const std::vector<Matrix3> ways = ways_to_outlines(context);
   std::vector<std::int16_t> plate(mesh.size(), -1);
   std::int32_t shared = 0;
 #pragma omp parallel for schedule(dynamic, 1024) reduction(+ : shared)
@@ -35,7 +52,9 @@ std::vector<std::int16_t> plates_at_samples(const SphereMesh& mesh, Context& con
     const Centre at = place_of(mesh.samples().position(i));
     int holding = 0;
     for (std::size_t p = 0; p < regions.size(); ++p) {
-      if (!regions[p].holds(at)) continue;
+      const bool holds = regions[p].holds(
+          ways.empty() ? at : place_of(times(ways[p], mesh.samples().position(i))));
+      if (!holds) continue;
       plate[i] = static_cast<std::int16_t>(p);
       ++holding;
     }
@@ -79,6 +98,7 @@ void take_plates(const SphereMesh& mesh, Context& context, SphereStart& start) {
     number[p] = static_cast<std::int16_t>(start.rotation_rad_myr.size());
     start.rotation_rad_myr.push_back(
         scaled(unit_vector_of(outline.pole), outline.rate_deg_myr / kDegrees));
+    if (context.reconstruction) start.driver.push_back(context.reconstruction->first[p]);
   }
   for (std::int16_t& plate : start.plate) plate = number[plate];
 }

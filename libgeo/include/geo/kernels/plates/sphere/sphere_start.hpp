@@ -31,6 +31,8 @@ struct SphereStart {
   /// Plate of each sample, where plates are given, and the rotation of each, rad/Myr; empty: drawn.
   std::vector<std::int16_t> plate;
   std::vector<Vector3> rotation_rad_myr;
+  /// Number of each such plate in a reconstruction that drives it; empty: none does.
+  std::vector<std::int32_t> driver;
 };
 
 /// Plates, motion and crust of a seed. Axes are uniform on the sphere, speeds uniform from a fifth

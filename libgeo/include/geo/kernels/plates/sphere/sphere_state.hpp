@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "geo/core/field.hpp"
@@ -44,6 +45,8 @@ struct SpherePlate {
   double born_myr = 0.0;
   bool is_held = false;  ///< its motion was given: neither slab pull nor the frame changes it
   Vector3 yielding{};  ///< by which plates that it meets or parts from change its rotation, rad/Myr
+  /// Its number in the reconstruction whose rotations drive it, or -1.
+  std::int32_t driver = -1;
 };
 
 /// What is known of a plate by its number, also when it is no more.
@@ -94,6 +97,8 @@ struct SphereState {
   double resampled_myr = 0.0;  ///< time of the last resampling
   /// Common rotation that plates which are not held keep, rad/Myr.
   Vector3 kept_rotation_rad_myr{};
+  /// Age in a reconstruction, Ma, at which the drift began; nothing: none drives it.
+  std::optional<double> reconstruction_ma;
 
   [[nodiscard]] PlatePair& pair(int a, int b) {
     return pairs[static_cast<std::size_t>(a < b ? a : b) * plates.size() + (a < b ? b : a)];

@@ -2,7 +2,9 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "geo/kernels/plates/sphere/sphere_budget.hpp"
@@ -102,10 +104,19 @@ void finish(SphereTectonics& model);
 /// Takes the common rotation of the plates away that are not held, but for what they keep.
 void subtract_net_rotation(SphereTectonics& model);
 /// From now on a plate turns about an axis (unit vector), rad/Myr. With settings.hold_motions it
-/// is held, and the others keep the common rotation that they have without it.
+/// is held, and the others keep the common rotation that they have without it. No reconstruction
+/// drives it any more.
 void set_motion(SphereTectonics& model, int plate, const Vector3& axis, double speed_rad_myr);
 /// Holds all plates as they move now.
 void hold_motions(SphereTectonics& model);
+/// Lets a plate turn through the next step as a reconstruction has it, rad/Myr, and holds it.
+/// Neither forces nor plates that it meets change that.
+void guide_plate(SphereTectonics& model, int plate, const Vector3& rotation_rad_myr);
+/// Cuts the samples out of a plate of which `inside` (one for each sample of the mesh) is not 0, as
+/// a rift does; both parts move as the whole did, and nothing drives them. Returns the places of
+/// the part outside and the part inside; nothing, and no change, where one of them has no samples.
+std::optional<std::pair<int, int>> split_plate(SphereTectonics& model, int plate,
+                                               std::span<const std::uint8_t> inside);
 /// Splits a plate by the nearest of some places, warped. Fragments leave each other across the
 /// fractures between them, each at the speed.
 void rift_plate(SphereTectonics& model, int plate, std::span<const Vector3> places,
