@@ -13,7 +13,7 @@ namespace geo {
 struct MoistureBudget {
   double rain_time_d = 0.876;          ///< rain-out time of a saturated column
   std::int64_t humidity_exponent = 2;  ///< how sharply rain follows the column's relative humidity
-  double evaporation_velocity_1_d = 0.31;  ///< v over open water that energy does not limit
+  double evaporation_velocity_1_d = 0.31;  ///< v under 8 m s-1 where energy does not limit it
   double evaporating_share = 0.552;        ///< of the annual insolation, at most
   int sweeps = 44;
 };
@@ -26,13 +26,14 @@ struct MoistureSeason {
   std::span<const float> eddies;                 ///< e
   std::span<const float> saturated_mm;           ///< W_s
   std::span<const float> open_water_1_d;         ///< v times the fraction of water
-  std::span<const float> land_evaporation;       ///< mm d-1, averaged over the cell
-  std::span<double> column_mm;                   ///< in: first guess; out: W
+  /// mm d-1, averaged over the cell: that of land, and of the sea under cold air.
+  std::span<const float> land_evaporation;
+  std::span<double> column_mm;  ///< in: first guess; out: W
 };
 
 /// Steady moisture budgets of the air column on a sphere or torus:
-///   div(u W - K grad W) = E - P,   P = W (a (W/W_s)^n + e W/W_s) / tau,   E = water v (W_s - W)+ +
-///   land part,
+///   div(u W - K grad W) = E - P,   P = W (a (W/W_s)^n + e W/W_s) / tau,
+///   E = water v (W_s - W)+ + what land, and the sea under cold air, give whatever W is,
 /// W column water (mm), W_s what the column holds at saturation, a the activity of ascent,
 /// which rains the more sharply the more humid the air is on the whole, and e that of eddies, whose
 /// own moist air rises wherever that is. Finite volumes, upwind; nonlinear Gauss-Seidel in four

@@ -70,7 +70,8 @@ using TerrainAscent = std::function<std::vector<float>(std::span<const float> wi
 
 /// Twelve months of climate of a sphere or torus from its topography. Temperature at sea level
 /// comes from the energy balance; pressure from cells about the thermal equator, heat lows and the
-/// stationary waves that latent heat and warm land set up; winds balance it with friction; they
+/// stationary waves that latent heat and warm land set up; winds balance it with friction. The sea
+/// evaporates the more, the faster they blow, and where they come from the cold; they
 /// and eddies, strongest where temperature changes most, carry moisture, which rains out where air
 /// is humid, rises, or is warmer and moister than the tropics' even free atmosphere; soil gives
 /// rain back. Waves and rain are iterated together. What `ascent` (empty: level ground) lets rain
