@@ -99,7 +99,7 @@ ErosionRun::ErosionRun(const ErosionParameters& parameters, StageIo& io, Context
 /// Changes elevation at will; land and sea are then told apart again.
 template <class Change>
 bool ErosionRun::reshape(Change&& change) {
-  const bool did = landscape_.book_reshaping(change);
+  const bool did = landscape_.reshape(change);
   if (did) landscape_.set_outlets(find_outlets(grid_, elevation_m_));
   return did;
 }
