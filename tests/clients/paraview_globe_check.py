@@ -9,7 +9,6 @@ picture may be blank or of one colour; the closed surfaces of `output.globe` mus
 a saved state must show the same picture again. Ends with 1 on any failure.
 """
 
-import math
 import os
 import sys
 from pathlib import Path
@@ -21,23 +20,12 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkFiltersCore import vtkFeatureEdges
 from vtkmodules.vtkIOImage import vtkPNGReader
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "paraview"))
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parents[1] / "paraview")]
+from checking import close, expect, failures  # noqa: E402
 from terrane_view import Globe  # noqa: E402
 
 SIZE = (640, 480)
-failures = []
-
-
-def expect(good, *words):
-    """Notes a failure unless `good`."""
-    if not good:
-        failures.append(" ".join(str(word) for word in words))
-        print("FAIL", failures[-1], flush=True)
-
-
-def close(a, b, tolerance=1e-5):
-    """Equal but for rounding."""
-    return math.isclose(a, b, rel_tol=tolerance, abs_tol=tolerance)
 
 
 def pixels(path):
@@ -227,7 +215,6 @@ def main():
 
 if __name__ == "__main__":
     # Programmable filters leave numpy's max, take and others behind in the main module.
-    sys.path.insert(0, str(Path(__file__).resolve().parent))
     import paraview_globe_check
 
     paraview_globe_check.main()
