@@ -27,10 +27,6 @@
 namespace geo::io {
 namespace {
 
-bool lists(std::span<const FieldSpec* const> specs, const FieldSpec& spec) {
-  return std::find(specs.begin(), specs.end(), &spec) != specs.end();
-}
-
 std::vector<const FieldSpec*> picture_fields() {
   auto wanted = map_fields();
   for (const FieldSpec* spec : scorecard_fields()) wanted.push_back(spec);

@@ -30,9 +30,12 @@ std::vector<float> all_round(const PlanetCells& cells, std::span<const float> pl
   return share;
 }
 
-int octaves_down_to(double cell_m, double wavelength_m) {
-  return std::clamp(static_cast<int>(std::lround(std::log2(wavelength_m / (2.0 * cell_m)))) + 1, 1,
-                    16);
+DetailLaw detail_law(const PlanetCells& cells, double cell_m) {
+  DetailLaw law;
+  law.wavelength_m = 2.0 * cells.planet().face_east_m(cells.first_row());
+  law.octaves = std::clamp(
+      static_cast<int>(std::lround(std::log2(law.wavelength_m / (2.0 * cell_m)))) + 1, 1, 16);
+  return law;
 }
 
 }  // namespace geo

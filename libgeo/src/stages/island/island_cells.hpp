@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "geo/core/grid.hpp"
+#include "geo/kernels/landscape/surface_detail.hpp"
 #include "geo/kernels/remapping/planet_cells.hpp"
 
 namespace geo {
@@ -26,7 +27,7 @@ void on_cells(const Grid& grid, Change&& change) {
 [[nodiscard]] std::vector<float> all_round(const PlanetCells& cells,
                                            std::span<const float> planet_elevation_m, bool land);
 
-/// Octaves of noise from a wavelength down to two cells.
-[[nodiscard]] int octaves_down_to(double cell_m, double wavelength_m);
+/// Octaves of detail from two of the planet's cells down to two of the island's.
+[[nodiscard]] DetailLaw detail_law(const PlanetCells& cells, double cell_m);
 
 }  // namespace geo

@@ -74,10 +74,7 @@ void add_rough_detail(const PlanetCells& cells, const PlanetTerrain& planet,
                       const IslandParameters& p, const ExemplarLibrary* exemplars,
                       std::uint64_t seed, std::span<const float> planet_m, std::span<float> z) {
   const Grid& fine = cells.fine();
-  const double spacing_m = cells.planet().face_east_m(cells.first_row());
-  DetailLaw law;
-  law.wavelength_m = 2.0 * spacing_m;
-  law.octaves = octaves_down_to(p.cell_m, law.wavelength_m);
+  DetailLaw law = detail_law(cells, p.cell_m);
   law.gain = std::exp2(-p.detail_hurst);
   std::vector<float> detail(fine.size()), roughness(cells.size());
   unit_detail(fine, law, seed, "island.detail", detail);

@@ -38,9 +38,7 @@ void wind_coasts(const PlanetCells& cells, std::span<const float> planet_elevati
                  std::span<const float> wet, std::span<const float> planet_m, std::span<float> z) {
   const Grid& fine = cells.fine();
   const double spacing_m = cells.planet().face_east_m(cells.first_row());
-  DetailLaw law;
-  law.wavelength_m = 2.0 * spacing_m;
-  law.octaves = octaves_down_to(p.cell_m, law.wavelength_m);
+  const DetailLaw law = detail_law(cells, p.cell_m);
   std::vector<float> east(fine.size()), north(fine.size());
   unit_detail(fine, law, seed, "island.coast_east", east);
   unit_detail(fine, law, seed, "island.coast_north", north);

@@ -29,6 +29,18 @@ inline void check_steps(const RasterSettings& settings) {
   return std::move(map.crust);
 }
 
+/// Erodes a plate whenever its time has come, and draws its map in to its crust now and then.
+/// Returns what rounding to single precision added to its crust.
+template <class Plate>
+double tend(Plate& plate, int number, const RasterSettings& settings, std::int64_t step) {
+  constexpr int kTighten = 32;
+  const auto period = static_cast<std::int64_t>(
+      settings.of(number, &RasterPlateSettings::erosion_steps, settings.erosion_steps));
+  const double rounded = period > 0 && step % period == 0 ? plate.erode(settings.erosion) : 0.0;
+  if (step % kTighten == 0) plate.tighten();
+  return rounded;
+}
+
 /// Share of all steps that are over, if no cycle ends early.
 [[nodiscard]] inline double share_of_steps(const RasterSettings& settings, int cycles_begun,
                                            const RasterCycle& cycle) {

@@ -110,17 +110,11 @@ bool RasterSphere::advance() {
 }
 
 void RasterSphere::move() {
-  constexpr int kTighten = 32;
   std::vector<double> rounded(plates_.size(), 0.0);
   const auto move_plate = [&](int p) {
     RasterSpherePlate& plate = plates_[p];
     if (!plate.alive) return;
-    const auto period = static_cast<std::int64_t>(
-        settings_.of(p, &RasterPlateSettings::erosion_steps, settings_.erosion_steps));
-    if (period > 0 && budget_.steps % period == 0) {
-      rounded[p] = plate.erode(settings_.erosion);
-    }
-    if (budget_.steps % kTighten == 0) plate.tighten();
+    rounded[p] = tend(plate, p, settings_, budget_.steps);
     if (!plate.alive) return;
     plate.move();
     turn_[p] = plate.turn.matrix();

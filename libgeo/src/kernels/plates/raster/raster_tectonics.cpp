@@ -125,17 +125,11 @@ bool RasterTectonics::advance() {
 }
 
 void RasterTectonics::move() {
-  constexpr int kTighten = 32;
   std::vector<double> rounded(plates_.size(), 0.0);
   const auto move_plate = [&](int p) {
     RasterPlate& plate = plates_[p];
     if (!plate.alive) return;
-    const auto period = static_cast<std::int64_t>(
-        settings_.of(p, &RasterPlateSettings::erosion_steps, settings_.erosion_steps));
-    if (period > 0 && budget_.steps % period == 0) {
-      rounded[p] = plate.erode(settings_.erosion);
-    }
-    if (budget_.steps % kTighten == 0) plate.tighten();
+    rounded[p] = tend(plate, p, settings_, budget_.steps);
     // With a spin, the path bends as the plate turns: motion about a pole.
     const double c = std::cos(plate.spin + plate.curve), s = std::sin(plate.spin + plate.curve);
     const double east = c * plate.east - s * plate.north;
