@@ -106,13 +106,15 @@ struct Currents {
   std::vector<float> east, north;
 };
 
-/// Those that the stress of the months' winds drives; none unless the grid is a whole planet.
-Currents wind_driven_currents(const ClimateFrame& frame, const SeasonalClimate& model,
-                              const SeasonalFields& fields, std::span<const float> land_fraction) {
+/// Those that the stress of the months' winds drives; none unless the grid is a whole planet, and
+/// they are wanted.
+Currents wind_driven_currents(const ClimateFrame& frame, const ClimateParameters& p,
+                              const SeasonalClimate& model, const SeasonalFields& fields,
+                              std::span<const float> land_fraction) {
   const Grid& grid = frame.planet();
   const auto size = static_cast<std::size_t>(grid.size());
   Currents currents{std::vector<float>(size), std::vector<float>(size)};
-  if (grid.topology() != Topology::sphere) return currents;
+  if (!p.solves_currents || grid.topology() != Topology::sphere) return currents;
   std::vector<double> east_pa(size), north_pa(size);
   for (std::size_t cell = 0; cell < size; ++cell) {
     for (int m = 0; m < kMonths; ++m) {
@@ -227,7 +229,7 @@ class FineClimate::Rows {
         north_of_(frame.on_planet(), annual_mean(year_->wind_north),
                   Interpolator::Kind::vector_component),
         relief_of_(frame.on_relief(), on_relief),
-        currents_(wind_driven_currents(frame, model, fields, land_fraction)),
+        currents_(wind_driven_currents(frame, p, model, fields, land_fraction)),
         current_east_of_(frame.on_planet(), currents_.east, Interpolator::Kind::vector_component),
         current_north_of_(frame.on_planet(), currents_.north, Interpolator::Kind::vector_component),
         seasons_(frame, model, *year_),
