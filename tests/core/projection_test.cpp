@@ -52,7 +52,8 @@ TEST(EqualArea, ProjectsThereAndBackAndKeepsAreas) {
   EXPECT_NEAR(std::abs(area) * 6371e3 * 6371e3, 4e10, 4e4);
 }
 
-// Rounding put the antipode of a cell's centre at the centre of the map, with the rivers there.
+// Rounding could put the antipode of a cell's centre at the centre of the map, with the rivers
+// there.
 TEST(EqualArea, AntipodeIsNowhere) {
   const Grid grid = Grid::sphere(256, 128);
   for (Index c = 0; c < grid.size(); c += 37) {

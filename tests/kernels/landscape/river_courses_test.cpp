@@ -178,7 +178,7 @@ TEST(RiverCourses, LeaveNoDamAndRaiseNothing) {
   }
 }
 
-// A hairpin whose arms a low saddle joins: over it the water took the short way.
+// A hairpin whose arms a low saddle joins, over which water would take the short way.
 TEST(RiverCourses, KeepTheirWaterAllTheWayRoundABend) {
   const Grid grid = Grid::plane(40, 40, 1000.0, 1000.0);
   std::vector<float> z(grid.size(), 200.0F);

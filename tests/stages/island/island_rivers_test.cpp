@@ -37,8 +37,8 @@ TEST(Island, RiversThatEnterAreThereAndNoWaterIsLost) {
   EXPECT_LT(std::abs(budget.at("water_closing_error")), 1e-6);
 }
 
-// Interpolation dams a valley that is one cell wide: rivers once left by the edge that they had
-// come in over.
+// Interpolation dams a valley that is one cell wide: rivers must not leave by the edge that they
+// came in over.
 TEST(Island, RiversCarryWhatTheyCarryOnThePlanet) {
   double carried = 0.0;
   int rivers = 0, poor = 0;
@@ -81,7 +81,7 @@ bool has_river(const State& whole, const Grid& fine, Index cell) {
          whole.read(field::drainage_area)[cell] > 10.0 * grid.area_m2(grid.row(cell));
 }
 
-// Rivers once met beyond the edge, left over a lower place, or ended in lakes of the detail.
+// They must not meet beyond the edge, leave over a lower place, or end in lakes of the detail.
 TEST(Island, RiversKeepTheirWaterAllTheWay) {
   double all_there = 0.0, all_kept = 0.0;
   int rivers = 0, poor = 0;
@@ -132,7 +132,7 @@ TEST(Island, RiversKeepTheirWaterAllTheWay) {
   EXPECT_LE(poor, rivers / 8);
 }
 
-// Detail once dipped plains to the level of the sea, and rivers left the flats over its edge.
+// Detail must not dip plains to the level of the sea, nor let rivers leave flats over its edge.
 TEST(Island, PlainsHaveNoLakesThatThePlanetLacks) {
   double land = 0.0, lakes = 0.0;
   for (const std::uint64_t seed : {3, 6}) {

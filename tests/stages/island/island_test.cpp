@@ -104,8 +104,8 @@ std::array<Centre, 2> greatest_swings() {
   return places;
 }
 
-// Cubics swing beyond what they pass through: basins had ponds behind their shore, and mountains at
-// a coast a row of islets before it.
+// Cubics swing beyond what they pass through: that would make ponds behind the shore of a basin,
+// and a row of islets before mountains at a coast.
 TEST(Island, HasNoLandBetweenThePlanetsCellsOfSeaAndNoSeaBetweenThoseOfLand) {
   const auto planets_m = planet().read(field::elevation);
   for (const Centre& place : greatest_swings()) {
