@@ -10,6 +10,7 @@
 
 #include "geo/core/error.hpp"
 #include "geo/core/parameter.hpp"
+#include "geo/core/stage.hpp"
 #include "geo/io/config/config.hpp"
 #include "geo/io/maps/maps.hpp"
 #include "geo/io/netcdf/planet_file.hpp"

@@ -41,7 +41,8 @@ class Noise {
   /// and of zero mean for any `octaves` >= 0; no octaves give 0.
   [[nodiscard]] float fbm(const std::array<double, 3>& position, double frequency, int octaves,
                           double gain = 0.5) const;
-  /// The same bits at many positions, in a third of the time. `out` has one value for each.
+  /// The same bits at many positions, in a third of the time. `out` has one value for each, Bug
+  /// otherwise.
   void fbm(std::span<const std::array<double, 3>> positions, double frequency, int octaves,
            double gain, std::span<float> out) const;
 

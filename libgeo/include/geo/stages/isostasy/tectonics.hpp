@@ -9,7 +9,7 @@
 namespace geo {
 
 /// Where cells of the coarse grid lie with regard to plate boundaries and coasts of continental
-/// crust. Of the settings, only the lengths over which deformation dies away have a say in it.
+/// crust. Of the settings it depends on the lengths alone over which deformation dies away.
 struct TectonicFrame {
   DeformationSources convergent, divergent, transform;
   std::vector<float> boundary_km;             // distance to any boundary
