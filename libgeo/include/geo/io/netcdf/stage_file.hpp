@@ -65,7 +65,7 @@ void write_pvd(const std::filesystem::path& path, const std::vector<std::filesys
 /// Reads back the grid and the vocabulary fields of a stage file, bit for bit. InputError when it
 /// is not one (names path and what is missing), IoError when it cannot be read.
 Snapshot read_netcdf(const std::filesystem::path& path);
-/// The same of those fields alone that `wanted` says yes to; perhaps none.
+/// The same with those fields alone that `wanted` accepts; perhaps none.
 Snapshot read_netcdf(const std::filesystem::path& path,
                      const std::function<bool(const FieldSpec&)>& wanted);
 /// One month, from 0 for January, of a field of months that a stage file has beside those of the

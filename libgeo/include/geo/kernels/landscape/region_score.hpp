@@ -29,8 +29,8 @@ RegionFigures region_figures(const Grid& planet, std::span<const float> elevatio
 
 /// How the land of a window lies in it, as shares of its land: pieces that it holds whole, the
 /// largest piece that its border cuts, and the other pieces that it cuts. Cells whose corners touch
-/// hang together; of windows more than 128 cells wide or high every second cell is looked at, or
-/// every third and so on.
+/// are connected. In windows more than 128 cells wide or high only every second cell is looked at,
+/// or every third and so on.
 struct RegionLand {
   double whole = 0.0, main = 0.0, others = 0.0;
   /// What its score is multiplied by where it is positive: 1 for islands, 0.85 for one coast, less

@@ -127,7 +127,7 @@ void RasterSphere::move() {
   for (const double added : rounded) budget_.rounded += added;
 }
 
-/// Lets the magma of what went down rise; where the upper plate has no crust it stays below.
+/// Lets magma of subducted crust rise; where the overriding plate has no crust it stays below.
 void RasterSphere::raise_arcs() {
   const RandomStream random(seed_, "raster.arcs");
   const auto now = static_cast<std::int16_t>(budget_.steps);

@@ -147,7 +147,7 @@ void RasterTectonics::move() {
   for (const double added : rounded) budget_.rounded += added;
 }
 
-/// Where magma of what went down rises: inland, along the motion of the lower plate as the upper
+/// Where magma of subducted crust rises: inland, along the motion of the lower plate as the upper
 /// one sees it, with some scatter.
 std::int32_t RasterTectonics::arc_place(const Subduction& event, int row,
                                         const RandomStream& random) const {
@@ -163,8 +163,8 @@ std::int32_t RasterTectonics::arc_place(const Subduction& event, int row,
                     static_cast<int>(std::floor(row + offset[1] + sy)));
 }
 
-/// Takes what went down out of the budget and lets its magma rise; where the upper plate has no
-/// crust it stays below.
+/// Takes subducted crust out of the budget and lets its magma rise; where the overriding plate has
+/// no crust it stays below.
 void RasterTectonics::raise_arcs() {
   const RandomStream random(seed_, "raster.arcs");
   const auto now = static_cast<std::int16_t>(budget_.steps);
