@@ -1,6 +1,7 @@
 #include "map_frame.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -9,6 +10,7 @@
 #include "geo/core/parallel_errors.hpp"
 #include "geo/core/place.hpp"
 #include "geo/core/vector3.hpp"
+#include "geo/kernels/remapping/cubic_weights.hpp"
 
 namespace geo::io {
 namespace {
@@ -35,15 +37,13 @@ Taps axis_taps(int cells, int pixels, bool wraps, bool reversed, Filter filter) 
     }
     const double centre = (pixel + 0.5) * ratio - 0.5;
     const int i = static_cast<int>(std::floor(centre));
-    const double t = centre - i, u = 1.0 - t;
+    const double t = centre - i;
     if (filter == Filter::linear) {
-      add_tap(taps, i, cells, wraps, u);
+      add_tap(taps, i, cells, wraps, 1.0 - t);
       add_tap(taps, i + 1, cells, wraps, t);
     } else {
-      add_tap(taps, i - 1, cells, wraps, u * u * u / 6.0);
-      add_tap(taps, i, cells, wraps, 2.0 / 3.0 - t * t * (2.0 - t) / 2.0);
-      add_tap(taps, i + 1, cells, wraps, 2.0 / 3.0 - u * u * (2.0 - u) / 2.0);
-      add_tap(taps, i + 2, cells, wraps, t * t * t / 6.0);
+      const std::array<double, 4> weights = b_spline_weights(t);
+      for (int k = 0; k < 4; ++k) add_tap(taps, i - 1 + k, cells, wraps, weights[k]);
     }
   }
   taps.begin.push_back(static_cast<int>(taps.index.size()));

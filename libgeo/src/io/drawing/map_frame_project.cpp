@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "geo/core/parallel_errors.hpp"
+#include "geo/kernels/remapping/cubic_weights.hpp"
 #include "map_frame.hpp"
 
 namespace geo::io {
@@ -41,10 +42,8 @@ void widen_rows(const MapFrame& source, Sampled& sampled) {
 
 // Weights of four neighbours, the second and third of them around the point.
 std::array<float, 4> weights(Filter filter, float t) {
-  const float u = 1.0F - t;
-  if (filter == Filter::linear) return {0.0F, u, t, 0.0F};
-  return {u * u * u / 6.0F, 2.0F / 3.0F - t * t * (2.0F - t) / 2.0F,
-          2.0F / 3.0F - u * u * (2.0F - u) / 2.0F, t * t * t / 6.0F};
+  if (filter == Filter::linear) return {0.0F, 1.0F - t, t, 0.0F};
+  return b_spline_weights(t);
 }
 
 }  // namespace
