@@ -16,7 +16,7 @@ namespace geo {
 // for belts that wind and swell.
 
 /// How much a deviation of the noise along a boundary makes it stronger or weaker, and the bounds
-/// of that for shortening (a share) and for the strength of a section, which ends nowhere in a cut.
+/// of that for shortening (a share) and for the strength of a section, which nowhere ends abruptly.
 inline constexpr double kAlongBoundary = 0.35;
 inline constexpr double kLeastClosing = 0.2, kMostClosing = 2.0;
 inline constexpr double kLeastStrength = 0.05, kMostStrength = 1.3;
