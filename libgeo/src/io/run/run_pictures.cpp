@@ -130,8 +130,8 @@ const StageRecord& stage_of(const Manifest& manifest, const FieldOfRun& wanted,
                   near.empty() ? ": it has " + fmt::format("{}", fmt::join(fields, ", ")) : near));
 }
 
-/// What a map of a field shows besides: the relief, with the rivers of an island's; of biomes what
-/// is frozen all year.
+/// What a map of a field shows besides: the elevation, with the rivers of an island's; of biomes
+/// what is frozen all year.
 std::vector<const FieldSpec*> companions_of(std::string_view field, bool of_island) {
   std::vector<const FieldSpec*> fields{&field::elevation};
   if (of_island && field == field::elevation.name) {
@@ -173,7 +173,7 @@ State state_for(const RunFolder& folder, const Manifest& manifest, const StageRe
   return state;
 }
 
-/// The relief of some frames of a run through time, the first and the last among them.
+/// The elevation of some frames of a run through time, the first and the last among them.
 std::vector<GlobeFrame> frames_of(const RunFolder& folder) {
   constexpr std::size_t kMost = 12;
   std::vector<std::filesystem::path> files;
