@@ -75,7 +75,7 @@ def check_ranges(globe):
     is_small = globe.columns * globe.rows < 500_000
     expect(not is_small or globe.source.factor == 1, "a small planet is thinned out by",
            globe.source.factor)
-    surface = globe.parts["relief"].warp.Input
+    surface = globe.parts["topography"].warp.Input
     surface.UpdatePipeline(globe.time)
     for name, (low, high) in ranges_of_files(globe).items():
         array = surface.PointData.GetArray(name)
@@ -135,13 +135,13 @@ def check_stages(folder, pictures):
     globe = Globe(folder)
     globe.go_to(globe.times[-1])
     if not globe.islands:
-        expect(open_edges(globe.parts["relief"].warp.Input) == 0, "the globe is not closed")
+        expect(open_edges(globe.parts["topography"].warp.Input) == 0, "the globe is not closed")
     check_ranges(globe)
     before = take(globe, pictures, "elevation" if "elevation" in globe.fields() else "bare")
     for field in ("biome", "koppen_class", "temperature", "plate_id", "discharge"):
         if field in globe.fields():
             after = take(globe.colour(field), pictures, field)
-            expect(np.abs(after.astype(int) - before).mean() > 2.0, field, "looks like the relief")
+            expect(np.abs(after.astype(int) - before).mean() > 2.0, field, "looks like the topography")
     if "boundary_type" in globe.fields():
         take(globe.show("boundaries", "plates"), pictures, "boundaries")
         globe.hide("boundaries", "plates")
@@ -178,7 +178,7 @@ def check_thinning(folder, _pictures):
     globe = Globe(folder, cells=5000)
     expect(globe.source.factor > 1, "5000 cells were asked for")
     expect("means" in globe.status(), "the status keeps silent on thinning:", globe.status())
-    points = globe.parts["relief"].warp.Input.GetDataInformation().GetNumberOfPoints()
+    points = globe.parts["topography"].warp.Input.GetDataInformation().GetNumberOfPoints()
     expect(1000 < points < 5500, "5000 cells were asked for, there are", points)
 
 
