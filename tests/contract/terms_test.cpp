@@ -26,7 +26,7 @@ const std::vector<Term> kTerms{
      "to subduct; continents are thrust below each other"},
     {"down", R"(\b(plates?|floor|crust|the one|what) (that )?(goes|go) down\b)", "to subduct"},
     {"founder", R"(\bfounder(s|ed|ing)?\b)", "subduction initiation"},
-    {"books", R"(\bbooks?\b)", "budget, mass balance"},
+    {"books", R"(\b(books of|in the books)\b)", "budget, mass balance"},
     {"front", R"(\b(subduction fronts?|nearest.front|front of a plate)\b)",
      "trench, edge of the overriding plate, deformation front"},
     {"overlay", R"(\b(class \w*|healpix)overlay\b)", "conservative remapping"},
