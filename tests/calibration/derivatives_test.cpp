@@ -170,6 +170,7 @@ const std::map<std::string, std::string> kSilent{
     {"erosion.reference_runoff_mm_yr", "rain alone"},
     {"erosion.least_runoff_mm_yr", "rain alone"},
     {"erosion.strait_sill_m", "straits are frozen"},
+    {"erosion.strait_drawdown", "straits are frozen"},
     {"erosion.strait_land_km", "straits are frozen"},
     {"erosion.strait_depth_m", "straits are frozen"},
     {"erosion.strait_width_km", "straits are frozen"},

@@ -166,6 +166,8 @@ void ErosionRun::finish() {
   reshape([&] { return SurfaceFinish(p_, grid_, context_).reshape(elevation_m_); });
   if (p_.steps > 0) {
     reshape([&] { return keep_sea_share(p_, grid_, elevation_m_, sea_share_); });
+    // Where the sea has sunk, straits may have fallen dry.
+    reshape([&] { return join_seas(p_, grid_, elevation_m_); });
   }
   strike(p_.steps);
   if (ice_) ice_->settle_today(*climate_, elevation_m_);

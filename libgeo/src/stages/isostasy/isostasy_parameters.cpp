@@ -122,7 +122,7 @@ std::vector<Parameter> sea_floor_rows(IsostasyParameters& p) {
            "plates made the crust (crust = simulated)",
            "turcotte2002"),
       real("isostasy.slab_trench_m", p.slab_trench_m, "m", 0.0, 15000.0,
-           "depth of a trench below the floor where floor of 100 Myr goes down at 100 mm/yr, crust "
+           "depth of a trench below the floor where floor of 100 Myr subducts at 100 mm/yr, crust "
            "= margins",
            "hilde1983"),
       real("isostasy.seamount_m", p.seamount_m, "m", 0.0, 10000.0,

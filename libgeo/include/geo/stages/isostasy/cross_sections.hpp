@@ -66,7 +66,7 @@ Arithmetic<V> shortening_km_myr(const ConvergentMargins& margins, Index cell, do
          (closing_km_myr * (density.sheet + s.front * (density.wedge - density.sheet)));
 }
 
-/// How deep trenches are: of a margins crust by the age and the speed of the floor that goes down,
+/// How deep trenches are: of a margins crust by the age and the speed of the subducting floor,
 /// else by the strength of the boundary.
 template <class V>
 struct Trenches {

@@ -253,8 +253,8 @@ Subduction subduction_of(const std::array<Side, 2>& sides) {
   return subducts(decides(second.floor_myr, first.floor_myr), Convergence::oceans);
 }
 
-/// Lets of every two plates that floor go down everywhere which is the older one on the mean of the
-/// places where they meet as oceans.
+/// Of every two plates that meet as oceans, the one whose floor is older on the mean of the places
+/// where they do subducts at all of them.
 void hold_slabs_together(std::vector<Subduction>& subductions) {
   std::map<std::pair<std::int16_t, std::int16_t>, double> older_myr;  // the first of them
   const auto pair_of = [](const Subduction& s) { return std::minmax(s.plates[0], s.plates[1]); };

@@ -24,9 +24,9 @@ namespace geo {
 inline constexpr double kDeepestTrench_m = 3000.0;
 [[nodiscard]] double trench_m(double across_km, double strength);
 
-/// Depth of a trench below the floor in front of it, as a share of that where floor of 100 Myr goes
-/// down at 100 mm/yr: sqrt(age / 100 Myr * closing / 100 mm yr-1), both 120 at most. Trenches
-/// deepen with the age of their floor and the rate at which it goes down (Grellet & Dubois 1982;
+/// Depth of a trench below the floor in front of it, as a share of that where floor of 100 Myr
+/// subducts at 100 mm/yr: sqrt(age / 100 Myr * closing / 100 mm yr-1), both 120 at most. Trenches
+/// deepen with the age of their floor and the rate of subduction (Grellet & Dubois 1982;
 /// Hilde & Uyeda 1983). The form goes with the steps of PB2002 (Bird 2003) at ages of Müller et al.
 /// (2008) on ETOPO5, those with thick sediment left out: in sixths of that root from 0.2 to 1.2, a
 /// half of 500 steps lies 0.8, 1.3, 1.7, 2.3 and 2.0 km below the floor at 200 to 400 km, a quarter
@@ -61,11 +61,11 @@ struct ConvergentMargins {
   std::vector<float> strength;
   std::vector<Convergence> kind;
   std::vector<float> closing_mm_yr;  ///< how fast the two plates approach across the boundary
-  std::vector<float> floor_myr;      ///< age of the floor that goes down; 0 where none does
+  std::vector<float> floor_myr;      ///< age of the subducting floor; 0 where none does
   std::vector<float> from_end_km;    ///< from there along it to where plates no longer converge
 };
 
-/// Which of two sea floors goes down: the older one at each place, or that which is older along
+/// Which of two sea floors subducts: the older one at each place, or that which is older along
 /// most of the boundary of two plates. A slab hangs together: arcs do not change sides from place
 /// to place.
 enum class Polarity : std::uint8_t { of_place, of_pair };
