@@ -42,6 +42,7 @@ struct ErosionParameters {
   double till_share = 0.3;
   double grounding_m = 300.0;
   double strait_sill_m = 300.0;
+  double strait_drawdown = 0.2;
   double strait_land_km = 3000.0;
   double strait_depth_m = 60.0;
   double strait_width_km = 80.0;
