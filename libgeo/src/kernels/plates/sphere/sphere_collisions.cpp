@@ -74,6 +74,7 @@ void collide(SphereTectonics& model, std::int32_t sample) {
   body.id = -1;
   body.carrier = static_cast<std::int16_t>(upper);
   body.born_myr = model.state.time_myr;
+  body.chances = {.descent = descent_from(model, body.chances, Descent::terrane, 0)};
   // What has come off a plate in this step is a terrane as a whole.
   const bool is_whole = lower >= model.partition.plates();
   const double rest_km2 = is_whole ? 0.0

@@ -232,6 +232,7 @@ void tidy_pieces(SphereTectonics& model) {
     if (best >= 0 && pieces[best].size() >= pieces.back().size()) continue;
     best = static_cast<std::int32_t>(pieces.size()) - 1;
   }
+  std::vector<std::uint64_t> parts_of(model.state.plates.size(), 0);
   const double small = model.settings.smallest_piece_km2 / model.sample_km2();
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     const std::vector<std::int32_t>& piece = pieces[k];
@@ -243,6 +244,8 @@ void tidy_pieces(SphereTectonics& model) {
       SpherePlate copy = model.state.plates[own];
       copy.id = model.state.begin_life(PlateLife::Origin::piece, copy.id);
       copy.born_myr = model.state.time_myr;
+      copy.chances = {.descent = descent_from(model, model.state.plates[own].chances,
+                                              Descent::piece, parts_of[own]++)};
       const int fresh = model.state.add_plate(copy);
       for (const std::int32_t i : piece) plate[i] = static_cast<std::int16_t>(fresh);
       continue;

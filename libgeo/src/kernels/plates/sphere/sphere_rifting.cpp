@@ -151,7 +151,6 @@ SpherePlate plate_from(const SpherePlate& whole, const Vector3& away, double spe
 
 void rift_by_chance(SphereTectonics& model) {
   const RandomStream random(model.seed, "plates.rifts");
-  const auto step = static_cast<std::uint64_t>(model.state.steps) << 10U;
   const auto plates = static_cast<int>(model.state.plates.size());
   const int largest = model.settings.rift_largest ? largest_plate(model) : -1;
   for (int p = 0; p < plates; ++p) {
@@ -163,23 +162,28 @@ void rift_by_chance(SphereTectonics& model) {
     // Continents break more easily than the floor of oceans.
     const double weight =
         model.settings.rift_largest ? 1.0 : 0.2 + 0.8 * cap.continental / std::max(1, cap.samples);
-    const std::uint64_t index = step + static_cast<std::uint64_t>(p);
     const double chance =
         rift_probability(model.settings.rift_per_myr * model.settings.law.step_myr, weight, ratio);
-    if (random.uniform(index) >= chance) continue;
-    const double draw = random.uniform(index, 1);
+    PlateChances& chances = model.state.plates[p].chances;
+    const PlateChances now = chances;
+    if (!is_struck(chances.rift_hazard, -std::log1p(-chance), random, now, now.rifts)) continue;
+    ++chances.rifts;
+    chances.rift_hazard = 0.0;
+    const double draw = random.uniform(now.descent, draw_of(now.rifts, 1));
     const int fragments = model.settings.rift_largest || draw < 0.6 ? 2 : draw < 0.9 ? 3 : 4;
     // Places drawn on the sphere until enough lie on the plate.
     std::vector<Vector3> places;
+    const DrawnPlaces drawn(random, now, now.rifts);
     for (std::uint64_t k = 0; k < 4000 && std::ssize(places) < fragments; ++k) {
-      const Vector3 at = random.direction((index << 12U) + k);
+      const Vector3 at = drawn[k];
       if (model.state.crust.plate[model.mesh->samples().nearest(back(model.frame[p], at))] == p) {
         places.push_back(at);
       }
     }
     if (std::ssize(places) < 2) continue;
     rift_plate(model, p, places,
-               model.settings.rift_speed_mm_yr * random.uniform(index, 2, 0.6, 1.4));
+               model.settings.rift_speed_mm_yr *
+                   random.uniform(now.descent, draw_of(now.rifts, 2), 0.6, 1.4));
   }
 }
 
@@ -276,6 +280,10 @@ bool part_plate(SphereTectonics& model, int plate, std::span<const std::int8_t> 
   for (std::size_t k = 0; k < away.size(); ++k) {
     if (fragments->size[k] == 0) continue;
     SpherePlate part = plate_from(whole, away[k], speed_mm_yr, is_gradual, model.settings);
+    // What is left of a plate whose floor has begun to subduct goes on.
+    if (is_rift || k > 0) {
+      part.chances = {.descent = descent_from(model, whole.chances, Descent::rift, k)};
+    }
     if (static_cast<std::ptrdiff_t>(k) != fragments->largest()) {
       part.id = state.begin_life(
           is_rift ? PlateLife::Origin::rift : PlateLife::Origin::subduction_initiation, whole.id);

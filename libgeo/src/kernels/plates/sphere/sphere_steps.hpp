@@ -4,12 +4,38 @@
 #include <span>
 #include <vector>
 
+#include "geo/core/random.hpp"
 #include "geo/kernels/plates/sphere/sphere_tectonics.hpp"
 
 namespace geo {
 
 // The parts of a step. Each says what it needs beside fresh plates (SphereTectonics) and what it
 // changes; all add to the budget what they move.
+
+// Chance.
+
+/// The descent of a plate that comes from another one as its n-th part of a kind.
+enum class Descent : std::uint64_t { rift, piece, terrane };
+[[nodiscard]] std::uint64_t descent_from(const SphereTectonics& model, const PlateChances& parent,
+                                         Descent kind, std::uint64_t number);
+/// Adds to a hazard what a rate comes to in a step, and tells whether it has passed the exponential
+/// draw of a stream.
+[[nodiscard]] bool is_struck(double& hazard, double expected, const RandomStream& random,
+                             const PlateChances& of, std::int32_t event);
+/// Number of a draw of the event, of which each has 16.
+[[nodiscard]] inline std::uint64_t draw_of(std::int32_t event, std::uint64_t draw) {
+  return 16U * static_cast<std::uint64_t>(event) + draw;
+}
+/// Places uniform on the sphere, a sequence for each event of a plate.
+class DrawnPlaces {
+ public:
+  DrawnPlaces(const RandomStream& random, const PlateChances& of, std::int32_t event);
+  [[nodiscard]] Vector3 operator[](std::uint64_t k) const { return random_->direction(first_ + k); }
+
+ private:
+  const RandomStream* random_;
+  std::uint64_t first_;
+};
 
 // Plates.
 

@@ -101,6 +101,24 @@ void initiate_subduction(SphereTectonics& model, std::int32_t start) {
   ++model.budget.subduction_initiations;
 }
 
+/// A sample of a margin: the nearest to the first drawn place that has one near. Each place of the
+/// margin has the same chance, however its samples lie.
+std::int32_t drawn_from(const SphereTectonics& model, int plate,
+                        std::span<const std::int32_t> margin, const DrawnPlaces& drawn) {
+  constexpr double kNear_km = 500.0;
+  constexpr std::uint64_t kMost = 20000;
+  const double is_near = std::cos(std::min(3.1, kNear_km / model.settings.radius_km));
+  for (std::uint64_t k = 0; k < kMost; ++k) {
+    const Vector3 at = back(model.frame[plate], drawn[k]);
+    const auto nearness = [&](std::int32_t i) {
+      return dot(model.mesh->samples().position(i), at);
+    };
+    const std::int32_t nearest = *std::ranges::max_element(margin, {}, nearness);
+    if (nearness(nearest) > is_near) return nearest;
+  }
+  return margin.front();
+}
+
 }  // namespace
 
 /// Old floor at a passive margin breaks away from the continent and becomes a plate that subducts
@@ -108,21 +126,24 @@ void initiate_subduction(SphereTectonics& model, std::int32_t start) {
 void initiate_subduction_by_chance(SphereTectonics& model) {
   if (model.settings.initiation_per_myr <= 0.0) return;
   const RandomStream random(model.seed, "plates.foundering");
-  const auto step = static_cast<std::uint64_t>(model.state.steps) << 10U;
   const auto plates = static_cast<int>(model.state.plates.size());
   std::vector<std::vector<std::int32_t>> of_plate(plates);
   for (const std::int32_t i : old_margins(model)) of_plate[model.state.crust.plate[i]].push_back(i);
   const double sample_length = model.settings.radius_km * model.mesh->samples().spacing() / 1000.0;
   for (int p = 0; p < plates; ++p) {
-    const SpherePlate& plate = model.state.plates[p];
+    SpherePlate& plate = model.state.plates[p];
     if (of_plate[p].empty() || !plate.alive || plate.carrier >= 0 || plate.is_held) continue;
     const auto count = static_cast<double>(of_plate[p].size());
     const double expected =
         model.settings.initiation_per_myr * count * sample_length * model.settings.law.step_myr;
-    const std::uint64_t index = step + static_cast<std::uint64_t>(p);
-    if (random.uniform(index) >= -std::expm1(-expected)) continue;
-    initiate_subduction(model,
-                        of_plate[p][static_cast<std::size_t>(count * random.uniform(index, 1))]);
+    const PlateChances now = plate.chances;
+    if (!is_struck(plate.chances.initiation_hazard, expected, random, now, now.initiations)) {
+      continue;
+    }
+    ++plate.chances.initiations;
+    plate.chances.initiation_hazard = 0.0;
+    initiate_subduction(
+        model, drawn_from(model, p, of_plate[p], DrawnPlaces(random, now, now.initiations)));
   }
 }
 

@@ -183,6 +183,11 @@ SphereState beginning(const PlatesParameters& parameters, const SphereMesh& mesh
     SphereState state =
         start_sphere(mesh, sphere_start(parameters, mesh, io, context), settings, context.seed);
     state.plumes = first_plumes(parameters, context.seed);
+    if (context.plates.empty() && parameters.initial_elevation == "noise") {
+      const double step_myr = settings.law.step_myr;
+      state.time_myr = -step_myr * std::round(parameters.spin_up_myr / step_myr);
+      state.resampled_myr = state.time_myr;
+    }
     if (context.reconstruction) state.reconstruction_ma = context.reconstruction->start_ma;
     return state;
   }
@@ -242,6 +247,28 @@ void finish_to_be_seen(SphereTectonics& model) {
   model.state.lives.resize(lives);
 }
 
+/// Lets plates drift up to time 0, from which on their history is told: those that are there then
+/// are the first.
+template <class Progress>
+void spin_up(SphereTectonics& model, Progress&& progress) {
+  SphereState& state = model.state;
+  if (state.time_myr >= 0.0) return;
+  while (state.time_myr < -0.5 * model.settings.law.step_myr) {
+    progress(state.time_myr);
+    advance(model);
+  }
+  model.events.clear();
+  state.time_myr = 0.0;
+  state.steps = 0;
+  state.lives.clear();
+  for (SpherePlate& plate : state.plates) {
+    if (!plate.alive) continue;
+    plate.id = plate.carrier < 0 ? state.begin_life(PlateLife::Origin::first, -1)
+                                 : static_cast<std::int16_t>(-1);
+    plate.born_myr = 0.0;
+  }
+}
+
 /// Hands out a frame: the crust as a resampling would show it, and the state as it is.
 void show(const PlatesParameters& parameters, const SphereTectonics& model, const StageInfo& info,
           const Grid& grid, const Context& context) {
@@ -275,6 +302,12 @@ void drift(const PlatesParameters& parameters, const StageInfo& info, StageIo& i
   MassBalance balance;
   SphereHistory history(io.grid());
   context.steps.columns = MassBalance::columns();
+  const double first_myr = std::min(0.0, model.state.time_myr);
+  const auto progress = [&](double time_myr) {
+    context.advance(0.9 * (time_myr - first_myr) /
+                    std::max(settings.law.step_myr, parameters.time_myr - first_myr));
+  };
+  spin_up(model, progress);
   const auto steps = std::lround(parameters.time_myr / settings.law.step_myr);
   const bool shows = context.on_frame && parameters.frames_myr > 0.0;
   // Frames that are due after so many steps: each multiple of the interval is shown by the step
@@ -286,7 +319,7 @@ void drift(const PlatesParameters& parameters, const StageInfo& info, StageIo& i
   for (auto k = model.state.steps; k < steps; ++k) {
     const double from_myr = model.state.time_myr;
     if (shows && k == 0) show(parameters, model, info, io.grid(), context);
-    context.advance(0.9 * static_cast<double>(k) / static_cast<double>(steps));
+    progress(from_myr);
     begin_step(model);
     if (context.reconstruction) follow_reconstruction(*context.reconstruction, model, context);
     strike_plates(io.grid(), from_myr, from_myr + settings.law.step_myr, model, context);
