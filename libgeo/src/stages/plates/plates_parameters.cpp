@@ -102,6 +102,10 @@ std::vector<Parameter> sphere_drift_rows(PlatesParameters& p) {
   return {
       integer("plates.sphere.samples", p.samples, "1", 500, 8'000'000,
               "samples of crust on the whole planet", "cortial2019"),
+      integer("plates.sphere.motion_samples", p.motion_samples, "1", 0, 8'000'000,
+              "samples on which the motion of plates is solved and decided when they break and "
+              "collide, so that it does not depend on plates.sphere.samples; 0: those of the crust",
+              "design"),
       real("plates.sphere.time_myr", p.time_myr, "Myr", 0.0, 5000.0, "how long plates drift",
            "cortial2019"),
       real(
@@ -181,10 +185,11 @@ std::vector<Parameter> sphere_subduction_rows(PlatesParameters& p) {
            "power of the factor by which the elevation of the subducting crust raises the "
            "overriding plate",
            "cortial2019"),
-      real("plates.sphere.upper_plate_advance_mm_yr", p.sphere.advance_mm_yr, "mm yr-1", 0.0, 1000.0,
-           "advance of an overriding plate on its trench that raises the factor of its uplift by 1, "
-           "from a third at rest up to five thirds; 0: uplift does not depend on it",
-           "heuret2005"),
+      real(
+          "plates.sphere.upper_plate_advance_mm_yr", p.sphere.advance_mm_yr, "mm yr-1", 0.0, 1000.0,
+          "advance of an overriding plate on its trench that raises the factor of its uplift by 1, "
+          "from a third at rest up to five thirds; 0: uplift does not depend on it",
+          "heuret2005"),
       real("plates.sphere.fold_turning_km", p.sphere.fold_per_km, "km-1", 0.0, 1.0,
            "weight of the relative motion in the direction of folds, per kilometre", "cortial2019"),
   };

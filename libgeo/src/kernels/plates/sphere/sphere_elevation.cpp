@@ -64,8 +64,8 @@ class TrenchUplift {
     const int own = m_.state.crust.plate[i];
     const Vector3& here = m_.mesh->samples().position(i);
     const Vector3 closing = normalised(cross(relative_[k], here));
-    const Vector3 speed = scaled(cross(back(m_.frame[own], m_.rotation[own]), here),
-                                 m_.settings.radius_km);
+    const Vector3 speed =
+        scaled(cross(back(m_.frame[own], m_.rotation[own]), here), m_.settings.radius_km);
     return std::clamp(kAtRest - dot(speed, closing) / m_.settings.advance_mm_yr, 0.0, kMost);
   }
 

@@ -44,6 +44,29 @@ std::vector<std::int32_t> old_margins(const SphereTectonics& model) {
   return joined(found);
 }
 
+/// The fragment of the nearest sample, but for the strip between the coasts of two lattices: its
+/// floor breaks with the floor beside it, its land stays.
+FragmentAt floor_that_breaks(const SphereTectonics& model, std::span<const std::int8_t> fragment) {
+  const SphereCrust& crust = model.state.crust;
+  constexpr std::int8_t kStays = 0, kBreaks = 1, kIsland = 2;
+  std::vector<std::int8_t> place_of(crust.plate.size(), kStays);
+  for (std::int32_t i = 0; i < crust.size(); ++i) {
+    const auto ring = model.mesh->neighbours(i);
+    const bool is_beside =
+        std::ranges::any_of(ring, [&](std::int32_t j) { return fragment[j] == 1; });
+    if (fragment[i] == 1) {
+      place_of[i] = crust.continental[i] != 0 ? kIsland : kBreaks;
+    } else if (fragment[i] == 0 && crust.continental[i] != 0 && is_beside) {
+      place_of[i] = kBreaks;
+    }
+  }
+  return [&samples = model.mesh->samples(), place_of = std::move(place_of)](const Vector3& place,
+                                                                            bool continental) {
+    const std::int8_t there = place_of[samples.nearest(place)];
+    return there == kIsland || (there == kBreaks && !continental) ? 1 : 0;
+  };
+}
+
 /// Breaks the floor of a plate along the margin about a sample and sends it below the continent:
 /// all that lies nearer to the old part of that margin than to any other. Nothing happens where
 /// that is too small for a plate, or the margin that of an island.
@@ -94,7 +117,7 @@ void initiate_subduction(SphereTectonics& model, std::int32_t start) {
   const std::vector<Vector3> turns{Vector3{}, down};
   const double speed_mm_yr = model.settings.initiation_speed_mm_yr;
   if (!part_plate(model, plate, fragment, turns, speed_mm_yr,
-                  SphereEvent::Kind::subduction_initiation))
+                  SphereEvent::Kind::subduction_initiation, floor_that_breaks(model, fragment)))
     return;
   model.events.back().area_km2 = model.sample_km2() * static_cast<double>(sinking.size());
   model.events.back().place = times(model.frame[plate], normalised(shore));

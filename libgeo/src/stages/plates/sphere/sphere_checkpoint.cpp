@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <string_view>
 
 namespace geo {
 namespace {
@@ -373,6 +375,32 @@ void get_plumes(const Checkpoint& from, SphereState& state) {
 }
 
 }  // namespace
+
+namespace {
+
+constexpr std::string_view kLeading = "leading_";
+
+}  // namespace
+
+void add_leader(const SphereState& leader, Checkpoint& to) {
+  Checkpoint own = checkpoint_of(leader);
+  for (auto& [name, values] : own.arrays) {
+    to.arrays[std::string(kLeading) + name] = std::move(values);
+  }
+}
+
+bool has_leader(const Checkpoint& from) {
+  return from.arrays.contains(std::string(kLeading) + "plate");
+}
+
+SphereState leader_of(const Checkpoint& from) {
+  Checkpoint own;
+  own.time_myr = from.time_myr;
+  for (const auto& [name, values] : from.arrays) {
+    if (name.starts_with(kLeading)) own.arrays[name.substr(kLeading.size())] = values;
+  }
+  return state_of(own);
+}
 
 Checkpoint checkpoint_of(const SphereState& state) {
   Checkpoint out;

@@ -16,12 +16,12 @@ struct SphereSettings {
   double uplift_control_km = 200.0;  ///< where subduction raises most
   double arc_reach_km = 1800.0;      ///< of the uplift where the overriding crust is oceanic
   double elevation_weight = 1.0;     ///< power of the factor h in the uplift
-  /// Advance of an overriding plate towards its trench by which subduction raises it by 1 more, over
-  /// that of a plate at rest as kUpliftAtRest; 0: it counts not.
+  /// Advance of an overriding plate towards its trench by which subduction raises it by 1 more,
+  /// over that of a plate at rest as kUpliftAtRest; 0: it counts not.
   double advance_mm_yr = 0.0;
-  double fold_per_km = 0.002;        ///< beta of the fold direction, per km of relative motion
-  double slab_pull = 1e-3;           ///< epsilon, per Myr and 1000 km of trench
-  bool by_forces = false;            ///< motion balances forces, in place of that
+  double fold_per_km = 0.002;  ///< beta of the fold direction, per km of relative motion
+  double slab_pull = 1e-3;     ///< epsilon, per Myr and 1000 km of trench
+  bool by_forces = false;      ///< motion balances forces, in place of that
   PlateForces force;
   double penetration_km = 300.0;      ///< of continents, before they collide
   double suture_drag = 0.0;           ///< between them, over that below a plate
