@@ -102,8 +102,21 @@ std::vector<Parameter> sphere_drift_rows(PlatesParameters& p) {
   return {
       integer("plates.sphere.samples", p.samples, "1", 500, 8'000'000,
               "samples of crust on the whole planet", "cortial2019"),
+      integer("plates.sphere.motion_samples", p.motion_samples, "1", 0, 8'000'000,
+              "samples on which the motion of plates is solved and decided when they break and "
+              "collide, so that it does not depend on plates.sphere.samples; 0: those of the crust",
+              "design"),
       real("plates.sphere.time_myr", p.time_myr, "Myr", 0.0, 5000.0, "how long plates drift",
            "cortial2019"),
+      real(
+          "plates.sphere.spin_up_myr", p.spin_up_myr, "Myr", 0.0, 5000.0,
+          "how long plates that are drawn drift before time 0, so that margins, ages and belts are "
+          "those of their motion; plates and elevations that are given begin at time 0",
+          "design"),
+      choice("plates.sphere.initial_continents", p.initial_continents,
+             {"dispersed", "supercontinent"},
+             "where the first continents lie: across plates anywhere, or together on one plate",
+             "design"),
       real("plates.sphere.frames_myr", p.frames_myr, "Myr", 0.0, 5000.0,
            "time between the frames that are written; 0 writes none", "design"),
       real("plates.sphere.time_step_myr", p.sphere.law.step_myr, "Myr", 0.01, 50.0, "time step",
@@ -172,6 +185,11 @@ std::vector<Parameter> sphere_subduction_rows(PlatesParameters& p) {
            "power of the factor by which the elevation of the subducting crust raises the "
            "overriding plate",
            "cortial2019"),
+      real(
+          "plates.sphere.upper_plate_advance_mm_yr", p.sphere.advance_mm_yr, "mm yr-1", 0.0, 1000.0,
+          "advance of an overriding plate on its trench that raises the factor of its uplift by 1, "
+          "from a third at rest up to five thirds; 0: uplift does not depend on it",
+          "heuret2005"),
       real("plates.sphere.fold_turning_km", p.sphere.fold_per_km, "km-1", 0.0, 1.0,
            "weight of the relative motion in the direction of folds, per kilometre", "cortial2019"),
   };
@@ -231,6 +249,10 @@ std::vector<Parameter> sphere_surface_rows(PlatesParameters& p) {
   return {
       choice("plates.sphere.ocean_floor", p.ocean_floor, {"damping", "age"},
              "subsidence of the sea floor, by damping or to the depth of its age", "stein1992"),
+      real("plates.sphere.ridge_segment_km", p.sphere.ridge_segment_km, "km", 0.0, 5000.0,
+           "length of the segments into which transforms cut a ridge at 45 degrees to its motion; "
+           "0: ridges run half way between plates, at any angle",
+           "oldenburg1972"),
       real("plates.sphere.ridge_falloff", p.sphere.ridge_falloff, "1", 0.001, 1.0,
            "distance over which a ridge's profile halves, in radii of the planet", "cortial2019"),
       real("plates.sphere.ocean_damping_mm_yr", p.sphere.law.damping_mm_yr, "mm yr-1", 0.0, 10.0,

@@ -44,8 +44,11 @@ struct PlatesParameters {
 
   // Of the model "sphere".
   std::int64_t samples = 500'000;
+  std::int64_t motion_samples = 0;
   double time_myr = 250.0;
+  double spin_up_myr = 0.0;
   double frames_myr = 0.0;
+  std::string initial_continents = "dispersed";
   std::string given_motions = "held";
   std::string uplift_profile = "piecewise";
   std::string overlap = "crust";

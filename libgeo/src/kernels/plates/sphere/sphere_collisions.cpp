@@ -49,31 +49,55 @@ double penetration_km(const SphereTectonics& model, std::int32_t sample) {
   return model.settings.radius_km * std::clamp(gone - 0.5 * half, 0.0, way);
 }
 
+/// Middle of samples of a plate, in the frame of the planet.
+Vector3 centroid_of(const SphereTectonics& model, int plate,
+                    std::span<const std::int32_t> terrane) {
+  Vector3 sum{};
+  for (const std::int32_t i : terrane) sum = add(sum, model.mesh->samples().position(i));
+  return times(model.frame[plate], normalised(sum));
+}
+
+/// Whether crust of a plate is in a terrane of it, by the nearest sample.
+FragmentAt is_in(const SphereTectonics& model, std::span<const std::int32_t> terrane) {
+  std::vector<std::uint8_t> holds(model.mesh->size(), 0);
+  for (const std::int32_t i : terrane) {
+    holds[i] = 1;
+    for (const std::int32_t j : model.mesh->neighbours(i)) {
+      // Coasts of other samples lie up to one spacing farther out.
+      if (model.state.crust.continental[j] == 0) holds[j] = 1;
+    }
+  }
+  return [&samples = model.mesh->samples(), holds = std::move(holds)](const Vector3& place,
+                                                                      bool continental) {
+    return continental && holds[samples.nearest(place)] != 0 ? 1 : 0;
+  };
+}
+
 /// Slab break, suture and surge: the terrane that holds `sample` comes to its partner's plate.
 void collide(SphereTectonics& model, std::int32_t sample) {
   SphereCrust& crust = model.state.crust;
-  const FibonacciSphere& samples = model.mesh->samples();
   const int lower = crust.plate[sample], upper = crust.plate[model.margins.partner[sample]];
   const std::vector<std::int32_t> terrane = terrane_of(model, sample);
   const double area_km2 = model.sample_km2() * static_cast<double>(terrane.size());
-  Vector3 sum{};
-  for (const std::int32_t i : terrane) sum = add(sum, samples.position(i));
-  const Vector3 centroid = times(model.frame[lower], normalised(sum));
+  const Vector3 centroid = centroid_of(model, lower, terrane);
   // Of what drives them: their continents have slowed each other by now.
   const Vector3 relative =
       add(driven_rotation(model.state, lower), driven_rotation(model.state, upper), -1.0);
   const double speed_mm_yr = model.settings.radius_km * length(cross(relative, centroid));
-  surge(model, {.upper = upper,
-                .terrane = terrane,
-                .centroid = centroid,
-                .area_km2 = area_km2,
-                .speed_mm_yr = speed_mm_yr});
+  PlateChange change{.kind = PlateChange::Kind::collision,
+                     .plate = lower,
+                     .part_at = is_in(model, terrane),
+                     .becomes = {lower, -1},
+                     .upper = upper,
+                     .speed_mm_yr = speed_mm_yr};
+  collide_terrane(model, lower, upper, terrane, speed_mm_yr);
   model.state.pair(lower, model.state.root(upper)).under_km = 0.0F;
 
   SpherePlate body = model.state.plates[lower];
   body.id = -1;
   body.carrier = static_cast<std::int16_t>(upper);
   body.born_myr = model.state.time_myr;
+  body.chances = {.descent = descent_from(model, body.chances, Descent::terrane, 0)};
   // What has come off a plate in this step is a terrane as a whole.
   const bool is_whole = lower >= model.partition.plates();
   const double rest_km2 = is_whole ? 0.0
@@ -85,10 +109,12 @@ void collide(SphereTectonics& model, std::int32_t sample) {
     model.state.end_life(model.state.plates[lower].id, model.state.plates[root].id);
   } else {
     const int carried = model.state.add_plate(body);
+    change.becomes[1] = carried;
     for (const std::int32_t i : terrane) {
       if (crust.plate[i] >= 0) crust.plate[i] = static_cast<std::int16_t>(carried);
     }
   }
+  model.step.changes.push_back(std::move(change));
   derive_motion(model);
   ++model.budget.collisions;
   model.events.push_back(
@@ -96,6 +122,15 @@ void collide(SphereTectonics& model, std::int32_t sample) {
 }
 
 }  // namespace
+
+void collide_terrane(SphereTectonics& model, int lower, int upper,
+                     std::span<const std::int32_t> terrane, double speed_mm_yr) {
+  surge(model, {.upper = upper,
+                .terrane = terrane,
+                .centroid = centroid_of(model, lower, terrane),
+                .area_km2 = model.sample_km2() * static_cast<double>(terrane.size()),
+                .speed_mm_yr = speed_mm_yr});
+}
 
 /// Continents that have gone far enough below another one collide with it.
 void collide_continents(SphereTectonics& model) {

@@ -48,6 +48,9 @@ void find_contacts(SphereTectonics& model) {
   model.margins.contacts = joined(found);
 }
 
+/// Area along which plates must have met before it is final whose floor is younger there.
+constexpr double kMet_km2 = 2e5;
+
 /// Which plate stays up where two meet anew: of oceans the one with the younger floor there, of
 /// continents the one with more of them.
 void decide_pairs(SphereTectonics& model) {
@@ -79,7 +82,10 @@ void decide_pairs(SphereTectonics& model) {
       if (now - pair.last_contact_myr > kForgotten_myr) pair = {.parted_myr = pair.parted_myr};
       pair.last_contact_myr = now;
       const Ages& met = ages[a * plates + b];
-      if (pair.ocean_top < 0 && met.count > 0) pair.ocean_top = met.own <= met.other ? 0 : 1;
+      if (!pair.is_ocean_top_final && met.count > 0) {
+        pair.ocean_top = met.own <= met.other ? 0 : 1;
+        pair.is_ocean_top_final = met.count * model.sample_km2() > kMet_km2;
+      }
       if (pair.continent_top < 0) {
         const auto first = model.partition.cap(static_cast<int>(a)).continental;
         const auto second = model.partition.cap(static_cast<int>(b)).continental;

@@ -31,6 +31,7 @@ class TrenchUplift {
       lift_[k] = std::pow(
           uplift_by_elevation(1e-3 * trench.lower_elevation_m, s.law.trench_km, s.law.summit_km),
           s.elevation_weight);
+      if (s.advance_mm_yr > 0.0) lift_[k] *= uplift_by_advance(k);
     }
   }
   struct Work {
@@ -54,6 +55,20 @@ class TrenchUplift {
   }
 
  private:
+  /// Overriding plates that advance on their trench over the mantle are shortened, those that
+  /// retreat are not (Heuret & Lallemand 2005): the component of their motion against that of the
+  /// subducting plate.
+  [[nodiscard]] double uplift_by_advance(std::size_t k) const {
+    constexpr double kAtRest = 1.0 / 3.0, kMost = 5.0 / 3.0;
+    const std::int32_t i = m_.margins.trenches[k].sample;
+    const int own = m_.state.crust.plate[i];
+    const Vector3& here = m_.mesh->samples().position(i);
+    const Vector3 closing = normalised(cross(relative_[k], here));
+    const Vector3 speed =
+        scaled(cross(back(m_.frame[own], m_.rotation[own]), here), m_.settings.radius_km);
+    return std::clamp(kAtRest - dot(speed, closing) / m_.settings.advance_mm_yr, 0.0, kMost);
+  }
+
   const SphereTectonics& m_;
   std::vector<Vector3> relative_;  // of each trench, in the frame of its plate
   std::vector<double> lift_;       // how much the height of the subducting crust counts

@@ -4,6 +4,7 @@
 
 #include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/crust/ocean_depth.hpp"
+#include "sphere_ridges.hpp"
 #include "sphere_steps.hpp"
 
 namespace geo {
@@ -78,17 +79,13 @@ class Gaps {
     sides_.resize(places_.size());
     hear_from(shores());
   }
-  struct Sides {
-    std::array<std::int32_t, 2> source{-1, -1};
-    std::array<float, 2> chord2{9.0F, 9.0F};
-  };
   [[nodiscard]] const std::vector<std::int32_t>& places() const { return places_; }
-  [[nodiscard]] const std::vector<Sides>& sides() const { return sides_; }
+  [[nodiscard]] const std::vector<GapSides>& sides() const { return sides_; }
 
  private:
   /// True when the place did not know of a source as near of that plate.
   bool offer(std::int32_t i, std::int32_t source) {
-    Sides& at = sides_[number_[i]];
+    GapSides& at = sides_[number_[i]];
     const Vector3 way = add(mesh_.samples().position(i), mesh_.samples().position(source), -1.0);
     const auto chord2 = static_cast<float>(dot(way, way));
     int slot = -1;
@@ -139,38 +136,33 @@ class Gaps {
   const SphereMesh& mesh_;
   const std::vector<std::int16_t>& owner_;
   std::vector<std::int32_t> number_, places_;  // of a place by its sample, and the other way round
-  std::vector<Sides> sides_;                   // of each place
+  std::vector<GapSides> sides_;                // of each place
 };
 
-/// New floor at a place between its sides: the ridge runs half way between them.
+/// New floor at a place of a plate between a ridge and the plate's edge.
 void lay_floor(const SphereTectonics& model, const GapHistory& history, std::int32_t i,
-               const Gaps::Sides& sides, std::span<const std::int16_t> body, SphereCrust& now) {
+               const GapSides& sides, const RidgePlace& ridge, std::span<const std::int16_t> body,
+               SphereCrust& now) {
   const FibonacciSphere& samples = model.mesh->samples();
   const SphereSettings& s = model.settings;
-  const auto [first, second] = sides.source;
-  const double near_km = model.distance_km(i, first);
-  const double far_km = second >= 0 ? model.distance_km(i, second) : near_km;
-  const double ridge_km = 0.5 * (far_km - near_km);
-  const double share = ridge_share(ridge_km, near_km);
-  const double mean_km =
-      1e-3 *
-      (now.elevation_m[first] * far_km +
-       (second >= 0 ? now.elevation_m[second] : now.elevation_m[first]) * near_km) /
-      std::max(1e-9, near_km + far_km);
-  const double profile_km = ridge_profile_km(ridge_km, s.ridge_falloff * s.radius_km, s.law);
+  const std::int32_t own = sides.source[ridge.side], other = sides.source[1 - ridge.side];
+  const double share = ridge_share(ridge.ridge_km, ridge.edge_km);
+  const double near_km = ridge.edge_km, far_km = ridge.edge_km + 2.0 * ridge.ridge_km;
+  const double mean_km = 1e-3 *
+                         (now.elevation_m[own] * far_km +
+                          (other >= 0 ? now.elevation_m[other] : now.elevation_m[own]) * near_km) /
+                         std::max(1e-9, near_km + far_km);
+  const double profile_km = ridge_profile_km(ridge.ridge_km, s.ridge_falloff * s.radius_km, s.law);
   const double age_myr =
-      second >= 0 ? history.age_myr(samples.position(i),
-                                    add(samples.position(second), samples.position(first), -1.0),
-                                    body[first], body[second], share)
-                  : 0.0;
+      other >= 0 ? history.age_myr(samples.position(i),
+                                   add(samples.position(other), samples.position(own), -1.0),
+                                   body[own], body[other], share)
+                 : 0.0;
   now.age_myr[i] = static_cast<float>(age_myr);
   now.elevation_m[i] = static_cast<float>(
       s.floor_by_age ? -ocean_depth_m(age_myr) : 1e3 * new_floor_km(share, mean_km, profile_km));
   now.thickness_m[i] = static_cast<float>(1e3 * s.oceanic_km);
-  if (second < 0) return;
-  const Vector3 from_ridge = add(samples.position(first), samples.position(second), -1.0);
-  const Vector3 ridge = normalised(cross(from_ridge, samples.position(i)));
-  for (int c = 0; c < 3; ++c) now.ridge[i][c] = static_cast<float>(ridge[c]);
+  for (int c = 0; c < 3; ++c) now.ridge[i][c] = static_cast<float>(ridge.along[c]);
 }
 
 }  // namespace
@@ -180,14 +172,17 @@ void fill_gaps(SphereTectonics& model, SphereCrust& now, std::vector<std::int16_
   const Gaps gaps(*model.mesh, owner);
   const GapHistory history(model.state);
   const auto count = static_cast<std::int32_t>(gaps.places().size());
+  const std::vector<RidgePlace> ridge =
+      place_ridges(model, {owner, now.continental, gaps.places(), gaps.sides()});
   ParallelErrors errors;
 #pragma omp parallel for schedule(static)
   for (std::int32_t k = 0; k < count; ++k) {
-    errors.guard([&] { lay_floor(model, history, gaps.places()[k], gaps.sides()[k], body, now); });
+    errors.guard(
+        [&] { lay_floor(model, history, gaps.places()[k], gaps.sides()[k], ridge[k], body, now); });
   }
   errors.rethrow();
   std::vector<std::int32_t> nearest(count);
-  for (std::int32_t k = 0; k < count; ++k) nearest[k] = gaps.sides()[k].source[0];
+  for (std::int32_t k = 0; k < count; ++k) nearest[k] = gaps.sides()[k].source[ridge[k].side];
   stretch_margins(model, gaps.places(), nearest, now, owner);
   for (std::int32_t k = 0; k < count; ++k) owner[gaps.places()[k]] = owner[nearest[k]];
 }

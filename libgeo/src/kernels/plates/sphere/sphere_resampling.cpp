@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <span>
 
 #include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/crust/ocean_depth.hpp"
@@ -216,22 +218,47 @@ void begin_turning_anew(SphereState& state) {
   state.past_myr.clear();
 }
 
+/// The plate that a piece of another one borders most, or -1.
+int bordered_most(const SphereTectonics& model, std::span<const std::int32_t> piece) {
+  const auto& plate = model.state.crust.plate;
+  const std::int16_t own = plate[piece.front()];
+  std::vector<std::int32_t> border(model.state.plates.size(), 0);
+  for (const std::int32_t i : piece) {
+    for (const std::int32_t j : model.mesh->neighbours(i)) {
+      if (plate[j] != own) ++border[plate[j]];
+    }
+  }
+  const auto best = std::ranges::max_element(border);
+  return *best == 0 ? -1 : static_cast<int>(best - border.begin());
+}
+
+/// Connected pieces of plates, and of each plate the number of the largest, or -1.
+struct Pieces {
+  std::vector<std::vector<std::int32_t>> all;
+  std::vector<std::int32_t> largest;
+};
+Pieces pieces_of_plates(const SphereTectonics& model) {
+  const auto& plate = model.state.crust.plate;
+  Pieces pieces{{}, std::vector<std::int32_t>(model.state.plates.size(), -1)};
+  std::vector<std::uint8_t> seen(plate.size(), 0);
+  for (std::int32_t i = 0; i < model.mesh->size(); ++i) {
+    if (seen[i] != 0) continue;
+    const auto own = plate[i];
+    pieces.all.push_back(
+        flooded_from(*model.mesh, i, seen, [&](std::int32_t j) { return plate[j] == own; }));
+    std::int32_t& best = pieces.largest[own];
+    if (best >= 0 && pieces.all[best].size() >= pieces.all.back().size()) continue;
+    best = static_cast<std::int32_t>(pieces.all.size()) - 1;
+  }
+  return pieces;
+}
+
 /// Detached pieces of plates: small ones join the neighbour they border most, large ones are plates
 /// of their own that go on as they did.
 void tidy_pieces(SphereTectonics& model) {
   auto& plate = model.state.crust.plate;
-  std::vector<std::uint8_t> seen(plate.size(), 0);
-  std::vector<std::vector<std::int32_t>> pieces;
-  std::vector<std::int32_t> largest(model.state.plates.size(), -1);
-  for (std::int32_t i = 0; i < model.mesh->size(); ++i) {
-    if (seen[i] != 0) continue;
-    const auto own = plate[i];
-    pieces.push_back(
-        flooded_from(*model.mesh, i, seen, [&](std::int32_t j) { return plate[j] == own; }));
-    std::int32_t& best = largest[own];
-    if (best >= 0 && pieces[best].size() >= pieces.back().size()) continue;
-    best = static_cast<std::int32_t>(pieces.size()) - 1;
-  }
+  const auto [pieces, largest] = pieces_of_plates(model);
+  std::vector<std::uint64_t> parts_of(model.state.plates.size(), 0);
   const double small = model.settings.smallest_piece_km2 / model.sample_km2();
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     const std::vector<std::int32_t>& piece = pieces[k];
@@ -243,29 +270,46 @@ void tidy_pieces(SphereTectonics& model) {
       SpherePlate copy = model.state.plates[own];
       copy.id = model.state.begin_life(PlateLife::Origin::piece, copy.id);
       copy.born_myr = model.state.time_myr;
+      copy.chances = {.descent = descent_from(model, model.state.plates[own].chances,
+                                              Descent::piece, parts_of[own]++)};
       const int fresh = model.state.add_plate(copy);
       for (const std::int32_t i : piece) plate[i] = static_cast<std::int16_t>(fresh);
       continue;
     }
-    std::vector<std::int32_t> border(model.state.plates.size(), 0);
-    for (const std::int32_t i : piece) {
-      for (const std::int32_t j : model.mesh->neighbours(i)) {
-        if (plate[j] != own) ++border[plate[j]];
-      }
-    }
-    const auto best = std::max_element(border.begin(), border.end());
-    if (*best == 0) continue;
+    const int neighbour = bordered_most(model, piece);
+    if (neighbour < 0) continue;
     if (keeps) {
-      model.state.end_life(model.state.plates[own].id,
-                           model.state.plates[best - border.begin()].id);
+      model.state.end_life(model.state.plates[own].id, model.state.plates[neighbour].id);
     }
-    for (const std::int32_t i : piece) plate[i] = static_cast<std::int16_t>(best - border.begin());
+    for (const std::int32_t i : piece) plate[i] = static_cast<std::int16_t>(neighbour);
   }
 }
 
 }  // namespace
 
+void join_small_pieces(SphereTectonics& model) {
+  const auto [pieces, largest] = pieces_of_plates(model);
+  const double small = model.settings.smallest_piece_km2 / model.sample_km2();
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    const auto own = model.state.crust.plate[pieces[k].front()];
+    if (largest[own] == static_cast<std::int32_t>(k)) continue;
+    if (static_cast<double>(pieces[k].size()) > small) continue;
+    const int neighbour = bordered_most(model, pieces[k]);
+    if (neighbour < 0) continue;
+    for (const std::int32_t i : pieces[k]) {
+      model.state.crust.plate[i] = static_cast<std::int16_t>(neighbour);
+    }
+  }
+}
+
 void resample(SphereTectonics& model) {
+  resample(model, [](SphereTectonics& resampled) {
+    tidy_pieces(resampled);
+    derive_plates(resampled);
+  });
+}
+
+void resample(SphereTectonics& model, const std::function<void(SphereTectonics&)>& settle) {
   SphereBudget& budget = model.budget;
   remember_penetration(model);
   measure_volume(model);
@@ -277,8 +321,7 @@ void resample(SphereTectonics& model) {
   model.state.crust = std::move(now.crust);
   model.state.crust.plate = std::move(now.owner);
   begin_turning_anew(model.state);
-  tidy_pieces(model);
-  derive_plates(model);
+  settle(model);
   forget_margins(model);
   const double lost_before_km3 = budget.lost_km3;
   budget.lost_km3 += sunk_km3;

@@ -147,11 +147,39 @@ SpherePlate plate_from(const SpherePlate& whole, const Vector3& away, double spe
   return part;
 }
 
+/// The fragment of the nearest sample.
+FragmentAt by_nearest(const SphereTectonics& model, std::span<const std::int8_t> fragment) {
+  return [&samples = model.mesh->samples(),
+          of = std::vector<std::int8_t>(fragment.begin(), fragment.end())](const Vector3& place,
+                                                                           bool /*continental*/) {
+    return std::max<int>(0, of[samples.nearest(place)]);
+  };
+}
+
+/// The nearest of some places in the frame of the planet, as warped distances see them.
+FragmentAt voronoi_fragments(const SphereTectonics& model, int plate,
+                             std::span<const Vector3> places) {
+  constexpr double kWavelength_km = 1500.0;
+  std::vector<Vector3> local;
+  for (const Vector3& place : places) local.push_back(back(model.frame[plate], place));
+  const double most = 2.2 * model.settings.rift_warp_km / model.settings.radius_km;
+  const double frequency = model.settings.radius_km / kWavelength_km;
+  return [local, most, frequency, warp = Noise(model.seed, "plates.rift_warp")](
+             const Vector3& place, bool /*continental*/) {
+    Vector3 at = place;
+    for (int c = 0; c < 3; ++c) {
+      const Vector3 shifted{place[0] + 3.1 * c, place[1] - 1.7 * c, place[2] + 0.9 * c};
+      at[c] += most * warp.fbm(shifted, frequency, 5);
+    }
+    const auto far = [&](const Vector3& one) { return length(add(at, one, -1.0)); };
+    return static_cast<int>(std::ranges::min_element(local, {}, far) - local.begin());
+  };
+}
+
 }  // namespace
 
 void rift_by_chance(SphereTectonics& model) {
   const RandomStream random(model.seed, "plates.rifts");
-  const auto step = static_cast<std::uint64_t>(model.state.steps) << 10U;
   const auto plates = static_cast<int>(model.state.plates.size());
   const int largest = model.settings.rift_largest ? largest_plate(model) : -1;
   for (int p = 0; p < plates; ++p) {
@@ -163,23 +191,28 @@ void rift_by_chance(SphereTectonics& model) {
     // Continents break more easily than the floor of oceans.
     const double weight =
         model.settings.rift_largest ? 1.0 : 0.2 + 0.8 * cap.continental / std::max(1, cap.samples);
-    const std::uint64_t index = step + static_cast<std::uint64_t>(p);
     const double chance =
         rift_probability(model.settings.rift_per_myr * model.settings.law.step_myr, weight, ratio);
-    if (random.uniform(index) >= chance) continue;
-    const double draw = random.uniform(index, 1);
+    PlateChances& chances = model.state.plates[p].chances;
+    const PlateChances now = chances;
+    if (!is_struck(chances.rift_hazard, -std::log1p(-chance), random, now, now.rifts)) continue;
+    ++chances.rifts;
+    chances.rift_hazard = 0.0;
+    const double draw = random.uniform(now.descent, draw_of(now.rifts, 1));
     const int fragments = model.settings.rift_largest || draw < 0.6 ? 2 : draw < 0.9 ? 3 : 4;
     // Places drawn on the sphere until enough lie on the plate.
     std::vector<Vector3> places;
+    const DrawnPlaces drawn(random, now, now.rifts);
     for (std::uint64_t k = 0; k < 4000 && std::ssize(places) < fragments; ++k) {
-      const Vector3 at = random.direction((index << 12U) + k);
+      const Vector3 at = drawn[k];
       if (model.state.crust.plate[model.mesh->samples().nearest(back(model.frame[p], at))] == p) {
         places.push_back(at);
       }
     }
     if (std::ssize(places) < 2) continue;
     rift_plate(model, p, places,
-               model.settings.rift_speed_mm_yr * random.uniform(index, 2, 0.6, 1.4));
+               model.settings.rift_speed_mm_yr *
+                   random.uniform(now.descent, draw_of(now.rifts, 2), 0.6, 1.4));
   }
 }
 
@@ -187,51 +220,37 @@ void rift_plate(SphereTectonics& model, int plate, std::span<const Vector3> plac
                 double speed_mm_yr) {
   const FibonacciSphere& samples = model.mesh->samples();
   const auto& of = model.state.crust.plate;
-  std::vector<Vector3> local;
-  for (const Vector3& place : places) local.push_back(back(model.frame[plate], place));
-  const double most = 2.2 * model.settings.rift_warp_km / model.settings.radius_km;
-  const Noise warp(model.seed, "plates.rift_warp");
-  constexpr double kWavelength_km = 1500.0;
+  const FragmentAt part_at = voronoi_fragments(model, plate, places);
   std::vector<std::int8_t> fragment(of.size(), -1);
 #pragma omp parallel for schedule(static)
   for (std::int32_t i = 0; i < model.mesh->size(); ++i) {
-    if (of[i] != plate) continue;
-    Vector3 at = samples.position(i);
-    const Vector3 straight = at;
-    for (int c = 0; c < 3; ++c) {
-      const Vector3 shifted{straight[0] + 3.1 * c, straight[1] - 1.7 * c, straight[2] + 0.9 * c};
-      at[c] += most * warp.fbm(shifted, model.settings.radius_km / kWavelength_km, 5);
-    }
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < local.size(); ++k) {
-      const double far = length(add(at, local[k], -1.0));
-      if (far < least) {
-        least = far;
-        fragment[i] = static_cast<std::int8_t>(k);
-      }
-    }
+    if (of[i] == plate) fragment[i] = static_cast<std::int8_t>(part_at(samples.position(i), false));
   }
   Vector3 middle{};
   for (const Vector3& place : places) middle = add(middle, place);
   const auto away =
       across_fractures(model, plate, fragment, static_cast<int>(places.size()), middle);
-  if (part_plate(model, plate, fragment, away, speed_mm_yr, SphereEvent::Kind::rift))
+  if (part_plate(model, plate, fragment, away, speed_mm_yr, SphereEvent::Kind::rift, part_at))
     ++model.budget.rifts;
 }
 
 void rift_plate_along(SphereTectonics& model, int plate, const GreatCircleLine& line, int fragments,
                       double speed_mm_yr) {
+  const FragmentAt part_at = [line, fragments, frame = model.frame[plate]](const Vector3& place,
+                                                                           bool /*continental*/) {
+    const Vector3 at = times(frame, place);
+    const bool is_left = line.is_left(at), is_cut = line.is_beyond_middle(at);
+    return is_left ? (is_cut && fragments > 3 ? 3 : 0) : (is_cut && fragments > 2 ? 2 : 1);
+  };
   const std::int32_t n = model.mesh->size();
   std::vector<std::int8_t> fragment(n, -1);
 #pragma omp parallel for schedule(static)
   for (std::int32_t i = 0; i < n; ++i) {
     if (model.state.crust.plate[i] != plate) continue;
-    const Vector3 at = times(model.frame[plate], model.mesh->samples().position(i));
-    const bool is_left = line.is_left(at), is_cut = line.is_beyond_middle(at);
-    fragment[i] = is_left ? (is_cut && fragments > 3 ? 3 : 0) : (is_cut && fragments > 2 ? 2 : 1);
+    fragment[i] = static_cast<std::int8_t>(part_at(model.mesh->samples().position(i), false));
   }
   const auto away = across_fractures(model, plate, fragment, fragments, line.middle());
-  if (part_plate(model, plate, fragment, away, speed_mm_yr, SphereEvent::Kind::rift))
+  if (part_plate(model, plate, fragment, away, speed_mm_yr, SphereEvent::Kind::rift, part_at))
     ++model.budget.rifts;
 }
 
@@ -262,7 +281,8 @@ std::optional<std::pair<int, int>> split_plate(SphereTectonics& model, int plate
 
 /// The largest fragment keeps the plate's number. One that has no samples comes to nothing.
 bool part_plate(SphereTectonics& model, int plate, std::span<const std::int8_t> fragment,
-                std::span<const Vector3> away, double speed_mm_yr, SphereEvent::Kind kind) {
+                std::span<const Vector3> away, double speed_mm_yr, SphereEvent::Kind kind,
+                FragmentAt part_at) {
   SphereState& state = model.state;
   const auto& cap = model.partition.cap(plate);
   const Vector3 centre = times(model.frame[plate], cap.centre);
@@ -272,10 +292,18 @@ bool part_plate(SphereTectonics& model, int plate, std::span<const std::int8_t> 
   if (!fragments) return false;
   const bool is_rift = kind == SphereEvent::Kind::rift;
   const bool is_gradual = is_rift && model.settings.rift_onset_myr > 0.0;
+  PlateChange change{.kind = PlateChange::Kind::split,
+                     .plate = plate,
+                     .part_at = part_at ? std::move(part_at) : by_nearest(model, fragment),
+                     .becomes = std::vector<int>(away.size(), -1)};
   std::vector<int> numbers;
   for (std::size_t k = 0; k < away.size(); ++k) {
     if (fragments->size[k] == 0) continue;
     SpherePlate part = plate_from(whole, away[k], speed_mm_yr, is_gradual, model.settings);
+    // What is left of a plate whose floor has begun to subduct goes on.
+    if (is_rift || k > 0) {
+      part.chances = {.descent = descent_from(model, whole.chances, Descent::rift, k)};
+    }
     if (static_cast<std::ptrdiff_t>(k) != fragments->largest()) {
       part.id = state.begin_life(
           is_rift ? PlateLife::Origin::rift : PlateLife::Origin::subduction_initiation, whole.id);
@@ -300,7 +328,9 @@ bool part_plate(SphereTectonics& model, int plate, std::span<const std::int8_t> 
       if (nearest == k) state.plates[body].carrier = static_cast<std::int16_t>(number);
     }
     numbers.push_back(number);
+    change.becomes[k] = number;
   }
+  model.step.changes.push_back(std::move(change));
   model.events.push_back({kind, state.time_myr, plate, -1, centre, area_km2});
   derive_plates(model);
   return true;

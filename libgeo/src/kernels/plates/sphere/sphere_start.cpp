@@ -40,6 +40,7 @@ class InitialConditions {
   SphereState make() {
     cut_plates();
     draw_continents();
+    if (start_.supercontinent && start_.plate.empty()) join_continental_plates();
     draw_elevation();
     return std::move(state_);
   }
@@ -49,6 +50,7 @@ class InitialConditions {
     for (std::size_t p = 0; p < start_.rotation_rad_myr.size(); ++p) {
       const Vector3& rotation = start_.rotation_rad_myr[p];
       SpherePlate plate;
+      plate.chances.descent = p;
       if (!start_.driver.empty()) plate.driver = start_.driver[p];
       plate.speed_rad_myr = length(rotation);
       if (plate.speed_rad_myr > 0.0) plate.axis = normalised(rotation);
@@ -79,6 +81,7 @@ class InitialConditions {
       }
       centroids.push_back(best);
       SpherePlate plate;
+      plate.chances.descent = static_cast<std::uint64_t>(k);
       plate.axis = random.direction(100000 + static_cast<std::uint64_t>(k));
       plate.speed_rad_myr = settings_.law.speed_mm_yr / settings_.radius_km *
                             random.uniform(200000 + static_cast<std::uint64_t>(k), 0, 0.2, 1.0);
@@ -132,11 +135,7 @@ class InitialConditions {
       }
       return;
     }
-    const Noise noise(seed_, "plates.continents");
-    const auto height = !start_.elevation_m.empty()
-                            ? start_.elevation_m
-                            : fbm_at(noise, mesh_.samples().positions(),
-                                     settings_.radius_km / start_.continent_km, 8, 0.55);
+    const auto height = !start_.elevation_m.empty() ? start_.elevation_m : drawn_height();
     if (!start_.elevation_m.empty() || start_.smallest_sea_km2 <= 0.0) {
       return raise_highest(height, wanted);
     }
@@ -151,6 +150,44 @@ class InitialConditions {
     }
   }
 
+  /// Noise whose highest places are continents: anywhere, or about one place.
+  [[nodiscard]] std::vector<float> drawn_height() const {
+    const Noise noise(seed_, "plates.continents");
+    std::vector<float> height = fbm_at(noise, mesh_.samples().positions(),
+                                       settings_.radius_km / start_.continent_km, 8, 0.55);
+    if (!start_.supercontinent) return height;
+    constexpr double kGathering = 2.0;  // over the noise's own range, of about 1
+    const Vector3 middle = RandomStream(seed_, "plates.supercontinent").direction(0);
+    for (std::int32_t i = 0; i < mesh_.size(); ++i) {
+      height[i] += static_cast<float>(kGathering * dot(middle, mesh_.samples().position(i)));
+    }
+    return height;
+  }
+  /// Plates that are mostly continent become one, which carries the supercontinent.
+  void join_continental_plates() {
+    std::vector<std::int32_t> size(state_.plates.size(), 0), land(size);
+    for (std::int32_t i = 0; i < mesh_.size(); ++i) {
+      ++size[state_.crust.plate[i]];
+      land[state_.crust.plate[i]] += state_.crust.continental[i];
+    }
+    std::vector<std::int16_t> joined(size.size());
+    std::vector<SpherePlate> kept;
+    std::int16_t carrier = -1;
+    for (std::size_t p = 0; p < size.size(); ++p) {
+      const bool is_land = 2 * land[p] > size[p];
+      if (is_land && carrier >= 0) {
+        joined[p] = carrier;
+        continue;
+      }
+      joined[p] = static_cast<std::int16_t>(kept.size());
+      if (is_land) carrier = joined[p];
+      kept.push_back(state_.plates[p]);
+    }
+    state_.plates.clear();
+    state_.pairs.clear();
+    for (const SpherePlate& plate : kept) state_.add_plate(plate);
+    for (std::int16_t& plate : state_.crust.plate) plate = joined[plate];
+  }
   /// The highest samples are continents.
   void raise_highest(std::span<const float> height, std::int32_t count) {
     std::vector<float> sorted(height.begin(), height.end());

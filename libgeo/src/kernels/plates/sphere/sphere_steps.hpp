@@ -4,12 +4,38 @@
 #include <span>
 #include <vector>
 
+#include "geo/core/random.hpp"
 #include "geo/kernels/plates/sphere/sphere_tectonics.hpp"
 
 namespace geo {
 
 // The parts of a step. Each says what it needs beside fresh plates (SphereTectonics) and what it
 // changes; all add to the budget what they move.
+
+// Chance.
+
+/// The descent of a plate that comes from another one as its n-th part of a kind.
+enum class Descent : std::uint64_t { rift, piece, terrane };
+[[nodiscard]] std::uint64_t descent_from(const SphereTectonics& model, const PlateChances& parent,
+                                         Descent kind, std::uint64_t number);
+/// Adds to a hazard what a rate comes to in a step, and tells whether it has passed the exponential
+/// draw of a stream.
+[[nodiscard]] bool is_struck(double& hazard, double expected, const RandomStream& random,
+                             const PlateChances& of, std::int32_t event);
+/// Number of a draw of the event, of which each has 16.
+[[nodiscard]] inline std::uint64_t draw_of(std::int32_t event, std::uint64_t draw) {
+  return 16U * static_cast<std::uint64_t>(event) + draw;
+}
+/// Places uniform on the sphere, a sequence for each event of a plate.
+class DrawnPlaces {
+ public:
+  DrawnPlaces(const RandomStream& random, const PlateChances& of, std::int32_t event);
+  [[nodiscard]] Vector3 operator[](std::uint64_t k) const { return random_->direction(first_ + k); }
+
+ private:
+  const RandomStream* random_;
+  std::uint64_t first_;
+};
 
 // Plates.
 
@@ -20,6 +46,8 @@ void derive_plates(SphereTectonics& model);
 void derive_motion(SphereTectonics& model);
 /// Needs floor that has become continental since. Derives the counts of continents and ranks.
 void derive_ranks(SphereTectonics& model);
+/// The same as derive_plates() for plates that are another model's, which do not end here.
+void derive_followed_plates(SphereTectonics& model);
 /// Turns plates by a step and remembers where they were.
 void move_plates(SphereTectonics& model);
 /// The rotation that drives a plate, without what it yields to others, rad/Myr.
@@ -92,6 +120,9 @@ struct Collision {
 /// at most `surge_km`, and its reach drawn in until its volume is what was swallowed. Needs
 /// margins; leaves it to the caller to derive the plates.
 void surge(SphereTectonics& model, const Collision& what);
+/// What a terrane (samples of plate `lower`) does to another plate when it collides. Needs margins.
+void collide_terrane(SphereTectonics& model, int lower, int upper,
+                     std::span<const std::int32_t> terrane, double speed_mm_yr);
 /// Needs margins. Pairs of plates keep how far their continents have come below each other.
 void remember_penetration(SphereTectonics& model);
 /// Plates rift, and old margins begin to subduct, by chance.
@@ -99,10 +130,23 @@ void rift_by_chance(SphereTectonics& model);
 void initiate_subduction_by_chance(SphereTectonics& model);
 /// Fragments of a plate (-1 beside it) become plates, each turned about an axis on top of the old
 /// motion. False when there are no two.
+/// `part_at` tells other samples their fragment; without it they have that of the nearest sample.
+using FragmentAt = std::function<int(const Vector3& place, bool continental)>;
 bool part_plate(SphereTectonics& model, int plate, std::span<const std::int8_t> fragment,
-                std::span<const Vector3> away, double speed_mm_yr, SphereEvent::Kind kind);
+                std::span<const Vector3> away, double speed_mm_yr, SphereEvent::Kind kind,
+                FragmentAt part_at = {});
 
 // Resampling.
+
+/// resample(), with something else done to plates that have come apart: `settle` leaves them
+/// derived.
+void resample(SphereTectonics& model, const std::function<void(SphereTectonics&)>& settle);
+/// Detached pieces of plates that are too small to be plates join the neighbour they border most.
+void join_small_pieces(SphereTectonics& model);
+/// Ends the step: what follows happens at its end, and the next one may begin.
+void end_step(SphereTectonics& model);
+/// Uplift, erosion, volcanoes and rivers of a step. Needs margins.
+void shape_crust(SphereTectonics& model);
 
 /// New floor and the margins of continents where no plate is. `now` is the crust that grows,
 /// `owner` the plate of each of its samples, -1 in gaps before and nowhere after, `body` what moved

@@ -44,6 +44,29 @@ std::vector<std::int32_t> old_margins(const SphereTectonics& model) {
   return joined(found);
 }
 
+/// The fragment of the nearest sample, but for the strip between the coasts of two lattices: its
+/// floor breaks with the floor beside it, its land stays.
+FragmentAt floor_that_breaks(const SphereTectonics& model, std::span<const std::int8_t> fragment) {
+  const SphereCrust& crust = model.state.crust;
+  constexpr std::int8_t kStays = 0, kBreaks = 1, kIsland = 2;
+  std::vector<std::int8_t> place_of(crust.plate.size(), kStays);
+  for (std::int32_t i = 0; i < crust.size(); ++i) {
+    const auto ring = model.mesh->neighbours(i);
+    const bool is_beside =
+        std::ranges::any_of(ring, [&](std::int32_t j) { return fragment[j] == 1; });
+    if (fragment[i] == 1) {
+      place_of[i] = crust.continental[i] != 0 ? kIsland : kBreaks;
+    } else if (fragment[i] == 0 && crust.continental[i] != 0 && is_beside) {
+      place_of[i] = kBreaks;
+    }
+  }
+  return [&samples = model.mesh->samples(), place_of = std::move(place_of)](const Vector3& place,
+                                                                            bool continental) {
+    const std::int8_t there = place_of[samples.nearest(place)];
+    return there == kIsland || (there == kBreaks && !continental) ? 1 : 0;
+  };
+}
+
 /// Breaks the floor of a plate along the margin about a sample and sends it below the continent:
 /// all that lies nearer to the old part of that margin than to any other. Nothing happens where
 /// that is too small for a plate, or the margin that of an island.
@@ -94,11 +117,29 @@ void initiate_subduction(SphereTectonics& model, std::int32_t start) {
   const std::vector<Vector3> turns{Vector3{}, down};
   const double speed_mm_yr = model.settings.initiation_speed_mm_yr;
   if (!part_plate(model, plate, fragment, turns, speed_mm_yr,
-                  SphereEvent::Kind::subduction_initiation))
+                  SphereEvent::Kind::subduction_initiation, floor_that_breaks(model, fragment)))
     return;
   model.events.back().area_km2 = model.sample_km2() * static_cast<double>(sinking.size());
   model.events.back().place = times(model.frame[plate], normalised(shore));
   ++model.budget.subduction_initiations;
+}
+
+/// A sample of a margin: the nearest to the first drawn place that has one near. Each place of the
+/// margin has the same chance, however its samples lie.
+std::int32_t drawn_from(const SphereTectonics& model, int plate,
+                        std::span<const std::int32_t> margin, const DrawnPlaces& drawn) {
+  constexpr double kNear_km = 500.0;
+  constexpr std::uint64_t kMost = 20000;
+  const double is_near = std::cos(std::min(3.1, kNear_km / model.settings.radius_km));
+  for (std::uint64_t k = 0; k < kMost; ++k) {
+    const Vector3 at = back(model.frame[plate], drawn[k]);
+    const auto nearness = [&](std::int32_t i) {
+      return dot(model.mesh->samples().position(i), at);
+    };
+    const std::int32_t nearest = *std::ranges::max_element(margin, {}, nearness);
+    if (nearness(nearest) > is_near) return nearest;
+  }
+  return margin.front();
 }
 
 }  // namespace
@@ -108,21 +149,24 @@ void initiate_subduction(SphereTectonics& model, std::int32_t start) {
 void initiate_subduction_by_chance(SphereTectonics& model) {
   if (model.settings.initiation_per_myr <= 0.0) return;
   const RandomStream random(model.seed, "plates.foundering");
-  const auto step = static_cast<std::uint64_t>(model.state.steps) << 10U;
   const auto plates = static_cast<int>(model.state.plates.size());
   std::vector<std::vector<std::int32_t>> of_plate(plates);
   for (const std::int32_t i : old_margins(model)) of_plate[model.state.crust.plate[i]].push_back(i);
   const double sample_length = model.settings.radius_km * model.mesh->samples().spacing() / 1000.0;
   for (int p = 0; p < plates; ++p) {
-    const SpherePlate& plate = model.state.plates[p];
+    SpherePlate& plate = model.state.plates[p];
     if (of_plate[p].empty() || !plate.alive || plate.carrier >= 0 || plate.is_held) continue;
     const auto count = static_cast<double>(of_plate[p].size());
     const double expected =
         model.settings.initiation_per_myr * count * sample_length * model.settings.law.step_myr;
-    const std::uint64_t index = step + static_cast<std::uint64_t>(p);
-    if (random.uniform(index) >= -std::expm1(-expected)) continue;
-    initiate_subduction(model,
-                        of_plate[p][static_cast<std::size_t>(count * random.uniform(index, 1))]);
+    const PlateChances now = plate.chances;
+    if (!is_struck(plate.chances.initiation_hazard, expected, random, now, now.initiations)) {
+      continue;
+    }
+    ++plate.chances.initiations;
+    plate.chances.initiation_hazard = 0.0;
+    initiate_subduction(
+        model, drawn_from(model, p, of_plate[p], DrawnPlaces(random, now, now.initiations)));
   }
 }
 

@@ -27,15 +27,14 @@ bool is_due(const SphereTectonics& model) {
   return steps >= std::lround(wanted);
 }
 
-/// What follows happens at the end of the step, and the next one may begin.
+}  // namespace
+
 void end_step(SphereTectonics& model) {
   model.state.time_myr += model.settings.law.step_myr;
   ++model.state.steps;
   model.budget.time_myr = model.state.time_myr;
   model.has_begun = false;
 }
-
-}  // namespace
 
 SphereTectonics::SphereTectonics(const SphereMesh& with, const SphereSettings& by, SphereState from,
                                  std::uint64_t random_seed)
@@ -83,6 +82,12 @@ void derive_plates(SphereTectonics& model) {
   derive_ranks(model);
 }
 
+void derive_followed_plates(SphereTectonics& model) {
+  model.partition.rebuild(model.state);
+  derive_motion(model);
+  derive_ranks(model);
+}
+
 void measure_volume(SphereTectonics& model) {
   const SphereCrust& crust = model.state.crust;
   SphereBudget& budget = model.budget;
@@ -103,8 +108,15 @@ void measure_volume(SphereTectonics& model) {
 void begin_step(SphereTectonics& model) {
   if (model.has_begun) return;
   model.budget = {};
+  model.step = {};
   if (model.settings.no_net_rotation) subtract_net_rotation(model);
   model.has_begun = true;
+}
+
+void shape_crust(SphereTectonics& model) {
+  raise_crust(model);
+  erupt(model);
+  if (model.settings.by_rivers) run_rivers(model);
 }
 
 void advance(SphereTectonics& model) {
@@ -113,9 +125,8 @@ void advance(SphereTectonics& model) {
   derive_ranks(model);
   move_plates(model);
   find_margins(model);
-  raise_crust(model);
-  erupt(model);
-  if (s.by_rivers) run_rivers(model);
+  model.step.met = model.state.pairs;
+  shape_crust(model);
   if (!s.by_forces) pull_slabs(model);
   yield_to_links(model, s.by_forces ? balance_forces(model) : drag_below(model));
   end_step(model);
@@ -123,6 +134,8 @@ void advance(SphereTectonics& model) {
   spread_roots(model);
   rift_by_chance(model);
   initiate_subduction_by_chance(model);
+  model.step.plates = model.state.plates;
+  model.step.pairs = model.state.pairs;
   if (is_due(model)) {
     resample(model);
   } else {

@@ -177,15 +177,24 @@ namespace {
 
 constexpr double kDegrees = 57.29577951308232;
 
-SphereState beginning(const PlatesParameters& parameters, const SphereMesh& mesh,
-                      const SphereSettings& settings, const StageIo& io, Context& context) {
-  if (context.checkpoint == nullptr) {
-    SphereState state =
-        start_sphere(mesh, sphere_start(parameters, mesh, io, context), settings, context.seed);
-    state.plumes = first_plumes(parameters, context.seed);
-    if (context.reconstruction) state.reconstruction_ma = context.reconstruction->start_ma;
-    return state;
+/// Plates and crust as they begin to drift, with a spin-up before time 0 where all is drawn.
+SphereState drawn_state(const PlatesParameters& parameters, const SphereMesh& mesh,
+                        const SphereSettings& settings, const StageIo& io, Context& context) {
+  SphereState state =
+      start_sphere(mesh, sphere_start(parameters, mesh, io, context), settings, context.seed);
+  state.plumes = first_plumes(parameters, context.seed);
+  if (context.plates.empty() && parameters.initial_elevation == "noise") {
+    const double step_myr = settings.law.step_myr;
+    state.time_myr = -step_myr * std::round(parameters.spin_up_myr / step_myr);
+    state.resampled_myr = state.time_myr;
   }
+  if (context.reconstruction) state.reconstruction_ma = context.reconstruction->start_ma;
+  return state;
+}
+
+/// As a frame has them.
+SphereState resumed_state(const PlatesParameters& parameters, const SphereMesh& mesh,
+                          Context& context) {
   SphereState state = state_of(*context.checkpoint);
   if (!context.checkpoint->arrays.contains("plumes")) {
     state.plumes = first_plumes(parameters, context.seed);
@@ -198,6 +207,107 @@ SphereState beginning(const PlatesParameters& parameters, const SphereMesh& mesh
   if (context.reconstruction) check_reconstruction(*context.reconstruction, state);
   return state;
 }
+
+/// A lattice and the model on it.
+struct SampledModel {
+  template <class Begin>
+  SampledModel(std::int64_t count, const SphereSettings& settings, std::uint64_t seed,
+               Begin&& begin)
+      : samples(static_cast<std::int32_t>(count)),
+        mesh(samples),
+        model(mesh, settings, begin(mesh), seed) {}
+
+  FibonacciSphere samples;
+  SphereMesh mesh;
+  SphereTectonics model;
+};
+
+/// The crust that drifts, and the plates that lead it where they have samples of their own.
+class Drift {
+ public:
+  Drift(const PlatesParameters& parameters, const SphereSettings& settings, const StageIo& io,
+        Context& context) {
+    const bool resumes = context.checkpoint != nullptr;
+    crust_ = std::make_unique<SampledModel>(
+        parameters.samples, settings, context.seed, [&](const SphereMesh& mesh) {
+          return resumes ? resumed_state(parameters, mesh, context)
+                         : drawn_state(parameters, mesh, settings, io, context);
+        });
+    if (needs_leader(parameters, context)) {
+      const std::size_t warnings = context.warnings.size();  // of what both have in common
+      leader_ = std::make_unique<SampledModel>(
+          parameters.motion_samples, settings, context.seed, [&](const SphereMesh& mesh) {
+            return resumes ? leading_state(*context.checkpoint, mesh)
+                           : drawn_state(parameters, mesh, settings, io, context);
+          });
+      context.warnings.resize(warnings);
+    }
+    if (!resumes && !context.plates.empty()) {
+      if (settings.no_net_rotation) subtract_net_rotation(plates());
+      if (settings.hold_motions) hold_motions(plates());
+    }
+    if (!resumes && leader_) follow(crust(), plates());
+  }
+  [[nodiscard]] SphereTectonics& crust() { return crust_->model; }
+  [[nodiscard]] SphereTectonics& plates() { return leader_ ? leader_->model : crust_->model; }
+  [[nodiscard]] const SphereTectonics* leader() const {
+    return leader_ ? &leader_->model : nullptr;
+  }
+
+  void begin_step() { leader_ ? begin_step_of_both(crust(), plates()) : geo::begin_step(crust()); }
+  void advance() { leader_ ? advance_both(crust(), plates()) : geo::advance(crust()); }
+
+  /// Lets plates drift up to time 0, from which on their history is told: those that are there then
+  /// are the first.
+  template <class Progress>
+  void spin_up(Progress&& progress) {
+    if (plates().state.time_myr >= 0.0) return;
+    while (plates().state.time_myr < -0.5 * plates().settings.law.step_myr) {
+      progress(plates().state.time_myr);
+      advance();
+    }
+    begin_history(plates());
+    if (!leader_) return;
+    begin_history(crust());
+    crust().state.plates = plates().state.plates;
+    crust().state.lives = plates().state.lives;
+  }
+
+ private:
+  static bool needs_leader(const PlatesParameters& parameters, const Context& context) {
+    const bool leads = parameters.motion_samples > 0 &&
+                       parameters.motion_samples != parameters.samples && !context.reconstruction;
+    if (context.checkpoint != nullptr && leads != has_leader(*context.checkpoint)) {
+      throw InputError(leads ? "plates: the frame to go on from has no samples of motion: "
+                               "plates.sphere.motion_samples must be 0"
+                             : "plates: the frame to go on from has samples of motion: "
+                               "plates.sphere.motion_samples must be their number");
+    }
+    return leads;
+  }
+  static SphereState leading_state(const Checkpoint& from, const SphereMesh& mesh) {
+    SphereState state = leader_of(from);
+    if (state.crust.size() == mesh.size()) return state;
+    throw InputError("plates: the frame to go on from has " + std::to_string(state.crust.size()) +
+                     " samples of motion: plates.sphere.motion_samples must be that, not " +
+                     std::to_string(mesh.size()));
+  }
+  static void begin_history(SphereTectonics& model) {
+    SphereState& state = model.state;
+    model.events.clear();
+    state.time_myr = 0.0;
+    state.steps = 0;
+    state.lives.clear();
+    for (SpherePlate& plate : state.plates) {
+      if (!plate.alive) continue;
+      plate.id = plate.carrier < 0 ? state.begin_life(PlateLife::Origin::first, -1)
+                                   : static_cast<std::int16_t>(-1);
+      plate.born_myr = 0.0;
+    }
+  }
+
+  std::unique_ptr<SampledModel> crust_, leader_;
+};
 
 std::string_view word_for(SphereEvent::Kind kind) {
   switch (kind) {
@@ -243,11 +353,12 @@ void finish_to_be_seen(SphereTectonics& model) {
 }
 
 /// Hands out a frame: the crust as a resampling would show it, and the state as it is.
-void show(const PlatesParameters& parameters, const SphereTectonics& model, const StageInfo& info,
-          const Grid& grid, const Context& context) {
-  SphereTectonics seen = model;
+void show(const PlatesParameters& parameters, Drift& drift, const StageInfo& info, const Grid& grid,
+          const Context& context) {
+  SphereTectonics seen = drift.crust();
   finish_to_be_seen(seen);
-  Frame frame{State(std::make_shared<const Grid>(grid)), checkpoint_of(model.state)};
+  Frame frame{State(std::make_shared<const Grid>(grid)), checkpoint_of(drift.crust().state)};
+  if (drift.leader() != nullptr) add_leader(drift.leader()->state, frame.checkpoint);
   StageIo io(frame.fields, info);
   SphereOnGrid(parameters, seen, io, context).draw(io);
   context.on_frame(std::move(frame));
@@ -263,18 +374,18 @@ void drift(const PlatesParameters& parameters, const StageInfo& info, StageIo& i
   context.advance(0.0);
   const SphereSettings settings =
       settings_of(parameters, 1e-3 * io.grid().figure().radius_m, context);
-  const FibonacciSphere samples(static_cast<std::int32_t>(parameters.samples));
-  const SphereMesh mesh(samples);
-  SphereTectonics model(mesh, settings, beginning(parameters, mesh, settings, io, context),
-                        context.seed);
-  if (context.checkpoint == nullptr && !context.plates.empty()) {
-    if (settings.no_net_rotation) subtract_net_rotation(model);
-    if (settings.hold_motions) hold_motions(model);
-  }
+  Drift drift(parameters, settings, io, context);
+  SphereTectonics& model = drift.crust();
   if (context.reconstruction) drive_plates(*context.reconstruction, model, context);
   MassBalance balance;
   SphereHistory history(io.grid());
   context.steps.columns = MassBalance::columns();
+  const double first_myr = std::min(0.0, model.state.time_myr);
+  const auto progress = [&](double time_myr) {
+    context.advance(0.9 * (time_myr - first_myr) /
+                    std::max(settings.law.step_myr, parameters.time_myr - first_myr));
+  };
+  drift.spin_up(progress);
   const auto steps = std::lround(parameters.time_myr / settings.law.step_myr);
   const bool shows = context.on_frame && parameters.frames_myr > 0.0;
   // Frames that are due after so many steps: each multiple of the interval is shown by the step
@@ -285,17 +396,18 @@ void drift(const PlatesParameters& parameters, const StageInfo& info, StageIo& i
   };
   for (auto k = model.state.steps; k < steps; ++k) {
     const double from_myr = model.state.time_myr;
-    if (shows && k == 0) show(parameters, model, info, io.grid(), context);
-    context.advance(0.9 * static_cast<double>(k) / static_cast<double>(steps));
-    begin_step(model);
+    if (shows && k == 0) show(parameters, drift, info, io.grid(), context);
+    progress(from_myr);
+    drift.begin_step();
     if (context.reconstruction) follow_reconstruction(*context.reconstruction, model, context);
-    strike_plates(io.grid(), from_myr, from_myr + settings.law.step_myr, model, context);
-    history.enter(model);
-    advance(model);
+    strike_plates(io.grid(), from_myr, from_myr + settings.law.step_myr, drift.plates(), model,
+                  context);
+    history.enter(drift.plates());
+    drift.advance();
     balance.enter(model.budget);
     context.steps.rows.push_back(MassBalance::row(model));
     if (shows && frames_due(k + 1) > frames_due(k)) {
-      show(parameters, model, info, io.grid(), context);
+      show(parameters, drift, info, io.grid(), context);
     }
   }
   context.advance(0.9);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <string_view>
 
 namespace geo {
 namespace {
@@ -32,7 +34,7 @@ Directions directions(const std::vector<float>& values) {
 /// Refuses numbers that nothing could go on from: steps would never reach a time of them.
 void check_numbers(const Checkpoint& from) {
   for (const char* name : {"plate_numbers", "clock", "kept_rotation_rad_myr", "plate_yielding",
-                           "plumes", "volcanoes", "reconstruction_ma"}) {
+                           "plumes", "volcanoes", "reconstruction_ma", "plate_chances"}) {
     if (!from.arrays.contains(name)) continue;
     for (const double value : from.get<double>(name)) {
       if (!std::isfinite(value)) refuse();
@@ -60,6 +62,7 @@ bool carriers_end(const std::vector<std::int16_t>& carrier) {
 constexpr std::size_t kNumbers = 9;         // of a plate: turn, axis, speed, birth
 constexpr std::size_t kVolcanoNumbers = 6;  // of a plume: number, volcanoes, place, volume
 constexpr std::size_t kTurnNumbers = 4;
+constexpr std::size_t kChanceNumbers = 6;  // of a plate: descent in two, hazards, events
 
 using Arrays = std::map<std::string, Values>;
 
@@ -135,6 +138,37 @@ void get_past(const Checkpoint& from, SphereState& state) {
     for (std::size_t k = 0; k < times; ++k, at += kTurnNumbers) {
       plate.past.push_back({at[0], {at[1], at[2], at[3]}});
     }
+  }
+}
+
+void put_chances(const SphereState& state, Arrays& to) {
+  std::vector<double> numbers;
+  for (const SpherePlate& plate : state.plates) {
+    const PlateChances& of = plate.chances;
+    numbers.insert(numbers.end(), {static_cast<double>(of.descent >> 32U),
+                                   static_cast<double>(of.descent & 0xFFFFFFFFU), of.rift_hazard,
+                                   of.initiation_hazard, static_cast<double>(of.rifts),
+                                   static_cast<double>(of.initiations)});
+  }
+  to["plate_chances"] = numbers;
+}
+
+void get_chances(const Checkpoint& from, SphereState& state) {
+  const auto& numbers = from.get<double>("plate_chances");
+  if (numbers.size() != kChanceNumbers * state.plates.size()) refuse();
+  constexpr double kMost = 4294967295.0;
+  for (std::size_t p = 0; p < state.plates.size(); ++p) {
+    const double* at = numbers.data() + kChanceNumbers * p;
+    for (std::size_t k : {0, 1, 4, 5}) {
+      const double most = k < 2 ? kMost : 1e9;
+      if (!(at[k] >= 0.0 && at[k] <= most)) refuse();
+    }
+    state.plates[p].chances = {
+        .descent = (static_cast<std::uint64_t>(at[0]) << 32U) | static_cast<std::uint64_t>(at[1]),
+        .rift_hazard = at[2],
+        .initiation_hazard = at[3],
+        .rifts = static_cast<std::int32_t>(at[4]),
+        .initiations = static_cast<std::int32_t>(at[5])};
   }
 }
 
@@ -217,17 +251,19 @@ std::vector<SpherePlate> get_plates(const Checkpoint& from) {
 }
 
 void put_pairs(const SphereState& state, Arrays& to) {
-  std::vector<std::int8_t> ocean, continent;
+  std::vector<std::int8_t> ocean, continent, is_final;
   std::vector<float> contact, parted, under;
   for (const PlatePair& pair : state.pairs) {
     ocean.push_back(pair.ocean_top);
     continent.push_back(pair.continent_top);
+    is_final.push_back(pair.is_ocean_top_final ? 1 : 0);
     contact.push_back(pair.last_contact_myr);
     parted.push_back(pair.parted_myr);
     under.push_back(pair.under_km);
   }
   to["pair_ocean_top"] = ocean;
   to["pair_continent_top"] = continent;
+  to["pair_ocean_top_final"] = is_final;
   to["pair_last_contact_myr"] = contact;
   to["pair_parted_myr"] = parted;
   to["pair_under_km"] = under;
@@ -240,7 +276,10 @@ std::vector<PlatePair> get_pairs(const Checkpoint& from, std::size_t plates) {
   const std::size_t count = plates * plates;
   if (ocean.size() != count || continent.size() != count || contact.size() != count) refuse();
   std::vector<PlatePair> pairs;
-  for (std::size_t k = 0; k < count; ++k) pairs.push_back({ocean[k], continent[k], contact[k]});
+  for (std::size_t k = 0; k < count; ++k) {
+    pairs.push_back(
+        {.ocean_top = ocean[k], .continent_top = continent[k], .last_contact_myr = contact[k]});
+  }
   return pairs;
 }
 
@@ -264,6 +303,15 @@ void get_later_additions(const Checkpoint& from, SphereState& state) {
       state.plates[p].yielding = {at[0], at[1], at[2]};
     }
     for (std::size_t k = 0; k < parted.size(); ++k) state.pairs[k].parted_myr = parted[k];
+  }
+  for (std::size_t p = 0; p < plates; ++p) state.plates[p].chances.descent = p;
+  if (from.arrays.contains("plate_chances")) {
+    get_chances(from, state);
+    const auto& is_final = from.get<std::int8_t>("pair_ocean_top_final");
+    if (is_final.size() != state.pairs.size()) refuse();
+    for (std::size_t k = 0; k < is_final.size(); ++k) {
+      state.pairs[k].is_ocean_top_final = is_final[k] != 0;
+    }
   }
   if (from.arrays.contains("pair_under_km")) {
     const auto& under = from.get<float>("pair_under_km");
@@ -328,6 +376,32 @@ void get_plumes(const Checkpoint& from, SphereState& state) {
 
 }  // namespace
 
+namespace {
+
+constexpr std::string_view kLeading = "leading_";
+
+}  // namespace
+
+void add_leader(const SphereState& leader, Checkpoint& to) {
+  Checkpoint own = checkpoint_of(leader);
+  for (auto& [name, values] : own.arrays) {
+    to.arrays[std::string(kLeading) + name] = std::move(values);
+  }
+}
+
+bool has_leader(const Checkpoint& from) {
+  return from.arrays.contains(std::string(kLeading) + "plate");
+}
+
+SphereState leader_of(const Checkpoint& from) {
+  Checkpoint own;
+  own.time_myr = from.time_myr;
+  for (const auto& [name, values] : from.arrays) {
+    if (name.starts_with(kLeading)) own.arrays[name.substr(kLeading.size())] = values;
+  }
+  return state_of(own);
+}
+
 Checkpoint checkpoint_of(const SphereState& state) {
   Checkpoint out;
   out.time_myr = state.time_myr;
@@ -337,6 +411,7 @@ Checkpoint checkpoint_of(const SphereState& state) {
   put_plumes(state, out.arrays);
   put_lives(state, out.arrays);
   put_past(state, out.arrays);
+  put_chances(state, out.arrays);
   put_drivers(state, out.arrays);
   const Vector3& kept = state.kept_rotation_rad_myr;
   out.arrays["kept_rotation_rad_myr"] = std::vector<double>{kept[0], kept[1], kept[2]};

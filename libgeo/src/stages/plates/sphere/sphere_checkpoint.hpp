@@ -10,4 +10,9 @@ namespace geo {
 [[nodiscard]] Checkpoint checkpoint_of(const SphereState& state);
 [[nodiscard]] SphereState state_of(const Checkpoint& checkpoint);
 
+/// The same of the model whose plates lead, beside the first.
+void add_leader(const SphereState& leader, Checkpoint& to);
+[[nodiscard]] bool has_leader(const Checkpoint& from);
+[[nodiscard]] SphereState leader_of(const Checkpoint& from);
+
 }  // namespace geo

@@ -187,6 +187,7 @@ SphereStart sphere_start(const PlatesParameters& parameters, const SphereMesh& m
   start.continental_share = parameters.cratons.share;
   start.whole_plates = parameters.continents == "plates";
   start.oldest_floor_myr = parameters.oldest_floor_myr;
+  start.supercontinent = parameters.initial_continents == "supercontinent";
   if (!context.plates.empty()) take_plates(mesh, context, start);
   if (parameters.initial_elevation == "hypsography") {
     start.elevation_m = hypsographic_heights_m(parameters, io, context, mesh.samples().positions());

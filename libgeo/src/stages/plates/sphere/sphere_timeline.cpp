@@ -26,7 +26,8 @@ using Figures = std::vector<std::pair<std::string, double>>;
 /// One event that is due.
 class Stroke {
  public:
-  Stroke(const Grid& grid, SphereTectonics& model) : grid_(grid), model_(model) {}
+  Stroke(const Grid& grid, SphereTectonics& plates, SphereTectonics& crust)
+      : grid_(grid), model_(plates), crust_(crust) {}
 
   /// False when no plate is at the place.
   bool operator()(const PlateMotion& motion, Figures& figures) const {
@@ -59,26 +60,15 @@ class Stroke {
     return true;
   }
   bool operator()(const CrustChange& change, Figures& figures) const {
-    figures.emplace_back("area_km2", area_changed_km2(change));
+    if (&model_ != &crust_) change_crust_of(model_, change);
+    figures.emplace_back("area_km2", change_crust_of(crust_, change));
     return true;
   }
   /// False when there is no plume to end.
   bool operator()(const PlumeChange& change, Figures& figures) const {
-    const Vector3 at = place_of(change.latitude_deg, change.longitude_deg);
-    auto& plumes = model_.state.plumes;
-    if (change.active) {
-      std::int64_t number = 0;
-      for (const SpherePlume& plume : plumes) number = std::max(number, plume.number + 1);
-      plumes.push_back({.place = at, .growth_mm_yr = change.growth_mm_yr, .number = number});
-    } else {
-      const auto nearest = std::max_element(plumes.begin(), plumes.end(),
-                                            [&](const SpherePlume& a, const SpherePlume& b) {
-                                              return dot(a.place, at) < dot(b.place, at);
-                                            });
-      if (nearest == plumes.end()) return false;
-      plumes.erase(nearest);
-    }
-    figures.emplace_back("plumes", static_cast<double>(plumes.size()));
+    if (&model_ != &crust_) change_plumes(model_.state.plumes, change);
+    if (!change_plumes(crust_.state.plumes, change)) return false;
+    figures.emplace_back("plumes", static_cast<double>(crust_.state.plumes.size()));
     return true;
   }
   bool operator()(const auto&, Figures&) const { return false; }
@@ -93,21 +83,39 @@ class Stroke {
     rift_plate_along(model_, plate, line, static_cast<int>(rift.fragments), rift.speed_mm_yr);
     return true;
   }
-  [[nodiscard]] double area_changed_km2(const CrustChange& change) const {
-    const double warp_km = model_.settings.coast_warp_km;
+  /// False when there is none to end.
+  bool change_plumes(std::vector<SpherePlume>& plumes, const PlumeChange& change) const {
+    const Vector3 at = place_of(change.latitude_deg, change.longitude_deg);
+    if (change.active) {
+      std::int64_t number = 0;
+      for (const SpherePlume& plume : plumes) number = std::max(number, plume.number + 1);
+      plumes.push_back({.place = at, .growth_mm_yr = change.growth_mm_yr, .number = number});
+      return true;
+    }
+    const auto nearest = std::max_element(plumes.begin(), plumes.end(),
+                                          [&](const SpherePlume& a, const SpherePlume& b) {
+                                            return dot(a.place, at) < dot(b.place, at);
+                                          });
+    if (nearest == plumes.end()) return false;
+    plumes.erase(nearest);
+    return true;
+  }
+  /// The area that has changed, km2.
+  double change_crust_of(SphereTectonics& model, const CrustChange& change) const {
+    const double warp_km = model.settings.coast_warp_km;
     if (change.path.empty()) {
       // A small circle keeps its shape and its area as well as a large one.
       constexpr double kMost = 0.2;
       const Vector3 middle = place_of(change.latitude_deg, change.longitude_deg);
       const double lowest =
-          std::cos(std::min(change.radius_km / model_.settings.radius_km, std::numbers::pi));
+          std::cos(std::min(change.radius_km / model.settings.radius_km, std::numbers::pi));
       return change_crust(
-          model_, [&](const Vector3& place) { return dot(place, middle) >= lowest; },
+          model, [&](const Vector3& place) { return dot(place, middle) >= lowest; },
           change.continental, std::min(warp_km, kMost * change.radius_km));
     }
     const RegionOutline region(std::span(&change.path, 1));
     return change_crust(
-        model_, [&](const Vector3& place) { return region.holds(position_of(grid_, place)); },
+        model, [&](const Vector3& place) { return region.holds(position_of(grid_, place)); },
         change.continental, warp_km);
   }
   /// The number by which files know a plate.
@@ -125,7 +133,8 @@ class Stroke {
   }
 
   const Grid& grid_;
-  SphereTectonics& model_;
+  SphereTectonics& model_;  // whose plates are asked and moved
+  SphereTectonics& crust_;
 };
 
 /// Where a line or a region is told to be: the middle of the line, the mean of the outline.
@@ -164,9 +173,9 @@ double time_of(const Event& event) {
 
 }  // namespace
 
-void strike_plates(const Grid& grid, double from_myr, double to_myr, SphereTectonics& model,
-                   Context& context) {
-  const Stroke stroke(grid, model);
+void strike_plates(const Grid& grid, double from_myr, double to_myr, SphereTectonics& plates,
+                   SphereTectonics& crust, Context& context) {
+  const Stroke stroke(grid, plates, crust);
   for (std::size_t i = 0; i < context.events.size(); ++i) {
     const Event& event = context.events[i];
     const double time_myr = time_of(event);

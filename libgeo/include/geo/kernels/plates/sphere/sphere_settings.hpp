@@ -16,9 +16,12 @@ struct SphereSettings {
   double uplift_control_km = 200.0;  ///< where subduction raises most
   double arc_reach_km = 1800.0;      ///< of the uplift where the overriding crust is oceanic
   double elevation_weight = 1.0;     ///< power of the factor h in the uplift
-  double fold_per_km = 0.002;        ///< beta of the fold direction, per km of relative motion
-  double slab_pull = 1e-3;           ///< epsilon, per Myr and 1000 km of trench
-  bool by_forces = false;            ///< motion balances forces, in place of that
+  /// Advance of an overriding plate towards its trench by which subduction raises it by 1 more,
+  /// over that of a plate at rest as kUpliftAtRest; 0: it counts not.
+  double advance_mm_yr = 0.0;
+  double fold_per_km = 0.002;  ///< beta of the fold direction, per km of relative motion
+  double slab_pull = 1e-3;     ///< epsilon, per Myr and 1000 km of trench
+  bool by_forces = false;      ///< motion balances forces, in place of that
   PlateForces force;
   double penetration_km = 300.0;      ///< of continents, before they collide
   double suture_drag = 0.0;           ///< between them, over that below a plate
@@ -27,6 +30,7 @@ struct SphereSettings {
   double oceanic_km = 7.0;            ///< thickness of new crust
   double arc_km = 25.0;               ///< thickness of an island arc when it emerges
   double ridge_falloff = 0.05;        ///< sigma of the ridge's profile, in radii
+  double ridge_segment_km = 0.0;      ///< of a ridge at 45 degrees to its motion; 0: half way
   bool floor_by_age = false;          ///< depth by GDH1 instead of damping
   double accretion_top_km = -3.0;     ///< up to which a trench's sediment piles
   double accretion_width_km = 100.0;  ///< of the wedge

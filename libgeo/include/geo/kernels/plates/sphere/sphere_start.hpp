@@ -15,6 +15,7 @@ struct SphereStart {
   std::int64_t plates = 40;
   double continental_share = 0.3;   ///< of the area
   bool whole_plates = false;        ///< continents are whole plates; else they lie across plates
+  bool supercontinent = false;      ///< all land about one place, on a plate of its own
   double warp_km = 700.0;           ///< of the plates' borders
   double continent_km = 4500.0;     ///< wavelength of continents
   double smallest_sea_km2 = 0.0;    ///< less than that, enclosed by land, is land; 0 closes none

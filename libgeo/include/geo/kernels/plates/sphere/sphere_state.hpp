@@ -29,6 +29,16 @@ struct SphereCrust {
   [[nodiscard]] std::int32_t size() const { return static_cast<std::int32_t>(plate.size()); }
 };
 
+/// What of a plate is left to chance. Draws belong to a plate by its descent, which is the same
+/// however many samples there are, and not to its number or place. Events are those of Poisson
+/// processes: one happens when the integral of its rate over time, the hazard, passes an
+/// exponential draw, so that a small change of a rate moves an event a little and does not undo it.
+struct PlateChances {
+  std::uint64_t descent = 0;
+  double rift_hazard = 0.0, initiation_hazard = 0.0;  ///< since the last event of that kind
+  std::int32_t rifts = 0, initiations = 0;            ///< events of the plate so far
+};
+
 /// A rigid plate. Positions of its samples are `turn` times those of the lattice.
 struct SpherePlate {
   /// In SphereState::lives, and in files: no other plate of a run has it. -1: a terrane that
@@ -47,6 +57,7 @@ struct SpherePlate {
   Vector3 yielding{};  ///< by which plates that it meets or parts from change its rotation, rad/Myr
   /// Its number in the reconstruction whose rotations drive it, or -1.
   std::int32_t driver = -1;
+  PlateChances chances;
 };
 
 /// What is known of a plate by its number, also when it is no more.
@@ -66,8 +77,9 @@ struct PlateLife {
 
 /// What is remembered of two plates, the one of lower number first.
 struct PlatePair {
-  std::int8_t ocean_top = -1;      ///< which one's ocean floor stays up: 0 first, 1 second
-  std::int8_t continent_top = -1;  ///< the same of their continents
+  std::int8_t ocean_top = -1;       ///< which one's ocean floor stays up: 0 first, 1 second
+  bool is_ocean_top_final = false;  ///< they have met along enough of their edges to tell
+  std::int8_t continent_top = -1;   ///< the same of their continents
   float last_contact_myr = -1e9F;
   float parted_myr = -1e9F;  ///< when a rift made them
   float under_km = 0.0F;  ///< how far one continent had been thrust below the other at resampling

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "geo/kernels/plates/sphere/plate_change.hpp"
 #include "geo/kernels/plates/sphere/sphere_budget.hpp"
 #include "geo/kernels/plates/sphere/sphere_mesh.hpp"
 #include "geo/kernels/plates/sphere/sphere_partition.hpp"
@@ -79,6 +80,7 @@ struct SphereTectonics {
   SphereBudget budget;              ///< of the last step, or of the one that has begun
   bool has_begun = false;           ///< whether the budget of the next step is open
   std::vector<SphereEvent> events;  ///< all that have happened so far
+  PlateStep step;                   ///< the last one, or the one that has begun
 
   /// Area that each sample stands for.
   [[nodiscard]] double sample_km2() const;
@@ -98,6 +100,23 @@ void advance(SphereTectonics& model);
 void resample(SphereTectonics& model);
 /// Resamples unless the last step has; the budget is that of this alone.
 void finish(SphereTectonics& model);
+
+// Through time, led by the plates of another model.
+
+/// Plates that move, break and collide as those of a leader: the same planet on other samples. The
+/// motion of plates amplifies any difference, so that two models that each decide for themselves
+/// part, however fine they are; led, they have the same plates. The follower's crust is its own:
+/// it is raised, worn, thickened and resampled where its own samples lie.
+///
+/// Takes the leader's plates over. The crust of both has just been resampled, or made: each
+/// connected piece of the follower's continents and floors comes to the plate that holds most of
+/// it on the leader's samples.
+void follow(SphereTectonics& follower, const SphereTectonics& leader);
+/// begin_step() of both. What is done to plates after it is done to the leader alone, what is done
+/// to crust and plumes to both.
+void begin_step_of_both(SphereTectonics& follower, SphereTectonics& leader);
+/// advance() of both.
+void advance_both(SphereTectonics& follower, SphereTectonics& leader);
 
 // What is done to the model from outside, between steps.
 
