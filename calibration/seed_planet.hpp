@@ -40,12 +40,12 @@ struct FrozenDrainage {
   double divergent_length_km = 0.0, transform_length_km = 0.0;  ///< that the frame was made with
   std::vector<float> erodibility;
   std::vector<std::uint8_t> outlets, landlocked;
-  /// Cells that straits have drowned before the first step and after the last, and their heights,
-  /// m.
+  /// Cells that straits have drowned before the first step, after the last, and once the sea has
+  /// moved, and their heights, m.
   using Straits = std::vector<std::pair<Index, float>>;
-  Straits straits, late_straits;
-  float late_level_m = 0.0F;       ///< of the sea after them
-  std::vector<Drainage> drainage;  ///< one for each routing of the erosion stage
+  Straits straits, late_straits, last_straits;
+  float late_level_m = 0.0F, last_level_m = 0.0F;  ///< of the sea after them
+  std::vector<Drainage> drainage;                  ///< one for each routing of the erosion stage
   /// Sea level as a mean over cells next to it (by share) or over the sea (by volume), and how it
   /// follows the share or volume that is asked for.
   struct Sea {
@@ -324,11 +324,17 @@ PlanetSurface<V> SeedPlanet::evaluate(const Model& model, const ActiveVariables<
   inject_noise(p, active, grid, seed_, z);
   warp(p, active, grid, seed_, z);
   landscape.relax();
-  if (routes) {
-    held_.late_level_m =
-        p.steps > 0 ? moved_sea_level_m(p, grid, as_floats<V>(z), sea_share) : 0.0F;
-  }
-  for (V& height_m : z) height_m -= V(held_.late_level_m);
+  const auto keep_sea_share = [&](float& level_m) {
+    if (routes) {
+      level_m = p.steps > 0 ? moved_sea_level_m(p, grid, as_floats<V>(z), sea_share) : 0.0F;
+    }
+    for (V& height_m : z) height_m -= V(level_m);
+  };
+  keep_sea_share(held_.late_level_m);
+  // Where the sea has sunk, straits may have fallen dry.
+  if (routes) find_straits(p, as_floats<V>(z), held_.last_straits);
+  for (const auto& [cell, height_m] : held_.last_straits) z[cell] = V(height_m);
+  if (!held_.last_straits.empty()) keep_sea_share(held_.last_level_m);
   sum_up<V>(p, active, landscape, ground.surface);
   return std::move(ground.surface);
 }
