@@ -11,12 +11,12 @@
 #include "calibration/checkpoint.hpp"
 #include "calibration/fit.hpp"
 #include "calibration/report/report.hpp"
+#include "calibration/session/comparison.hpp"
+#include "calibration/session/fit_folder.hpp"
+#include "calibration/session/starting_points.hpp"
 #include "calibration/uncertainty.hpp"
 #include "geo/core/error.hpp"
-#include "geo/core/random.hpp"
-#include "geo/io/config/config.hpp"
 #include "geo/io/config/run_settings.hpp"
-#include "geo/io/files/digest.hpp"
 #include "geo/io/run/run_folder.hpp"
 
 namespace geo::calibration {
@@ -44,7 +44,7 @@ class Calibration {
   }
 
   Result run() {
-    look_at_folder();
+    checkpoint_ = begin_or_resume(request_, problem_.target, folder_);
     folder_.open();
     say(fmt::format("target {}; {} parameters; {} planets of {} x {}", problem_.target.name,
                     problem_.free.size(), seeds_.size(), size_.nx, size_.ny));
@@ -83,97 +83,6 @@ class Calibration {
   }
   [[nodiscard]] fs::path state_file() const { return folder_.path() / kStateFile; }
 
-  /// What the answer depends on.
-  [[nodiscard]] std::string question() const {
-    Settings settings = settings_;
-    settings.iterations = 0;  // a fit may be given more time
-    settings.profiles = true;
-    settings.error_m = 0.0;  // standard errors come after the fit
-    settings.held_out.clear();
-    settings.held_out_grid.clear();
-    const auto own = settings.parameters();
-    std::string text = io::write_config(request_.configuration, "", request_.events) +
-                       io::write_config(own, "") + request_.target;
-    const Target& target = problem_.target;
-    text += fmt::format(" {} {}", fmt::join(target.elevation_m, " "),
-                        fmt::join(target.deviation_m, " "));
-    return io::digest_of(std::string_view(text));
-  }
-
-  void look_at_folder() {
-    if (folder_.path().empty()) throw ConfigurationError("-o \"\": must name a folder");
-    const std::string shown = folder_.path().string();
-    const bool held = fs::exists(state_file()) || fs::exists(folder_.path() / kResultFile);
-    if (folder_.holds_run()) {
-      throw ConfigurationError(
-          fmt::format("{} holds a run of terrane run: choose another folder", shown));
-    }
-    if (request_.resume && request_.overwrite) {
-      throw ConfigurationError("--resume and --overwrite exclude each other: choose one");
-    }
-    if (held && !request_.resume && !request_.overwrite) {
-      throw ConfigurationError(fmt::format(
-          "{} already holds a calibration: --resume goes on with it, --overwrite replaces it",
-          shown));
-    }
-    checkpoint_.question = question();
-    checkpoint_.builders = {io::this_builder()};
-    if (!request_.resume) return;
-    if (!fs::exists(state_file())) {
-      throw ConfigurationError(
-          fmt::format("--resume: {} holds no calibration to go on with", shown));
-    }
-    Checkpoint before = read_checkpoint(state_file());
-    if (before.question != checkpoint_.question) {
-      throw ConfigurationError(
-          fmt::format("--resume: the configuration or the target changed; --overwrite calibrates "
-                      "{} again",
-                      shown));
-    }
-    take_over(before.builders, shown);
-    checkpoint_ = std::move(before);
-    // One that ran out of iterations may have been given more.
-    FitState& state = checkpoint_.state;
-    if (state.ended && !state.converged && state.iteration < settings_.iterations) {
-      state.ended = false;
-      if (!checkpoint_.starts.empty()) checkpoint_.starts.pop_back();
-    }
-  }
-
-  /// Another build may compute other planets: it goes on where that is asked for, and is listed.
-  void take_over(std::vector<io::Builder>& builders, const std::string& shown) const {
-    const io::Builder here = io::this_builder();
-    const io::Builder last = builders.empty() ? io::Builder{} : builders.back();
-    if (last == here) return;
-    if (!request_.allow_other_build) {
-      throw ConfigurationError(fmt::format(
-          "--resume: {} was made by terrane {}, this is {}; --allow-other-build goes on "
-          "nevertheless, --overwrite calibrates again",
-          shown, builders.empty() ? "of an earlier version" : last.words_beside(here),
-          here.words_beside(last)));
-    }
-    builders.push_back(here);
-  }
-
-  /// The configuration itself, then places within the bounds or within a factor 2.
-  [[nodiscard]] std::vector<Eigen::VectorXd> starting_points() const {
-    std::vector<Eigen::VectorXd> points{problem_.present()};
-    const RandomStream random(0, "calibration.starts");
-    for (std::int64_t n = 1; n < settings_.starts; ++n) {
-      Eigen::VectorXd x = points.front();
-      for (std::size_t i = 0; i < problem_.free.size(); ++i) {
-        const FreeParameter& free = problem_.free[i];
-        const double reach = free.logarithmic ? std::log(2.0) : 0.5;
-        const double centre = points.front()[Eigen::Index(i)];
-        const double low = std::max(centre - reach, free.to_x(free.low));
-        const double high = std::min(centre + reach, free.to_x(free.high));
-        x[Eigen::Index(i)] = random.uniform(std::uint64_t(n), i, low, high);
-      }
-      points.push_back(x);
-    }
-    return points;
-  }
-
   void describe(Objective& objective) {
     result_.target_name = problem_.target.name;
     result_.preset_or_config = request_.preset_or_config;
@@ -183,9 +92,9 @@ class Calibration {
     start_ = problem_.present();
     result_.cost_before = 0.5 * objective.evaluate(start_).squaredNorm();
     before_ = objective.statistics();
-    result_.before = mean_curve(objective.fine_bins());
+    result_.before = mean_curve(problem_.target, objective.fine_bins());
     before_bins_ = objective.fine_bins();
-    result_.target = shown_curve(problem_.target.fine_bin_m);
+    result_.target = shown_curve(problem_.target, problem_.target.fine_bin_m);
     Eigen::MatrixXd rates;
     objective.linearise(start_, &rates);
     for (std::size_t i = 0; i < problem_.free.size(); ++i) {
@@ -205,33 +114,8 @@ class Calibration {
     }
   }
 
-  /// A curve of fine bins by a hundred points, or as many as there are bins where the target tells
-  /// of no more.
-  [[nodiscard]] Curve shown_curve(const std::vector<double>& fine) const {
-    const int first = problem_.target.first_bin(), end = problem_.target.end_bin();
-    const int points = std::min(100, end - first);
-    const double each = static_cast<double>(end - first) / points;
-    Curve curve{std::vector<double>(points, 0.0), double(first) / kFineBins,
-                double(end) / kFineBins};
-    for (int k = 0; k < points; ++k) {
-      const double from = first + k * each, to = first + (k + 1) * each;
-      for (int bin = static_cast<int>(from); bin < end && bin < to; ++bin) {
-        const double part = std::min(to, bin + 1.0) - std::max(from, double(bin));
-        curve.elevation_m[k] += fine[bin] * part / each;
-      }
-    }
-    return curve;
-  }
-  [[nodiscard]] Curve mean_curve(const std::vector<std::vector<double>>& fine) const {
-    std::vector<double> mean(kFineBins, 0.0);
-    for (const auto& of_seed : fine) {
-      for (int k = 0; k < kFineBins; ++k) mean[k] += of_seed[k] / static_cast<double>(fine.size());
-    }
-    return shown_curve(mean);
-  }
-
   void fit_from_all_starts(Objective& objective) {
-    const auto points = starting_points();
+    const auto points = starting_points(problem_, settings_.starts);
     const auto begin = Clock::now();
     const double earlier_s = checkpoint_.seconds;
     for (std::size_t n = checkpoint_.starts.size(); n < points.size(); ++n) {
@@ -250,19 +134,15 @@ class Calibration {
             if (!now.ended) write_checkpoint(checkpoint_, state_file());
             if (watch_.iteration) watch_.iteration(iteration);
           });
-      Start start{values_at(points[n]), values_at(state.x), state.cost,
-                  state.converged,      state.iteration,    state.ending};
+      Start start{values_at(problem_, points[n]),
+                  values_at(problem_, state.x),
+                  state.cost,
+                  state.converged,
+                  state.iteration,
+                  state.ending};
       checkpoint_.starts.push_back(start);
       write_checkpoint(checkpoint_, state_file());
     }
-  }
-
-  [[nodiscard]] std::vector<double> values_at(const Eigen::VectorXd& x) const {
-    std::vector<double> values;
-    for (std::size_t i = 0; i < problem_.free.size(); ++i) {
-      values.push_back(problem_.free[i].to_value(x[Eigen::Index(i)]));
-    }
-    return values;
   }
 
   Eigen::VectorXd choose_best() {
@@ -275,30 +155,13 @@ class Calibration {
     for (std::size_t i = 0; i < problem_.free.size(); ++i) {
       x[Eigen::Index(i)] = problem_.free[i].to_x(best->to[i]);
     }
-    if (checkpoint_.starts.size() > 1) compare_starts(*best);
-    return x;
-  }
-
-  /// Other minima as good as the best one.
-  void compare_starts(const Start& best) {
-    constexpr double kAsGood = 1.05, kElsewhere = 0.1;
-    int others = 0;
-    for (const Start& start : checkpoint_.starts) {
-      if (start.cost > kAsGood * best.cost + 1e-9) continue;
-      for (std::size_t i = 0; i < problem_.free.size(); ++i) {
-        const FreeParameter& free = problem_.free[i];
-        if (std::abs(free.to_x(start.to[i]) - free.to_x(best.to[i])) > kElsewhere) {
-          ++others;
-          break;
-        }
-      }
-    }
-    if (others > 0) {
+    if (const int others = equally_good_elsewhere(problem_, checkpoint_.starts, *best)) {
       result_.warnings.push_back(
           fmt::format("{} other starting points ended as well as the best one with other values: "
                       "the target does not single out one answer",
                       others));
     }
+    return x;
   }
 
   void judge(Objective& objective, const Eigen::VectorXd& x) {
@@ -307,15 +170,16 @@ class Calibration {
     Eigen::MatrixXd rates;
     objective.linearise(x, &rates);
     result_.cost_after = 0.5 * residual.squaredNorm();
-    result_.after = mean_curve(objective.fine_bins());
+    result_.after = mean_curve(problem_.target, objective.fine_bins());
     for (std::size_t s = 0; s < seeds_.size(); ++s) {
       result_.fitted.push_back({seeds_[s], wasserstein_m(before_bins_[s], problem_.target),
                                 wasserstein_m(objective.fine_bins()[s], problem_.target)});
     }
     result_.fitted_spread = {spread_m(before_bins_, problem_.target),
                              spread_m(objective.fine_bins(), problem_.target)};
-    list_parameters(x);
-    list_residuals(objective);
+    result_.parameters = fitted_parameters(problem_, start_, x);
+    say_of_bounds();
+    result_.residuals = residuals_of(problem_, before_, objective.statistics());
     assess(objective, problem_, x, residual, rates, result_);
     if (settings_.profiles) {
       say("profiles");
@@ -327,57 +191,6 @@ class Calibration {
     result_.jacobians = objective.jacobians();
     result_.seconds_per_forward = objective.forward_seconds() / std::max(1, result_.forward_runs);
     result_.seconds_per_jacobian = objective.jacobian_seconds() / std::max(1, result_.jacobians);
-  }
-
-  void list_parameters(const Eigen::VectorXd& x) {
-    const auto from = values_at(start_), to = values_at(x);
-    std::vector<std::string_view> stopped;
-    for (std::size_t i = 0; i < problem_.free.size(); ++i) {
-      const FreeParameter& free = problem_.free[i];
-      FittedParameter parameter;
-      parameter.name = free.declaration.name;
-      parameter.units = free.declaration.units;
-      parameter.doc = free.declaration.doc;
-      parameter.start = from[i];
-      parameter.fitted = to[i];
-      parameter.low = free.low;
-      parameter.high = free.high;
-      parameter.logarithmic = free.logarithmic;
-      const double near = 1e-3 * std::max(std::abs(to[i]), 1e-3 * free.scale);
-      parameter.at_bound = to[i] - free.low <= near || free.high - to[i] <= near;
-      if (parameter.at_bound) stopped.push_back(free.declaration.name);
-      if (free.prior) {
-        parameter.prior_mean = free.prior->mean;
-        parameter.prior_deviation = free.prior->deviation;
-      }
-      result_.parameters.push_back(parameter);
-    }
-    if (!stopped.empty()) {
-      result_.warnings.push_back(fmt::format("ended at a bound: {}", fmt::join(stopped, ", ")));
-    }
-  }
-
-  void list_residuals(const Objective& objective) {
-    const auto mean = [](const std::vector<std::vector<double>>& all, std::size_t k) {
-      double sum = 0.0;
-      for (const auto& of_seed : all) sum += of_seed[k];
-      return sum / static_cast<double>(all.size());
-    };
-    const std::size_t quantiles = problem_.target.share.size();
-    for (std::size_t k = 0; k < problem_.statistics(); ++k) {
-      Residual residual;
-      const bool is_quantile = k < quantiles;
-      residual.name = is_quantile ? fmt::format("quantile {:.4g}", problem_.target.share[k])
-                                  : problem_.terms[k - quantiles].target.name;
-      residual.units = is_quantile ? "m" : problem_.terms[k - quantiles].units;
-      residual.share =
-          is_quantile ? problem_.target.share[k] : std::numeric_limits<double>::quiet_NaN();
-      residual.target = problem_.aim(k);
-      residual.before = mean(before_, k);
-      residual.after = mean(objective.statistics(), k);
-      residual.deviation = problem_.deviation(k);
-      result_.residuals.push_back(residual);
-    }
   }
 
   std::vector<SeedMisfit> misfits(const std::vector<std::int64_t>& seeds, const io::GridSize& size,
@@ -401,6 +214,16 @@ class Calibration {
       all[s].after_m = wasserstein_m(judge.fine_bins()[s], target);
     }
     return all;
+  }
+
+  void say_of_bounds() {
+    std::vector<std::string_view> stopped;
+    for (const FittedParameter& parameter : result_.parameters) {
+      if (parameter.at_bound) stopped.push_back(parameter.name);
+    }
+    if (!stopped.empty()) {
+      result_.warnings.push_back(fmt::format("ended at a bound: {}", fmt::join(stopped, ", ")));
+    }
   }
 
   void say_of_collapse() {

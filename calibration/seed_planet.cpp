@@ -66,7 +66,7 @@ void SeedPlanet::hold_frame(const IsostasyParameters& p, const CrustInputs& in) 
       held_.transform_length_km == p.transform_length_km) {
     return;
   }
-  held_.frame = tectonic_frame(p, coarse_, in, continental_fraction());
+  held_.frame = tectonic_frame(p, coarse_, in, continental_fraction(), seed_);
   held_.divergent_length_km = p.divergent_length_km;
   held_.transform_length_km = p.transform_length_km;
 }

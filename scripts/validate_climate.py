@@ -4,7 +4,7 @@
     scripts/validate_climate.py RUN/04-climate.nc NCEP_TEMPERATURE.nc CMAP_PRECIPITATION.nc
 
 RUN's file has `temperature` (degC) and `precipitation` (mm yr-1) on latitudes and longitudes, and,
-for the share of land, `elevation` (or another file of the run that holds it: --relief FILE).
+for the share of land, `elevation` (or another file of the run that holds it: --elevation FILE).
 The references have annual means `t_annual` (degC) and `p_annual` (mm day-1).
 Prints zonal means in 10 degree bands, area-weighted correlations and errors on land at the
 references' own nodes.
@@ -62,12 +62,12 @@ def main():
     parser.add_argument("climate")
     parser.add_argument("temperature_reference")
     parser.add_argument("precipitation_reference")
-    parser.add_argument("--relief", help="file with `elevation`; default: the climate file")
+    parser.add_argument("--elevation", help="file with `elevation`; default: the climate file")
     arguments = parser.parse_args()
 
     temperature, lat, lon = read(arguments.climate, "temperature")
     rain, _, _ = read(arguments.climate, "precipitation")
-    elevation, _, _ = read(arguments.relief or arguments.climate, "elevation")
+    elevation, _, _ = read(arguments.elevation or arguments.climate, "elevation")
     land = (elevation >= 0).astype(float)
 
     t_ref, t_lat, t_lon = read(arguments.temperature_reference, "t_annual")

@@ -17,8 +17,8 @@ ARROWS = {
     "plates": (("plate_velocity_east", "plate_velocity_north"), 0.13 / 100.0),
     "wind": (("wind_east", "wind_north"), 0.15 / 10.0),
 }
-PARTS = ("relief", "sea", "lakes", "rivers", "boundaries", "plates", "wind", "island")
-SHOWN_FIRST = ("relief", "sea", "lakes", "rivers", "island")
+PARTS = ("topography", "sea", "lakes", "rivers", "boundaries", "plates", "wind", "island")
+SHOWN_FIRST = ("topography", "sea", "lakes", "rivers", "island")
 
 
 class Globe:
@@ -43,11 +43,11 @@ class Globe:
         self.go_to(self.times[-1])
         self.link = pipeline.link_exaggeration(f"exaggeration of {self.run.folder.name}", warped)
         self.field, self.bars = None, []
-        self.words = scene.caption(self.view, self.parts["relief"].shown, self.caption(), "caption")
+        self.words = scene.caption(self.view, self.parts["topography"].shown, self.caption(), "caption")
         self.show_all()
         self.colour("elevation")
         self.look()
-        simple.SetActiveSource(self.parts["relief"].shown)
+        simple.SetActiveSource(self.parts["topography"].shown)
 
     # Sources -----------------------------------------------------------------------------------
 
@@ -86,7 +86,7 @@ class Globe:
         scale, radius_m = self.scale, self.radius_m
         detail = radius_m / 1000.0
         parts = {
-            "relief": pipeline.relief(source, "", scale),
+            "topography": pipeline.topography(source, "", scale),
             "sea": pipeline.sea(source, "", colours.PAINT_FOR_THE_SEA),
         }
         parts["boundaries"] = pipeline.boundaries(source, "", scale, 3.2 * detail)
@@ -148,23 +148,23 @@ class Globe:
 
     def fields(self):
         """Names of the fields that can be shown at the present stage."""
-        self.parts["relief"].shown.UpdatePipeline(self.time)
-        data = self.parts["relief"].shown.PointData
-        return sorted(a for a in data.keys() if a not in ("relief", "Normals", "outside"))
+        self.parts["topography"].shown.UpdatePipeline(self.time)
+        data = self.parts["topography"].shown.PointData
+        return sorted(a for a in data.keys() if a not in ("topography", "Normals", "outside"))
 
     def colour(self, field):
         """Colours the globe and its islands by a field."""
         known = self.fields()
         if field == "elevation" and field not in known:
-            # Before there is relief there may be that of the plates' history, or plates alone.
+            # Before there is topography there may be that of the plates' history, or plates alone.
             field = "crust_elevation" if "crust_elevation" in known else "plate_id"
         if field not in known:
             raise RunError(f"{field}: no field of this stage; there are {', '.join(known)}")
-        relief = self.parts["relief"]
-        array = relief.shown.PointData.GetArray(field)
+        topography = self.parts["topography"]
+        array = topography.shown.PointData.GetArray(field)
         for name, part in self.parts.items():
-            if name == "relief" or name.endswith("island relief"):
-                here = part.shown.PointData.GetArray(field) is not None or part is relief
+            if name == "topography" or name.endswith("island topography"):
+                here = part.shown.PointData.GetArray(field) is not None or part is topography
                 self.show_field(part, field if here else "elevation")
         self.field = field
         lut = colours.paint(field, array.GetRange() if array else (0.0, 1.0))
@@ -227,7 +227,7 @@ class Globe:
         return self
 
     def show(self, *names, visible=True):
-        """Shows parts: relief, sea, lakes, rivers, boundaries, plates or wind (arrows), island."""
+        """Shows parts: topography, sea, lakes, rivers, boundaries, plates or wind (arrows), island."""
         for name in names:
             found = [p for n, p in self.parts.items() if n == name or n.startswith(f"{name} ")]
             if not found:

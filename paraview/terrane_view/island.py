@@ -24,7 +24,7 @@ def drape(name, reader, scale):
     width_m, _ = size_of(reader)
     prefix = f"{name} on globe: "
     return {
-        f"{name} island relief": pipeline.relief(source, prefix, scale, skirt_m=2000.0),
+        f"{name} island topography": pipeline.topography(source, prefix, scale, skirt_m=2000.0),
         f"{name} rivers": pipeline.rivers(
             source, prefix, scale, (width_m / 30.0, width_m / 500.0, width_m / 4000.0)
         ),
@@ -33,7 +33,7 @@ def drape(name, reader, scale):
 
 
 class IslandView:
-    """An island as a block: relief, sea, lakes and rivers in a view of its own."""
+    """An island as a block: topography, sea, lakes and rivers in a view of its own."""
 
     def __init__(self, name, reader, exaggeration):
         self.name, self.reader = name, reader
@@ -46,7 +46,7 @@ class IslandView:
         lines = (width_m / 30.0, width_m / 380.0, width_m / 4000.0)
         prefix = f"{name}: "
         self.parts = {
-            "relief": pipeline.relief(source, prefix, exaggeration, skirt_m=1500.0),
+            "topography": pipeline.topography(source, prefix, exaggeration, skirt_m=1500.0),
             "sea": pipeline.sea(source, prefix, colours.PAINT_FOR_THE_SEA, exaggeration),
             "lakes": pipeline.lakes(source, prefix, exaggeration),
             "rivers": pipeline.rivers(source, prefix, exaggeration, lines),
@@ -60,7 +60,7 @@ class IslandView:
             if part_name in ("lakes", "rivers"):
                 scene.plain(part.display, LAKE if part_name == "lakes" else RIVER)
         self.bar = None
-        self.words = scene.caption(self.view, self.parts["relief"].shown, "''", f"{name}: caption")
+        self.words = scene.caption(self.view, self.parts["topography"].shown, "''", f"{name}: caption")
         self.colour("elevation")
         scene.look_obliquely(
             self.view, [0.0, 0.0, 0.0], [0, 0, 1], [0, 1, 0], max(width_m, height_m), 40.0
@@ -68,10 +68,10 @@ class IslandView:
 
     def colour(self, field):
         """Colours the island by a field."""
-        relief, sea = self.parts["relief"], self.parts["sea"]
-        relief.shown.UpdatePipeline()
-        array = relief.shown.PointData.GetArray(field)
-        simple.ColorBy(relief.display, ("POINTS", field))
+        topography, sea = self.parts["topography"], self.parts["sea"]
+        topography.shown.UpdatePipeline()
+        array = topography.shown.PointData.GetArray(field)
+        simple.ColorBy(topography.display, ("POINTS", field))
         lut = colours.paint(field, array.GetRange())
         scene.fill_sea(sea.display, colours.look_of(field).sea, field)
         if self.bar:

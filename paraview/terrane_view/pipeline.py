@@ -62,7 +62,7 @@ class Source:
 def raised(name, shape, scale):
     """The shape with its heights."""
     warp = simple.WarpByScalar(registrationName=name, Input=shape)
-    warp.Scalars = ["POINTS", "relief"]
+    warp.Scalars = ["POINTS", "topography"]
     warp.ScaleFactor = scale
     return warp
 
@@ -78,13 +78,13 @@ def smoothly_lit(name, surface):
     return normals
 
 
-def relief(source, prefix, scale, skirt_m=0.0):
+def topography(source, prefix, scale, skirt_m=0.0):
     """The solid surface."""
     shape = source.surface(
-        f"{prefix}surface", "make_relief", with_islands=bool(source.islands), skirt_m=skirt_m
+        f"{prefix}surface", "make_topography", with_islands=bool(source.islands), skirt_m=skirt_m
     )
     warp = raised(f"{prefix}exaggeration", shape, scale)
-    return Part(smoothly_lit(f"{prefix}relief", warp), warp)
+    return Part(smoothly_lit(f"{prefix}topography", warp), warp)
 
 
 def sea(source, prefix, fields, scale=None):
@@ -120,14 +120,14 @@ def tube(name, line, radius_m, by_array=None):
 def rivers(source, prefix, scale, lines):
     """Rivers as wide as the root of their discharge; `lines` as in make_rivers."""
     shape = source.surface(f"{prefix}river lines", "make_rivers", lines=lines)
-    warp = raised(f"{prefix}rivers on relief", shape, scale)
+    warp = raised(f"{prefix}rivers on topography", shape, scale)
     return Part(tube(f"{prefix}rivers", warp, lines[1], "radius"), warp)
 
 
 def boundaries(source, prefix, scale, radius_m):
     """Plate boundaries, coloured by type."""
     shape = source.shape(f"{prefix}boundary lines", "make_boundaries", lift_m=0.4 * radius_m)
-    warp = raised(f"{prefix}boundaries on relief", shape, scale)
+    warp = raised(f"{prefix}boundaries on topography", shape, scale)
     return Part(tube(f"{prefix}boundaries", warp, radius_m), warp)
 
 
@@ -136,7 +136,7 @@ def arrows(source, prefix, scale, names, radius_m, per_unit_m):
     shape = source.shape(
         f"{prefix}places of arrows", "make_arrows", lift_m=0.006 * radius_m, names=tuple(names)
     )
-    warp = raised(f"{prefix}arrows on relief", shape, scale)
+    warp = raised(f"{prefix}arrows on topography", shape, scale)
     glyph = simple.Glyph(registrationName=f"{prefix}arrows", Input=warp, GlyphType="Arrow")
     glyph.GlyphMode = "All Points"
     glyph.OrientationArray = ["POINTS", "vector"]

@@ -6,7 +6,7 @@ A state file keeps the text, so that it opens where this folder is not.
 import ast
 from pathlib import Path
 
-MODULES = ("mesh", "relief", "lines")
+MODULES = ("mesh", "topography", "lines")
 
 
 def without_own_imports(text):

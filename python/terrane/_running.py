@@ -117,13 +117,13 @@ def run(preset: str = "", *, seed: Optional[int] = None, grid: Union[str, Tuple[
     place: Any = None
     given: Dict[str, Any] = {}
     if elevation is not None:
-        place, given = _relief(made, elevation)
+        place, given = _given_elevation(made, elevation)
         from_stage = from_stage or "erosion"
     stages = _core.run(made._configuration, from_stage, to, place, given, threads, tell)
     return planet_of(stages, made)
 
 
-def _relief(made: Parameters, elevation: Union[xr.DataArray, np.ndarray]) -> Tuple[_core.Grid, Dict[str, Any]]:
+def _given_elevation(made: Parameters, elevation: Union[xr.DataArray, np.ndarray]) -> Tuple[_core.Grid, Dict[str, Any]]:
     """The planet's own grid under an elevation in memory."""
     if isinstance(elevation, xr.DataArray):
         rows = elevation[elevation.dims[0]].values if elevation.dims[0] in elevation.coords else None
@@ -178,7 +178,7 @@ def calibrate(target: Path, preset: str = "", *, parameters: Union[Parameters, M
     """Fits parameters so that planets have the hypsometry of a target.
 
     target
-        ``"earth"``, ``"earth-statistical"``, a CSV file of quantiles or bins, or a relief in NetCDF.
+        ``"earth"``, ``"earth-statistical"``, a CSV file of quantiles or bins, or a DEM in NetCDF.
     parameters
         As for ``run``; the section ``calibration`` says what is fitted and how.
     folder

@@ -18,15 +18,11 @@ from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.keys import Keys
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "clients"))
+from checking import expect, failures  # noqa: E402
+
 PLACES = [(12.3, -45.6), (-60.1, 170.2), (80.0, 0.5), (0.2, 99.9), (-33.3, -120.7)]
 SOON_MS = 1500
-failures = []
-
-
-def expect(good, *words):
-    if not good:
-        failures.append(" ".join(map(str, words)))
-        print("FAIL", failures[-1], flush=True)
 
 
 def browser(*more):

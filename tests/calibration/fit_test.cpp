@@ -22,7 +22,7 @@ namespace {
 const std::vector<std::pair<std::string, double>> kTruth{
     {"isostasy.collision_km", 16.0},   {"isostasy.ocean_depth_m", 3500.0},
     {"isostasy.swell_m", 360.0},       {"isostasy.margin_tilt_m", 800.0},
-    {"isostasy.ocean_swell_m", 380.0}, {"isostasy.trench_depth_m", 2400.0}};
+    {"isostasy.ocean_swell_m", 380.0}, {"isostasy.slab_trench_m", 5900.0}};
 
 class Twin {
  public:

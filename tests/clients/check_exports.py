@@ -21,15 +21,10 @@ from pathlib import Path
 import netCDF4
 import numpy as np
 
+from checking import expect, failures
+
 CLIENTS = {"PIL.Image", "osgeo.gdal", "zarr", "xarray", "healpy", "assimp"}
-failures = []
 asked = []
-
-
-def expect(good, *words):
-    if not good:
-        failures.append(" ".join(str(word) for word in words))
-        print("FAIL", failures[-1], flush=True)
 
 
 def module(name):

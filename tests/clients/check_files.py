@@ -18,6 +18,8 @@ from pathlib import Path
 import netCDF4
 import numpy as np
 
+from checking import expect, failures
+
 # Of the CF standard name table: the names that terrane's fields and coordinates may bear.
 STANDARD_NAMES = {
     "latitude": "degrees_north",
@@ -37,14 +39,7 @@ STANDARD_NAMES = {
     "projection_y_coordinate": "m",
 }
 
-failures = []
 asked = set()
-
-
-def expect(good, *words):
-    if not good:
-        failures.append(" ".join(str(word) for word in words))
-        print("FAIL", failures[-1], flush=True)
 
 
 def close(a, b, tolerance=1e-6):

@@ -28,17 +28,12 @@ from pathlib import Path
 
 import numpy as np
 
+from checking import expect, failures
+
 SAMPLES, RADIUS_KM = 20000, 6371.0
 GML, GPML = "{http://www.opengis.net/gml}", "{http://www.gplates.org/gplates}"
 LAYERS = {"plates": "gpml:ClosedPlateBoundary", "continents": "gpml:ContinentalCrust",
           "coastlines": "gpml:Coastline", "isochrons": "gpml:Isochron", "boundaries": None}
-failures = []
-
-
-def expect(good, *words):
-    if not good:
-        failures.append(" ".join(str(word) for word in words))
-        print("FAIL", failures[-1], flush=True)
 
 
 # Rotations, by Hamilton's quaternions: scalar first.

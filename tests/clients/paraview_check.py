@@ -15,17 +15,8 @@ import numpy as np
 from netCDF4 import Dataset
 from paraview import simple
 
-failures = []
-
-
-def expect(good, *words):
-    if not good:
-        failures.append(" ".join(str(word) for word in words))
-        print("FAIL", failures[-1], flush=True)
-
-
-def close(a, b, tolerance=1e-5):
-    return abs(a - b) <= tolerance * max(1.0, abs(a), abs(b))
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from checking import close, expect, failures  # noqa: E402
 
 
 class Reference:

@@ -9,7 +9,6 @@ picture may be blank or of one colour; the closed surfaces of `output.globe` mus
 a saved state must show the same picture again. Ends with 1 on any failure.
 """
 
-import math
 import os
 import sys
 from pathlib import Path
@@ -21,23 +20,12 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkFiltersCore import vtkFeatureEdges
 from vtkmodules.vtkIOImage import vtkPNGReader
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "paraview"))
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parents[1] / "paraview")]
+from checking import close, expect, failures  # noqa: E402
 from terrane_view import Globe  # noqa: E402
 
 SIZE = (640, 480)
-failures = []
-
-
-def expect(good, *words):
-    """Notes a failure unless `good`."""
-    if not good:
-        failures.append(" ".join(str(word) for word in words))
-        print("FAIL", failures[-1], flush=True)
-
-
-def close(a, b, tolerance=1e-5):
-    """Equal but for rounding."""
-    return math.isclose(a, b, rel_tol=tolerance, abs_tol=tolerance)
 
 
 def pixels(path):
@@ -87,7 +75,7 @@ def check_ranges(globe):
     is_small = globe.columns * globe.rows < 500_000
     expect(not is_small or globe.source.factor == 1, "a small planet is thinned out by",
            globe.source.factor)
-    surface = globe.parts["relief"].warp.Input
+    surface = globe.parts["topography"].warp.Input
     surface.UpdatePipeline(globe.time)
     for name, (low, high) in ranges_of_files(globe).items():
         array = surface.PointData.GetArray(name)
@@ -147,13 +135,13 @@ def check_stages(folder, pictures):
     globe = Globe(folder)
     globe.go_to(globe.times[-1])
     if not globe.islands:
-        expect(open_edges(globe.parts["relief"].warp.Input) == 0, "the globe is not closed")
+        expect(open_edges(globe.parts["topography"].warp.Input) == 0, "the globe is not closed")
     check_ranges(globe)
     before = take(globe, pictures, "elevation" if "elevation" in globe.fields() else "bare")
     for field in ("biome", "koppen_class", "temperature", "plate_id", "discharge"):
         if field in globe.fields():
             after = take(globe.colour(field), pictures, field)
-            expect(np.abs(after.astype(int) - before).mean() > 2.0, field, "looks like the relief")
+            expect(np.abs(after.astype(int) - before).mean() > 2.0, field, "looks like the topography")
     if "boundary_type" in globe.fields():
         take(globe.show("boundaries", "plates"), pictures, "boundaries")
         globe.hide("boundaries", "plates")
@@ -190,7 +178,7 @@ def check_thinning(folder, _pictures):
     globe = Globe(folder, cells=5000)
     expect(globe.source.factor > 1, "5000 cells were asked for")
     expect("means" in globe.status(), "the status keeps silent on thinning:", globe.status())
-    points = globe.parts["relief"].warp.Input.GetDataInformation().GetNumberOfPoints()
+    points = globe.parts["topography"].warp.Input.GetDataInformation().GetNumberOfPoints()
     expect(1000 < points < 5500, "5000 cells were asked for, there are", points)
 
 
@@ -227,7 +215,6 @@ def main():
 
 if __name__ == "__main__":
     # Programmable filters leave numpy's max, take and others behind in the main module.
-    sys.path.insert(0, str(Path(__file__).resolve().parent))
     import paraview_globe_check
 
     paraview_globe_check.main()

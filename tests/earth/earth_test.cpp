@@ -159,6 +159,20 @@ TEST_F(Earth, HypsometryAndSpectrumLieWithinTheScorecardsTolerances) {
   EXPECT_EQ(lines, 34);
 }
 
+TEST_F(Earth, ProfilesOfItsRiversLieWithinTheirLines) {
+  const auto card = io::score_planet(*state_);
+  int lines = 0;
+  for (const char* name :
+       {"river_slope", "hypsometric_integral", "concavity", "steepness_q50", "steepness_q90"}) {
+    for (const auto& line : card.lines) {
+      if (line.name != name) continue;
+      ++lines;
+      EXPECT_TRUE(line.within()) << name << " is " << line.value;
+    }
+  }
+  EXPECT_EQ(lines, 5);
+}
+
 // Area-weighted means of NCEP/NCAR air temperature and of CMAP precipitation, 1981-2010, in bands
 // of ten degrees from the south, interpolated between their nodes.
 constexpr std::array<double, 18> kTemperature{-36.2, -27.3, -7.3, 2.9,  9.5,   16.3,

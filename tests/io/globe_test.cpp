@@ -152,19 +152,19 @@ TEST_F(Globe, CornersAreRaisedByTheMeanAroundThem) {
     elevation_m[cell] = static_cast<float>(100 * grid.row(cell) + grid.column(cell));
   }
   auto& surface = write_and_read(grid, elevation_m, 20.0);
-  vtkDataArray* relief = surface.GetPointData()->GetArray("relief");
-  ASSERT_NE(relief, nullptr);
+  vtkDataArray* topography = surface.GetPointData()->GetArray("topography");
+  ASSERT_NE(topography, nullptr);
   for (vtkIdType point = 0; point < surface.GetNumberOfPoints(); ++point) {
     Point at{};
     surface.GetPoint(point, at.data());
-    EXPECT_NEAR(std::hypot(at[0], at[1], at[2]), 6371e3 + 20.0 * relief->GetComponent(point, 0),
+    EXPECT_NEAR(std::hypot(at[0], at[1], at[2]), 6371e3 + 20.0 * topography->GetComponent(point, 0),
                 2.0);
   }
   // Between columns 4 and 5, rows 0 and 1; at the date line; at the poles.
-  EXPECT_FLOAT_EQ(relief->GetComponent(5, 0), 54.5);
-  EXPECT_FLOAT_EQ(relief->GetComponent(0, 0), 61.5);
-  EXPECT_FLOAT_EQ(relief->GetComponent(surface.GetNumberOfPoints() - 2, 0), 11.5);
-  EXPECT_FLOAT_EQ(relief->GetComponent(surface.GetNumberOfPoints() - 1, 0), 1111.5);
+  EXPECT_FLOAT_EQ(topography->GetComponent(5, 0), 54.5);
+  EXPECT_FLOAT_EQ(topography->GetComponent(0, 0), 61.5);
+  EXPECT_FLOAT_EQ(topography->GetComponent(surface.GetNumberOfPoints() - 2, 0), 11.5);
+  EXPECT_FLOAT_EQ(topography->GetComponent(surface.GetNumberOfPoints() - 1, 0), 1111.5);
 }
 
 TEST_F(Globe, FollowsTheEllipsoid) {

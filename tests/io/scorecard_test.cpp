@@ -52,6 +52,7 @@ State whole_planet(int nx = 480) {
   fill(field::stream_order, [&](Index c) { return land(c) ? 1 + grid.row(c) % 3 : 0; });
   fill(field::lake_depth, [&](Index c) { return column(c) == 3 ? 5.0 : 0.0; });
   fill(field::sediment_flux, [&](Index c) { return column(c) == nx - 1 ? 1e6 : 0.0; });
+  fill(field::sediment_thickness, [&](Index c) { return land(c) ? 700.0 : 300.0; });
   fill(field::erosion_rate, [](Index) { return 40e-6; });
   fill(field::ice_thickness,
        [&](Index c) { return land(c) && grid.row(c) % 30 == 0 ? 900.0 : 0.0; });
@@ -77,7 +78,11 @@ TEST(Scorecard, MeasuresEveryRowOfTheTableWhenAllFieldsAreThere) {
     EXPECT_GT(line.tolerance, 0.0) << line.name;
     EXPECT_FALSE(line.words.empty() || line.unit.empty() || line.source.empty()) << line.name;
   }
-  EXPECT_GT(card.lines.size(), 100U);
+  EXPECT_GT(card.lines.size(), 120U);
+  for (const char* name : {"river_slope", "hypsometric_integral", "concavity", "steepness_q50",
+                           "steepness_q90", "sediment_land", "sediment_sea"}) {
+    EXPECT_EQ(names.count(name), 1U) << name;
+  }
   // This planet's floor is older than some of the classes.
   for (const auto& sentence : card.left_out) {
     EXPECT_THAT(sentence, testing::StartsWith("nothing to measure")) << sentence;
@@ -106,6 +111,9 @@ TEST(Scorecard, FiguresAreInTheUnitsOfTheTable) {
   const double land_m2 = 0.3 * state.grid().total_area_m2();
   EXPECT_NEAR(line_named(card, "denudation_flux").value, 40e-6 * 2700.0 * land_m2 / 1e12, 1e-3);
   EXPECT_NEAR(line_named(card, "sediment_flux").value, 240 * 1e6 * 2700.0 / 1e12, 1e-9);
+  EXPECT_NEAR(line_named(card, "sediment_land").value, 700.0, 1e-2);
+  EXPECT_NEAR(line_named(card, "sediment_sea").value, 300.0,
+              1.0);  // coasts within cells of a degree
   EXPECT_NEAR(line_named(card, "lakes").value, 100.0 / 144.0, 1e-3);
   EXPECT_NEAR(line_named(card, "endorheic").value, 0.0, 1e-12);
   EXPECT_NEAR(line_named(card, "largest_basin").value, 144 * state.grid().area_m2(120) / 1e12,

@@ -3,8 +3,6 @@
 
 #include <gmock/gmock.h>
 
-#include <functional>
-
 #include "geo/core/error.hpp"
 #include "geo/kernels/climate/blueprint_climate.hpp"
 #include "geo/kernels/climate/circulation.hpp"
@@ -25,10 +23,7 @@
 #include "geo/kernels/landscape/straits.hpp"
 #include "geo/kernels/landscape/stream_power.hpp"
 #include "geo/kernels/landscape/surface_detail.hpp"
-#include "geo/kernels/life/whittaker.hpp"
-#include "geo/kernels/noise/oriented_noise.hpp"
 #include "geo/kernels/numerics/diffusion.hpp"
-#include "geo/kernels/plates/growth/convergent_margins.hpp"
 #include "geo/kernels/remapping/conservative_remapping.hpp"
 #include "geo/kernels/remapping/healpix.hpp"
 #include "geo/kernels/remapping/planet_cells.hpp"
@@ -44,51 +39,13 @@
 #include "geo/kernels/water/valley_width.hpp"
 #include "geo/kernels/water/water_balance.hpp"
 #include "kernels/climate/sea_evaporation.hpp"
+#include "kernels/refused_arrays.hpp"
 
 namespace geo {
 namespace {
 
+using namespace refused_arrays;
 using testing::HasSubstr;
-using Bytes = std::vector<std::uint8_t>;
-using Floats = std::vector<float>;
-using Doubles = std::vector<double>;
-
-const Grid& planet() {
-  static const Grid kGrid = Grid::sphere(12, 6);
-  return kGrid;
-}
-std::size_t cells() { return planet().size(); }
-std::size_t rows() { return planet().ny(); }
-
-/// Hands out lengths of arrays, that of one of them a value too short.
-class Lengths {
- public:
-  explicit Lengths(int shorter) : left_(shorter) {}
-  std::size_t operator()(std::size_t whole) { return whole - (left_-- == 0 ? 1 : 0); }
-
- private:
-  int left_;
-};
-
-/// `call` makes `arrays` arrays with the lengths that it is handed and calls `kernel` with them.
-/// Some entries have always refused input in place of reporting a bug; their headers say so.
-void expect_refused(const std::string& kernel, int arrays,
-                    const std::function<void(Lengths&)>& call, ErrorKind kind = ErrorKind::bug) {
-  for (int k = 0; k < arrays; ++k) {
-    SCOPED_TRACE(kernel + ", array " + std::to_string(k));
-    Lengths n(k);
-    try {
-      call(n);
-      ADD_FAILURE() << "nothing was thrown";
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), kind) << error.what();
-      if (kind == ErrorKind::bug) {
-        EXPECT_THAT(error.what(), HasSubstr(kernel));
-        EXPECT_THAT(error.what(), HasSubstr(": must have "));
-      }
-    }
-  }
-}
 
 FlowGraph graph_of(Lengths& n, bool ordered) {
   FlowGraph graph;
@@ -466,33 +423,6 @@ TEST(ArraySizes, OfRemappingAreChecked) {
     RiverCourses courses;
     Floats z(n(fine.size()));
     open_river_courses(fine, outlets, courses, z);
-  });
-}
-
-TEST(ArraySizes, OfPlatesAndLifeAreChecked) {
-  const Grid& grid = planet();
-  expect_refused("convergent_margins", 7, [&](Lengths& n) {
-    const std::vector<std::int16_t> plate(n(cells()));
-    const std::vector<std::int8_t> type(n(cells()));
-    const Floats strength(n(cells())), continent(n(cells())), age(n(cells())), east(n(cells())),
-        north(n(cells()));
-    convergent_margins(grid, plate, type, strength, continent, age, east, north);
-  });
-  expect_refused("deformation_sources", 2, [&](Lengths& n) {
-    const std::vector<std::int8_t> type(n(cells()));
-    deformation_sources(grid, type, Floats(n(cells())), 1, 100.0);
-  });
-  expect_refused("distance_to_marked_km", 1,
-                 [&](Lengths& n) { distance_to_marked_km(grid, Bytes(n(cells()))); });
-  expect_refused("orientation_of", 2, [&](Lengths& n) {
-    const Floats east(n(cells()));
-    static_cast<void>(orientation_of(grid, east, Floats(n(cells())), 0.1));
-  });
-  expect_refused("level_lines", 1,
-                 [&](Lengths& n) { static_cast<void>(level_lines(grid, Floats(n(cells())))); });
-  expect_refused("smooth_biomes", 2, [&](Lengths& n) {
-    std::vector<std::int8_t> biome(n(cells())), scratch(n(cells()));
-    smooth_biomes(grid, 1e6, biome, scratch);
   });
 }
 

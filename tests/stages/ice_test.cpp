@@ -12,32 +12,15 @@
 #include "geo/kernels/numerics/area_sum.hpp"
 #include "geo/stages/erosion/erosion.hpp"
 #include "geo/stages/stages.hpp"
+#include "stages/three_continents.hpp"
 #include "support/terrain.hpp"
 
 namespace geo {
 namespace {
 
-/// Three continents from pole to pole.
-State freeze_planet(Budget& budget, const std::map<std::string, std::string>& settings = {}) {
-  const Pipeline pipeline = make_pipeline();
-  auto stage = make_erosion_stage();
-  const auto own = stage->parameters();
-  find_parameter(own, "erosion.steps")->set_text("2");
-  find_parameter(own, "erosion.climates")->set_text("1");
-  for (const auto& [key, text] : settings) find_parameter(own, key)->set_text(text);
-  State state(std::make_shared<const Grid>(Grid::sphere(72, 36)));
-  const Grid& grid = state.grid();
-  const auto z = state.update(field::elevation);
-  for (Index c = 0; c < grid.size(); ++c) {
-    const int across = grid.column(c) % 24;
-    z[c] = across < 10 ? 200.0F * static_cast<float>(std::min(across, 9 - across) + 1) : -4000.0F;
-  }
-  Context context;
-  context.configuration = pipeline.parameters();
-  StageIo io(state, stage->info());
-  stage->run(io, context);
-  budget = context.budget;
-  return state;
+State freeze_planet(Budget& budget, std::map<std::string, std::string> settings = {}) {
+  settings.insert({{"erosion.steps", "2"}, {"erosion.climates", "1"}});
+  return erode_three_continents(200.0F, settings, budget);
 }
 
 /// Ground that ice has hardly worn, and that is high enough for ice today.

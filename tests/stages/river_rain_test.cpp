@@ -12,7 +12,7 @@
 #include "geo/kernels/water/water_balance.hpp"
 #include "geo/stages/erosion/drainage.hpp"
 #include "geo/stages/erosion/erosion.hpp"
-#include "geo/stages/stages.hpp"
+#include "stages/three_continents.hpp"
 #include "support/terrain.hpp"
 
 namespace geo {
@@ -116,25 +116,8 @@ TEST(RiverRain, OpenLakesLoseWhatTheAirTakes) {
 }
 
 State erode_planet(const std::string& discharge, Budget& budget) {
-  const Pipeline pipeline = make_pipeline();
-  auto stage = make_erosion_stage();
-  const auto own = stage->parameters();
-  find_parameter(own, "erosion.discharge")->set_text(discharge);
-  find_parameter(own, "erosion.steps")->set_text("3");
-  State state(std::make_shared<const Grid>(Grid::sphere(72, 36)));
-  const Grid& grid = state.grid();
-  // Three continents from pole to pole.
-  const auto z = state.update(field::elevation);
-  for (Index c = 0; c < grid.size(); ++c) {
-    const int across = grid.column(c) % 24;
-    z[c] = across < 10 ? 100.0F * static_cast<float>(std::min(across, 9 - across) + 1) : -4000.0F;
-  }
-  Context context;
-  context.configuration = pipeline.parameters();
-  StageIo io(state, stage->info());
-  stage->run(io, context);
-  budget = context.budget;
-  return state;
+  return erode_three_continents(100.0F, {{"erosion.discharge", discharge}, {"erosion.steps", "3"}},
+                                budget);
 }
 
 TEST(RiverRain, WearsWetLandFasterThanDryAndLeavesDrainageAreaWhatItIs) {

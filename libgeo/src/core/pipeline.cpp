@@ -6,15 +6,6 @@
 #include <set>
 
 namespace geo {
-namespace {
-
-bool lists(const std::vector<const FieldSpec*>& specs, const FieldSpec& spec) {
-  return std::any_of(specs.begin(), specs.end(),
-                     [&](const FieldSpec* listed) { return listed->name == spec.name; });
-}
-
-}  // namespace
-
 void Context::advance(double fraction) const {
   if (stop != nullptr && stop->load(std::memory_order_relaxed)) throw Interrupted();
   if (on_progress) on_progress(fraction);

@@ -1,4 +1,4 @@
-"""Rivers, plate boundaries and arrows: what is drawn over the relief."""
+"""Rivers, plate boundaries and arrows: what is drawn over the topography."""
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkPolyData
@@ -14,7 +14,7 @@ from .mesh import (
     layout_of,
     set_points,
 )
-from .relief import heights_of
+from .topography import heights_of
 
 ICE_DEG_C = -15.0
 LEAST_WIDTH = 0.22
@@ -142,7 +142,7 @@ def make_rivers(algorithm, stages=(), factor=1, draped=False, lines=(1.0, 1.0, 1
     up = layout.up(columns, rows)
     set_points(output, layout.base(columns, rows) + lift_m * up)
     output.SetLines(cell_array(np.append(starts, len(cells)), np.arange(len(cells))))
-    add_array(output, "relief", draped_heights(images, layout, factor, columns, rows))
+    add_array(output, "topography", draped_heights(images, layout, factor, columns, rows))
     add_array(output, "discharge", discharge.astype(np.float32))
     add_array(output, "radius", (widest_m * np.maximum(share, LEAST_WIDTH)).astype(np.float32))
     add_up(output, up)
@@ -222,13 +222,13 @@ def make_boundaries(algorithm, stages=(), factor=1, lift_m=0.0):
     append = vtkAppendPolyData()
     for value in np.unique(kinds):
         lines, kept = joined((layout.radius_m + lift_m) * up, edges[kinds == value])
-        add_array(lines, "relief", heights[kept])
+        add_array(lines, "topography", heights[kept])
         add_array(lines, "boundary_type", np.full(len(kept), value, np.int8))
         add_up(lines, up[kept])
         append.AddInputData(lines)
     append.Update()
     output.ShallowCopy(append.GetOutput())
-    output.GetPointData().SetActiveScalars("relief")
+    output.GetPointData().SetActiveScalars("topography")
 
 
 def even_places(count):
@@ -257,7 +257,7 @@ def make_arrows(algorithm, stages=(), factor=1, lift_m=0.0, names=(), count=450)
     set_points(output, (layout.radius_m + lift_m) * up)
     points = np.arange(count)
     output.SetVerts(cell_array(np.arange(count + 1), points))
-    add_array(output, "relief", draped_heights(images, layout, factor, columns, rows))
+    add_array(output, "topography", draped_heights(images, layout, factor, columns, rows))
     add_array(output, "vector", vectors.astype(np.float32))
     add_up(output, up)
-    output.GetPointData().SetActiveScalars("relief")
+    output.GetPointData().SetActiveScalars("topography")

@@ -58,6 +58,10 @@ TEST(Straits, KeepTheLimits) {
     return number;
   };
   EXPECT_EQ(ways(small_law(), 151.0F), 0);
+  auto deep = small_law();
+  deep.drawdown = 0.31;  // of seas 500 m deep: 155 m
+  EXPECT_EQ(ways(deep, 151.0F), 2);
+  EXPECT_EQ(ways(deep, 156.0F), 0);
   auto law = small_law();
   law.land_m = 7e4;  // eight cells of land to the ocean, four from the pond to the sea
   EXPECT_EQ(ways(law), 0);

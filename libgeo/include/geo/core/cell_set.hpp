@@ -16,7 +16,7 @@ namespace geo {
 class CellSet {
  public:
   CellSet() = default;
-  /// Those of `cells` cells that `holds` says yes to. One thread.
+  /// Those of `cells` cells for which `holds` is true. One thread.
   template <class Holds>
   CellSet(Index cells, Holds&& holds)
       : words_(static_cast<std::size_t>(cells) / kBits + 1), before_(words_.size()), cells_(cells) {

@@ -34,7 +34,7 @@ struct Impact {
   [[nodiscard]] std::vector<Parameter> declarations();
 };
 
-/// The crust parts along a line: a sunken valley between lifted shoulders.
+/// The crust rifts along a line: a rift valley between uplifted shoulders.
 struct Rift {
   static constexpr std::string_view kKind = "rift";
   std::vector<Centre> path;  ///< at least two places, joined by arcs of great circles
@@ -48,7 +48,7 @@ struct Rift {
   [[nodiscard]] std::vector<Parameter> declarations();
 };
 
-/// The sea rises or falls, by height or by what is added to its water. One of both is not 0.
+/// The sea rises or falls, by height or by what is added to its water. One of the two is not 0.
 struct OceanShift {
   static constexpr std::string_view kKind = "ocean-shift";
   double rise_m = 0.0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <functional>
 #include <map>
@@ -35,6 +36,12 @@ struct StageInfo {
   /// Whether `Context::events` change what it writes.
   bool feels_events = false;
 };
+
+/// Whether a field is one of those that a stage declares, or of any others.
+[[nodiscard]] inline bool lists(std::span<const FieldSpec* const> specs, const FieldSpec& spec) {
+  return std::any_of(specs.begin(), specs.end(),
+                     [&](const FieldSpec* listed) { return listed->name == spec.name; });
+}
 
 /// Named sums that must close: rock, water. Written to the manifest.
 using Budget = std::map<std::string, double>;

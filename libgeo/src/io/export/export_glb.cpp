@@ -283,13 +283,13 @@ void write_glb(const fs::path& output, const ExportSource& source, double exagge
         "--format glb: takes a planet or an island, not a window of latitudes and longitudes");
   }
   Mesh mesh = mesh_over(grid);
-  // Without a relief, and where it has gaps, the surface is flat.
-  std::vector<float> relief(grid.size());
+  // Without an elevation, and where it has gaps, the surface is flat.
+  std::vector<float> elevation_m(grid.size());
   if (source.has(field::elevation)) {
-    relief = std::get<std::vector<float>>(source.of(field::elevation));
-    for (float& height : relief) height = std::isnan(height) ? 0.0F : height;
+    elevation_m = std::get<std::vector<float>>(source.of(field::elevation));
+    for (float& height : elevation_m) height = std::isnan(height) ? 0.0F : height;
   }
-  const GridSampler sampler(grid, relief);
+  const GridSampler sampler(grid, elevation_m);
   globe ? lay_on_globe(grid, sampler, exaggeration, mesh) : lay_flat(grid, sampler, mesh);
   add_normals(globe, mesh);
   tinygltf::Model model = model_of(source, mesh, texture_of(source, output), globe);

@@ -43,23 +43,15 @@ bool is_wanted(const FieldSpec& spec) {
   return std::find(kWanted.begin(), kWanted.end(), &spec) != kWanted.end();
 }
 
-std::size_t column_of(const Table& table, std::string_view name) {
-  const auto& header = table.header();
-  const auto found = std::find(header.begin(), header.end(), name);
-  if (found == header.end()) table.refuse_header(fmt::format("has no column {}", name));
-  return static_cast<std::size_t>(found - header.begin());
-}
-
 int number_or_none(const Table& table, std::size_t row, std::size_t column) {
   return table.text(row, column).empty() ? -1 : static_cast<int>(table.number(row, column));
 }
 
 std::vector<PlateTurn> turns_of(const Table& table) {
-  const std::size_t plate = column_of(table, "plate_id"), from = column_of(table, "from_myr"),
-                    to = column_of(table, "to_myr"),
-                    latitude = column_of(table, "pole_latitude_deg"),
-                    longitude = column_of(table, "pole_longitude_deg"),
-                    rate = column_of(table, "rate_deg_myr");
+  const std::size_t plate = table.column("plate_id"), from = table.column("from_myr"),
+                    to = table.column("to_myr"), latitude = table.column("pole_latitude_deg"),
+                    longitude = table.column("pole_longitude_deg"),
+                    rate = table.column("rate_deg_myr");
   std::vector<PlateTurn> turns;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     turns.push_back({static_cast<int>(table.number(row, plate)), table.number(row, from),
@@ -71,9 +63,9 @@ std::vector<PlateTurn> turns_of(const Table& table) {
 }
 
 std::vector<PlateSpan> spans_of(const Table& table) {
-  const std::size_t plate = column_of(table, "plate_id"), parent = column_of(table, "parent_id"),
-                    born = column_of(table, "born_myr"), ended = column_of(table, "ended_myr"),
-                    joined = column_of(table, "joined_id");
+  const std::size_t plate = table.column("plate_id"), parent = table.column("parent_id"),
+                    born = table.column("born_myr"), ended = table.column("ended_myr"),
+                    joined = table.column("joined_id");
   std::vector<PlateSpan> spans;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     PlateSpan span{.plate = static_cast<int>(table.number(row, plate)),

@@ -18,24 +18,16 @@ constexpr double kWidest_deg = 90.0;
 /// Where the table has what.
 struct Columns {
   explicit Columns(const Table& table)
-      : plate(find(table, "plate_id")),
-        latitude(find(table, "pole_latitude_deg")),
-        longitude(find(table, "pole_longitude_deg")),
-        rate(find(table, "rate_deg_myr")) {}
+      : plate(table.column("plate_id", kNeeds)),
+        latitude(table.column("pole_latitude_deg", kNeeds)),
+        longitude(table.column("pole_longitude_deg", kNeeds)),
+        rate(table.column("rate_deg_myr", kNeeds)) {}
 
   std::size_t plate, latitude, longitude, rate;
 
  private:
-  static std::size_t find(const Table& table, std::string_view name) {
-    const auto& header = table.header();
-    const auto found = std::find(header.begin(), header.end(), name);
-    if (found == header.end()) {
-      table.refuse_header(fmt::format(
-          "has no column {}: needs plate_id, pole_latitude_deg, pole_longitude_deg, rate_deg_myr",
-          name));
-    }
-    return static_cast<std::size_t>(found - header.begin());
-  }
+  static constexpr std::string_view kNeeds =
+      ": needs plate_id, pole_latitude_deg, pole_longitude_deg, rate_deg_myr";
 };
 
 std::map<int, PlateOutline> motions_of(const Table& table) {

@@ -153,6 +153,12 @@ void Table::refuse(std::size_t row, std::string_view what) const {
   refuse_line(row < lines_.size() ? lines_[row] : header_line_, what);
 }
 
+std::size_t Table::column(std::string_view name, std::string_view needs) const {
+  const auto found = std::find(header_.begin(), header_.end(), name);
+  if (found == header_.end()) refuse_header(fmt::format("has no column {}{}", name, needs));
+  return static_cast<std::size_t>(found - header_.begin());
+}
+
 void Table::refuse_header(std::string_view what) const { refuse_line(header_line_, what); }
 
 void Table::refuse_line(std::size_t line, std::string_view what) const {

@@ -1,8 +1,6 @@
 #include "report_globe.hpp"
 
 #include <fmt/format.h>
-#include <libdeflate.h>
-#include <vtkBase64Utilities.h>
 
 #include <algorithm>
 #include <array>
@@ -10,13 +8,13 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <memory>
-#include <new>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 
 #include "geo/io/files/embedded_data.hpp"
+#include "globe_layers.hpp"
+#include "globe_overlays.hpp"
 #include "io/drawing/map_page.hpp"
 #include "io/drawing/map_raster.hpp"
 #include "io/maps/map_field.hpp"
@@ -26,130 +24,6 @@
 
 namespace geo::io {
 namespace {
-
-using nlohmann::ordered_json;
-
-constexpr std::uint16_t kNothing = 65535;
-
-/// Values of the page's cells as double, NaN where there is none.
-std::vector<double> shown_values(const State& state, const FieldSpec& spec,
-                                 const Thinning& thinning) {
-  return std::visit(
-      [&]<class T>(const std::vector<T>& values) {
-        const std::vector<T> cells = thinned(std::span<const T>(values), state.grid(), thinning);
-        std::vector<double> out(cells.begin(), cells.end());
-        if constexpr (std::is_integral_v<T>) {
-          for (std::size_t k = 0; k < out.size(); ++k) {
-            if (cells[k] == static_cast<T>(spec.missing)) {
-              out[k] = std::numeric_limits<double>::quiet_NaN();
-            }
-          }
-        }
-        return out;
-      },
-      *state.values(spec));
-}
-
-std::string hex(Rgb colour) {
-  const auto byte = [](float part) {
-    return static_cast<int>(std::lround(255.0F * std::clamp(part, 0.0F, 1.0F)));
-  };
-  return fmt::format("#{:02x}{:02x}{:02x}", byte(colour.r), byte(colour.g), byte(colour.b));
-}
-
-/// Deflated and in base64.
-std::string packed(const std::vector<std::uint8_t>& bytes) {
-  constexpr int kLevel = 6;
-  const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> compressor(
-      libdeflate_alloc_compressor(kLevel), &libdeflate_free_compressor);
-  if (!compressor) throw std::bad_alloc();
-  std::vector<std::uint8_t> small(libdeflate_zlib_compress_bound(compressor.get(), bytes.size()));
-  small.resize(libdeflate_zlib_compress(compressor.get(), bytes.data(), bytes.size(), small.data(),
-                                        small.size()));
-  std::string text(small.size() / 3 * 4 + 8, '\0');
-  const auto length = vtkBase64Utilities::Encode(small.data(), small.size(),
-                                                 reinterpret_cast<unsigned char*>(text.data()));
-  text.resize(length);
-  return text;
-}
-
-/// Values as codes of 16 bits between the least and the most.
-struct Codes {
-  double offset = 0.0, scale = 1.0;
-  std::vector<std::uint16_t> codes;
-};
-
-Codes coded(const std::vector<double>& values, bool whole_numbers, int levels) {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const double value : values) {
-    if (!std::isfinite(value)) continue;
-    low = std::min(low, value);
-    high = std::max(high, value);
-  }
-  Codes out;
-  if (low > high) low = high = 0.0;
-  out.offset = low;
-  out.scale = whole_numbers ? 1.0 : std::max((high - low) / levels, 1e-30);
-  out.codes.reserve(values.size());
-  for (const double value : values) {
-    out.codes.push_back(std::isfinite(value)
-                            ? static_cast<std::uint16_t>(std::lround((value - low) / out.scale))
-                            : kNothing);
-  }
-  return out;
-}
-
-/// Differences along rows, low bytes before high ones, and which cells are shown where only some
-/// are.
-std::vector<std::uint8_t> bytes_of(const std::vector<std::uint16_t>& codes, int width,
-                                   const std::vector<std::uint8_t>& shown) {
-  const std::size_t count = codes.size();
-  std::vector<std::uint8_t> bytes(2 * count);
-  for (std::size_t at = 0; at < count; ++at) {
-    const bool begins = at % static_cast<std::size_t>(width) == 0;
-    const auto difference = static_cast<std::uint16_t>(codes[at] - (begins ? 0 : codes[at - 1]));
-    bytes[at] = static_cast<std::uint8_t>(difference & 255U);
-    bytes[count + at] = static_cast<std::uint8_t>(difference >> 8U);
-  }
-  bytes.insert(bytes.end(), shown.begin(), shown.end());
-  return bytes;
-}
-
-/// The layers as they are gathered: their description and their elements.
-class Layers {
- public:
-  Layers(const State& state, const Thinning& thinning) : state_(state), thinning_(thinning) {}
-
-  void add(const FieldSpec& spec, ordered_json entry, const std::vector<std::uint8_t>& shown = {}) {
-    add_values(spec.name, shown_values(state_, spec, thinning_), spec.type != Type::float32,
-               std::move(entry), shown);
-  }
-  void add_values(std::string_view name, const std::vector<double>& values, bool whole_numbers,
-                  ordered_json entry, const std::vector<std::uint8_t>& shown = {}) {
-    entry["name"] = name;
-    index.push_back(
-        described(fmt::format("globe-{}", name), values, whole_numbers, std::move(entry), shown));
-  }
-  ordered_json described(const std::string& id, const std::vector<double>& values,
-                         bool whole_numbers, ordered_json entry,
-                         const std::vector<std::uint8_t>& shown = {}, int levels = kNothing - 1) {
-    const Codes codes = coded(values, whole_numbers, levels);
-    entry["id"] = id;
-    entry["offset"] = codes.offset;
-    entry["scale"] = codes.scale;
-    entry["masked"] = !shown.empty();
-    elements += fmt::format("<script type=\"text/plain\" id=\"{}\">{}</script>\n", id,
-                            packed(bytes_of(codes.codes, thinning_.nx, shown)));
-    return entry;
-  }
-
-  ordered_json index = ordered_json::array();
-  std::string elements;
-
- private:
-  const State& state_;
-  const Thinning& thinning_;
-};
 
 ordered_json entry_of(const std::string& title, std::string_view units, const char* kind) {
   return {{"title", title},
@@ -235,84 +109,6 @@ std::vector<std::uint8_t> shown_cells(const FieldMap& map, const State& state,
   return shown;
 }
 
-double rounded(double value) { return std::round(value * 100.0) / 100.0; }
-
-/// Longitude and latitude of a point of an equirectangular map.
-std::array<double, 2> place_of(const MapFrame& frame, double x, double y) {
-  return {rounded(x * 360.0 / frame.width() - 180.0), rounded(90.0 - y * 180.0 / frame.height())};
-}
-
-/// The rivers of the maps as lines of longitude, latitude and width.
-ordered_json rivers_of(const State& state, const MapFrame& frame) {
-  if (!has_rivers(state)) return nullptr;
-  const RiverNetwork rivers = trace_rivers(frame, state);
-  auto lines = ordered_json::array();
-  for (const auto& river : rivers.lines) {
-    auto line = ordered_json::array();
-    for (const RiverPoint& point : river) {
-      const auto [longitude, latitude] = place_of(frame, point.x, point.y);
-      line.push_back({longitude, latitude, rounded(river_width_px(rivers, point.flow))});
-    }
-    if (line.size() > 1) lines.push_back(std::move(line));
-  }
-  return lines;
-}
-
-/// Winds every few degrees, fewer towards the poles: longitude, latitude, east, north, m/s.
-ordered_json winds_of(const State& state) {
-  if (!state.has(field::wind_east) || !state.has(field::wind_north)) return nullptr;
-  const Grid& grid = state.grid();
-  const auto east = state.read(field::wind_east), north = state.read(field::wind_north);
-  constexpr int kRows = 30;
-  auto arrows = ordered_json::array();
-  for (int k = 0; k < kRows; ++k) {
-    const int row = (2 * k + 1) * grid.ny() / (2 * kRows);
-    const double latitude = grid.latitude_deg(row);
-    const int count =
-        std::max(4, static_cast<int>(2.0 * kRows * std::cos(latitude * M_PI / 180.0)));
-    for (int n = 0; n < count; ++n) {
-      const int column = (2 * n + 1) * grid.nx() / (2 * count);
-      const Index cell = grid.cell(column, row);
-      arrows.push_back({rounded(grid.longitude_deg(column)), rounded(latitude), rounded(east[cell]),
-                        rounded(north[cell])});
-    }
-  }
-  return arrows;
-}
-
-/// Boundaries of plates by the colour of what happens there.
-ordered_json boundaries_of(const State& state, const MapFrame& frame) {
-  if (!state.has(field::plate_id) || !state.has(field::boundary_type)) return nullptr;
-  const ColourMap colours("boundary_type");
-  auto lines = ordered_json::object();
-  for (const BoundaryLine& boundary : boundary_lines(frame, state)) {
-    for (const auto& piece : boundary.pieces) {
-      auto line = ordered_json::array();
-      for (std::size_t k = piece.begin; k <= piece.end; ++k) {
-        line.push_back(place_of(frame, boundary.points[k].x, boundary.points[k].y));
-      }
-      lines[hex(colours.category(piece.type)->colour)].push_back(std::move(line));
-    }
-  }
-  return lines;
-}
-
-/// The longitude with most land, to be seen first.
-double centre_of(const State& state) {
-  const Grid& grid = state.grid();
-  const auto elevation = state.read(field::elevation);
-  double east = 0.0, north = 0.0;
-  for (int j = 0; j < grid.ny(); ++j) {
-    for (int i = 0; i < grid.nx(); ++i) {
-      if (elevation[grid.cell(i, j)] < 0.0F) continue;
-      const double longitude = grid.longitude_deg(i) * M_PI / 180.0;
-      east += grid.area_m2(j) * std::sin(longitude);
-      north += grid.area_m2(j) * std::cos(longitude);
-    }
-  }
-  return rounded(std::atan2(east, north) * 180.0 / M_PI);
-}
-
 /// 2 where land is under ice or frozen all year, 1 elsewhere; empty where none is.
 std::vector<std::uint8_t> frozen_cells(const State& state, const Thinning& thinning) {
   const FrozenGround frozen(state);
@@ -331,7 +127,7 @@ std::vector<std::uint8_t> frozen_cells(const State& state, const Thinning& thinn
 }
 
 void add_categories(const CategoryMap& map, const State& state, const Thinning& thinning,
-                    Layers& layers) {
+                    GlobeLayers& layers) {
   auto entry = categories_entry(*map.field, map.title);
   const auto cells = map.has_ice ? frozen_cells(state, thinning) : std::vector<std::uint8_t>();
   if (!cells.empty()) entry["over"] = {{"colour", hex(kIce)}, {"name", FrozenGround(state).name()}};
@@ -339,7 +135,7 @@ void add_categories(const CategoryMap& map, const State& state, const Thinning& 
 }
 
 void add_layers(const State& state, const Thinning& thinning, const MapFrame& frame,
-                Layers& layers) {
+                GlobeLayers& layers) {
   layers.add(field::elevation, relief_entry());
   for (const FieldMap& map : field_maps()) {
     if (!state.has(*map.field)) continue;
@@ -362,7 +158,7 @@ void add_layers(const State& state, const Thinning& thinning, const MapFrame& fr
 
 /// Frames on the cells of the page, where they have as many.
 ordered_json add_frames(const std::vector<GlobeFrame>& frames, const Thinning& thinning,
-                        Layers& layers) {
+                        GlobeLayers& layers) {
   auto index = ordered_json::array();
   for (const GlobeFrame& frame : frames) {
     const Thinning own(frame.state.grid(), kMostColumns);
@@ -382,7 +178,7 @@ ordered_json add_frames(const std::vector<GlobeFrame>& frames, const Thinning& t
 /// Months of what has them, each a layer of its own: in steps fine enough for an eye and small
 /// enough for a page.
 ordered_json add_months(const PlanetMonths& months, const State& state, const Thinning& thinning,
-                        Layers& layers) {
+                        GlobeLayers& layers) {
   constexpr int kLevels = 1000;
   auto index = ordered_json::object();
   for (const FieldMap& map : field_maps()) {
@@ -439,7 +235,7 @@ std::string globe_markup(const State& state, const std::vector<GlobeFrame>& fram
   const Grid& grid = state.grid();
   if (grid.topology() != Topology::sphere || !state.has(field::elevation)) return {};
   const Thinning thinning(grid, kMostColumns);
-  Layers layers(state, thinning);
+  GlobeLayers layers(state, thinning);
   const MapPage page(grid, MapView());
   const MapFrame frame(page);
   add_layers(state, thinning, frame, layers);

@@ -17,14 +17,6 @@
 #include "geo/io/run/run_pictures.hpp"
 
 namespace geo::io {
-namespace {
-
-bool lists(const std::vector<const FieldSpec*>& specs, const FieldSpec& spec) {
-  return std::find(specs.begin(), specs.end(), &spec) != specs.end();
-}
-
-}  // namespace
-
 void write_collection_files(const RunFolder& folder, const Manifest& manifest) {
   std::vector<std::filesystem::path> planet, islands;
   for (const StageRecord& record : manifest.stages) {

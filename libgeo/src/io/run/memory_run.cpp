@@ -65,10 +65,7 @@ std::vector<StageInMemory> compute(const RunConfiguration& run, const RunPlan& p
 /// The fields of a planet's stages that one stage reads; of several the last.
 State state_for(const StageInfo& stage, const std::vector<Snapshot>& planet) {
   const auto is_read = [&](const FieldSpec* spec) {
-    const auto lists = [&](const std::vector<const FieldSpec*>& specs) {
-      return std::find(specs.begin(), specs.end(), spec) != specs.end();
-    };
-    return lists(stage.reads) || lists(stage.optional);
+    return lists(stage.reads, *spec) || lists(stage.optional, *spec);
   };
   std::optional<State> state;
   for (const Snapshot& snapshot : planet) {

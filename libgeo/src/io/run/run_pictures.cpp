@@ -10,6 +10,7 @@
 
 #include "geo/core/error.hpp"
 #include "geo/core/parameter.hpp"
+#include "geo/core/stage.hpp"
 #include "geo/io/config/config.hpp"
 #include "geo/io/maps/maps.hpp"
 #include "geo/io/netcdf/planet_file.hpp"
@@ -26,10 +27,6 @@
 
 namespace geo::io {
 namespace {
-
-bool lists(std::span<const FieldSpec* const> specs, const FieldSpec& spec) {
-  return std::find(specs.begin(), specs.end(), &spec) != specs.end();
-}
 
 std::vector<const FieldSpec*> picture_fields() {
   auto wanted = map_fields();
@@ -133,8 +130,8 @@ const StageRecord& stage_of(const Manifest& manifest, const FieldOfRun& wanted,
                   near.empty() ? ": it has " + fmt::format("{}", fmt::join(fields, ", ")) : near));
 }
 
-/// What a map of a field shows besides: the relief, with the rivers of an island's; of biomes what
-/// is frozen all year.
+/// What a map of a field shows besides: the elevation, with the rivers of an island's; of biomes
+/// what is frozen all year.
 std::vector<const FieldSpec*> companions_of(std::string_view field, bool of_island) {
   std::vector<const FieldSpec*> fields{&field::elevation};
   if (of_island && field == field::elevation.name) {
@@ -176,7 +173,7 @@ State state_for(const RunFolder& folder, const Manifest& manifest, const StageRe
   return state;
 }
 
-/// The relief of some frames of a run through time, the first and the last among them.
+/// The elevation of some frames of a run through time, the first and the last among them.
 std::vector<GlobeFrame> frames_of(const RunFolder& folder) {
   constexpr std::size_t kMost = 12;
   std::vector<std::filesystem::path> files;

@@ -12,11 +12,6 @@
 namespace geo::io {
 namespace {
 
-bool lists(const std::vector<const FieldSpec*>& specs, const FieldSpec& spec) {
-  return std::any_of(specs.begin(), specs.end(),
-                     [&](const FieldSpec* listed) { return listed->name == spec.name; });
-}
-
 bool has_choice(Stage& stage, std::string_view key, std::string_view value) {
   for (const Parameter& row : stage.parameters()) {
     if (row.name == key) return row.value() == ParameterValue(std::string(value));

@@ -91,24 +91,21 @@ void RunSession::write_stage(BackgroundWriter& writer, FrameFiles& frames, int p
 }
 
 /// Of the planet, fields that no later stage writes again and that cost no memory while stages
-/// still shape the relief, which is when runs are largest: later stages read them too.
+/// still change elevation, which is when runs are largest: later stages read them too.
 void RunSession::keep_for_pictures(int position, const State& state) {
   const StageInfo& info = run_.stage(position).info();
   if (info.own_grid) return at_hand_.keep_island(std::string(info.name), state);
-  const auto lists = [](const std::vector<const FieldSpec*>& specs, const FieldSpec* spec) {
-    return std::find(specs.begin(), specs.end(), spec) != specs.end();
-  };
   std::vector<const FieldSpec*> fields;
   for (const FieldSpec* spec : info.writes) {
-    bool is_last = true, relief_changes = false, stays = false;
+    bool is_last = true, elevation_changes = false, stays = false;
     for (int at = position + 1; at <= plan_.last; ++at) {
       const StageInfo& later = run_.stage(at).info();
-      stays = stays || lists(later.reads, spec) || lists(later.optional, spec);
+      stays = stays || lists(later.reads, *spec) || lists(later.optional, *spec);
       if (later.own_grid) continue;
-      is_last = is_last && !lists(later.writes, spec);
-      if (lists(later.writes, &field::elevation)) relief_changes = true, stays = false;
+      is_last = is_last && !lists(later.writes, *spec);
+      if (lists(later.writes, field::elevation)) elevation_changes = true, stays = false;
     }
-    if (is_last && (stays || !relief_changes)) fields.push_back(spec);
+    if (is_last && (stays || !elevation_changes)) fields.push_back(spec);
   }
   at_hand_.keep_planet(state, fields);
 }

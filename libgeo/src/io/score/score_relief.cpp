@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "geo/kernels/figures/hypsometry_figures.hpp"
+#include "geo/kernels/figures/profile_figures.hpp"
 #include "geo/kernels/figures/relief_figures.hpp"
 #include "geo/kernels/numerics/quantiles.hpp"
 #include "geo/kernels/numerics/spectrum.hpp"
@@ -79,6 +80,34 @@ void measure_local_relief(const State& state, Figures& figures) {
   figures["flat_land"] = 100.0 * shares_between(grid, range, kFlat).front();
 }
 
+/// What rivers have made of the land, on cells of one size: slopes grow as cells shrink. Poleward
+/// of 60 degrees ice sheets cover most of the Earth's high ground.
+void measure_profiles(const State& state, Figures& figures) {
+  const CoarseField relief = coarsen(state, field::elevation, kLocalStepDeg);
+  const Grid& grid = *relief.grid;
+  if (grid.ny() < std::lround(180.0 / kLocalStepDeg)) return;
+  constexpr LatitudeBand kBand{60.0};
+  constexpr double kLargeRiverM2 = 1e11, kBasinM2 = 2e10, kFirstM2 = 4e9, kLastM2 = 1e12;
+  constexpr double kTheta = 0.45, kChannelM2 = 1e10;
+  const LaidRivers rivers = lay_rivers(grid, relief.values);
+  figures["river_slope"] = 1000.0 * river_slope(grid, rivers, kLargeRiverM2, kBand);
+  figures["concavity"] = concavity(grid, rivers, kFirstM2, kLastM2, kBand);
+  auto integrals = hypsometric_integrals(grid, relief.values, rivers, kBasinM2, kBand);
+  if (!integrals.empty()) {
+    const auto middle = integrals.begin() + static_cast<long>(integrals.size() / 2);
+    std::nth_element(integrals.begin(), middle, integrals.end());
+    figures["hypsometric_integral"] = *middle;
+  }
+  const auto steepness = channel_steepness(grid, rivers, kTheta, kChannelM2, kBand);
+  if (std::all_of(steepness.begin(), steepness.end(), [](float k) { return std::isnan(k); })) {
+    return;
+  }
+  constexpr std::array kFractions{0.5, 0.9};
+  const auto values = quantiles(grid, steepness, kFractions);
+  figures["steepness_q50"] = values[0];
+  figures["steepness_q90"] = values[1];
+}
+
 /// Ice frays the coasts that it reaches: fjords and sounds between skerries.
 void measure_fjords(const State& state, Figures& figures) {
   constexpr double kStepDeg = 0.4, kLatitudeDeg = 50.0, kReachM = 5e4;
@@ -106,6 +135,7 @@ void measure_relief(const State& state, Figures& figures) {
   figures["antimode"] = modes.antimode_m;
   measure_shares(relief, figures);
   measure_local_relief(state, figures);
+  measure_profiles(state, figures);
   measure_spectrum(state, figures);
   measure_fjords(state, figures);
 }

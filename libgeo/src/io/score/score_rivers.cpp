@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "geo/kernels/figures/drainage_figures.hpp"
+#include "geo/kernels/numerics/quantiles.hpp"
 #include "score_figures.hpp"
+#include "score_grid.hpp"
 
 namespace geo::io {
 namespace {
@@ -47,6 +49,21 @@ void measure_runoff(const State& state, Figures& figures) {
   const double rain_m3_yr =
       sum_over_land(state, [&](Index c) { return 1e-3 * static_cast<double>(rain[c]); });
   if (rain_m3_yr > 0.0) figures["runoff_ratio"] = to_sea_m3_s * kSecondsPerYear / rain_m3_yr;
+}
+
+/// Mean thickness of sediment on land and at sea, on cells as large as those of the Earth's.
+void measure_sediment_thickness(const State& state, Figures& figures) {
+  const CoarseField sediment = coarsen(state, field::sediment_thickness, kCrustStepDeg);
+  const CoarseField relief = coarsen(state, field::elevation, kCrustStepDeg);
+  std::vector<std::uint8_t> mask(relief.values.size());
+  for (const bool on_land : {true, false}) {
+    for (std::size_t c = 0; c < mask.size(); ++c) {
+      mask[c] = (relief.values[c] >= 0.0F) == on_land ? 1 : 0;
+    }
+    if (std::find(mask.begin(), mask.end(), 1) == mask.end()) continue;
+    figures[on_land ? "sediment_land" : "sediment_sea"] =
+        area_mean(*sediment.grid, sediment.values, mask);
+  }
 }
 
 /// What rivers bring to the cells of the sea.
@@ -135,6 +152,7 @@ void measure_rivers(const State& state, Figures& figures) {
         sum_over_land(state, [&](Index c) { return std::max(0.0F, rate[c]); }) * kRockKgM3 / 1e12;
   }
   if (state.has(field::sediment_flux)) measure_sediment(state, figures);
+  if (state.has(field::sediment_thickness)) measure_sediment_thickness(state, figures);
   if (!state.has(field::flow_receiver)) return;
   if (state.has(field::discharge) && state.has(field::precipitation)) {
     measure_runoff(state, figures);

@@ -152,11 +152,11 @@ void write_globe(const std::filesystem::path& path, const Snapshot& snapshot,
   const vtkNew<vtkPolyData> surface;
   set_points(*surface, grid, corners, heights, times);
   set_faces(*surface, grid, corners);
-  const vtkNew<vtkFloatArray> relief;
-  relief->SetName("relief");
+  const vtkNew<vtkFloatArray> topography;
+  topography->SetName("topography");
   constexpr int kKeep = 1;
-  relief->SetArray(heights.data(), static_cast<vtkIdType>(heights.size()), kKeep);
-  surface->GetPointData()->AddArray(relief);
+  topography->SetArray(heights.data(), static_cast<vtkIdType>(heights.size()), kKeep);
+  surface->GetPointData()->AddArray(topography);
   add_fields(*surface, snapshot);
   add_provenance(*surface, provenance);
   const vtkNew<vtkXMLPolyDataWriter> writer;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "geo/core/array_sizes.hpp"
 #include "geo/core/error.hpp"
 #include "geo/kernels/numerics/smoothing.hpp"
 
@@ -59,6 +60,7 @@ Grid Exemplar::grid() const {
 }
 
 std::array<double, 2> ridge_direction(const Grid& grid, std::span<const float> elevation_m) {
+  check_sizes("ridge_direction", grid.size(), {{"elevation_m", elevation_m.size()}});
   double xx = 0.0, xy = 0.0, yy = 0.0;
   for (int j = 0; j < grid.ny(); ++j) {
     for (int i = 0; i < grid.nx(); ++i) {

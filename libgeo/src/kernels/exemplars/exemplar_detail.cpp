@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "exemplar_primitives.hpp"
+#include "geo/core/array_sizes.hpp"
 #include "geo/core/error.hpp"
 #include "geo/core/parallel_errors.hpp"
 #include "geo/core/projection.hpp"
@@ -97,6 +98,16 @@ void blend(const Grid& grid, int j, std::span<const std::uint8_t> wanted,
   }
 }
 
+void check_guide(std::string_view kernel, const Grid& planet, const TerrainGuide& guide) {
+  using enum ArraySize::May;
+  check_sizes(kernel, planet.size(),
+              {{"elevation_m", guide.elevation_m.size()},
+               {"orogeny_type", guide.orogeny_type.size(), be_empty},
+               {"orogeny_age_myr", guide.orogeny_age_myr.size(), be_empty},
+               {"fold_east", guide.fold_east.size(), be_empty},
+               {"fold_north", guide.fold_north.size(), be_empty}});
+}
+
 }  // namespace
 
 ExemplarBand exemplar_band(const ExemplarLibrary& library, double spacing_m, double fine_cell_m,
@@ -116,6 +127,8 @@ void exemplar_detail(const Grid& planet, const TerrainGuide& guide, const Grid& 
   if (!fine.is_projected() || !fine.centre()) {
     throw InputError("exemplars need a plane that knows its place");
   }
+  check_sizes("exemplar_detail", fine.size(), {{"detail", detail.size()}});
+  check_guide("exemplar_detail", planet, guide);
   const std::vector<Texture> textures = textures_of(library, band, fine.spacing_east_m(0));
   const PrimitiveSize size(disc_radius_m(library));
   const std::vector<OnMap> primitives =
@@ -174,6 +187,9 @@ void exemplar_detail_on_sphere(const Grid& grid, std::span<const std::uint8_t> w
   if (grid.topology() != Topology::sphere || on.topology() != Topology::sphere) {
     throw InputError("exemplars on a planet: the grid must be a whole sphere");
   }
+  check_sizes("exemplar_detail_on_sphere", grid.size(),
+              {{"detail", detail.size()}, {"wanted", wanted.size(), ArraySize::May::be_empty}});
+  check_guide("exemplar_detail_on_sphere", on, guide);
   std::vector<Texture> textures = textures_of(library, band, band.shortest_m);
   const double cell_m = grid.spacing_north_m(grid.ny() / 2 - 1);
   // Unit variance is that of waves which cells of this share of the longest show.

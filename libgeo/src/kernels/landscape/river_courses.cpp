@@ -390,12 +390,7 @@ std::vector<float> side_slopes(std::span<const float> noise) {
 RiverCourses trace_river_courses(const PlanetCells& cells, const PlanetWater& water,
                                  const Crossings& crossings, std::uint64_t seed,
                                  std::span<const float> elevation_m) {
-  check_sizes("trace_river_courses", cells.planet().size(),
-              {{"elevation_m", water.elevation_m.size()},
-               {"receiver", water.receiver.size()},
-               {"drainage_area_m2", water.drainage_area_m2.size()},
-               {"discharge_m3_s", water.discharge_m3_s.size()},
-               {"lake_id", water.lake_id.size(), ArraySize::May::be_empty}});
+  check_sizes("trace_river_courses", cells.planet(), water);
   check_sizes("trace_river_courses", cells.fine().size(), {{"elevation_m", elevation_m.size()}});
   const std::vector<float> noise = winding(cells, seed);
   Tracing tracing(cells, water, crossings, elevation_m, noise);

@@ -16,6 +16,7 @@ namespace {
 
 struct Part {
   double area_m2 = 0.0;
+  double depth_m = 0.0;
   Index first = kNoCell;
 };
 
@@ -28,7 +29,7 @@ std::vector<Part> label_seas(const Grid& grid, std::span<const float> z,
   for (Index start = 0; start < grid.size(); ++start) {
     if (!(z[start] < 0.0F) || part_of[start] >= 0) continue;
     const auto number = static_cast<std::int32_t>(parts.size());
-    parts.push_back({0.0, start});
+    parts.push_back({0.0, 0.0, start});
     const auto reach = [&](Index cell) {
       if (cell == kNoCell || !(z[cell] < 0.0F) || part_of[cell] >= 0) return;
       part_of[cell] = number;
@@ -39,6 +40,7 @@ std::vector<Part> label_seas(const Grid& grid, std::span<const float> z,
       const Index cell = front.back();
       front.pop_back();
       parts[number].area_m2 += grid.area_m2(grid.row(cell));
+      parts[number].depth_m = std::max(parts[number].depth_m, -static_cast<double>(z[cell]));
       for (int k = 0; k < kDirections; ++k) reach(grid.neighbour(cell, k));
     }
   }
@@ -88,6 +90,7 @@ class Search {
     seen_.clear();
     heap_.clear();
     add_part(part);
+    const double sill_m = std::max(law_.sill_m, law_.drawdown * parts_[part].depth_m);
     while (!heap_.empty()) {
       std::pop_heap(heap_.begin(), heap_.end(), std::greater<>());
       const Entry entry = heap_.back();
@@ -102,7 +105,7 @@ class Search {
       const int i = grid_.column(entry.cell), j = grid_.row(entry.cell);
       for (int k = 0; k < kDirections; ++k) {
         const Index to = grid_.neighbour(i, j, k);
-        if (to == kNoCell || z_[to] > law_.sill_m) continue;
+        if (to == kNoCell || z_[to] > sill_m) continue;
         const double step = grid_.distances_m(j)[k];
         const bool land = !(z_[to] < 0.0F);
         const double land_m = here.land_m + (land ? step : 0.0);

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 
+#include "geo/core/array_sizes.hpp"
 #include "geo/kernels/noise/noise.hpp"
 #include "kernels/numerics/wide.hpp"
 #include "noise_lattice.hpp"
@@ -133,6 +134,7 @@ TERRANE_WIDE void add_octave(Block& block, double amplitude) {
 
 void Noise::fbm(std::span<const std::array<double, 3>> positions, double frequency, int octaves,
                 double gain, std::span<float> out) const {
+  check_sizes("Noise::fbm", positions.size(), {{"out", out.size()}});
   const Rotation& rotation = lattice::tables().turn;
   Block block{};
   for (std::size_t first = 0; first < positions.size(); first += kBlock) {

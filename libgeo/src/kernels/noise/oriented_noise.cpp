@@ -221,6 +221,9 @@ void add_oriented_noise(const Grid& grid, const Grid& on, const Orientation& cre
   if (grid.topology() != Topology::sphere || on.topology() != Topology::sphere) {
     throw InputError("oriented noise: the grid must be a whole sphere");
   }
+  check_sizes("add_oriented_noise", grid.size(), {{"values", values.size()}});
+  check_sizes("add_oriented_noise", on.size(),
+              {{"cosine", crests.cosine.size()}, {"sine", crests.sine.size()}});
   const double seen = factor * shown(grid, band.wavelength_km);
   if (seen == 0.0) return;
   const double radius_km = 1e-3 * grid.figure().radius_m;

@@ -7,6 +7,7 @@
 #include <queue>
 #include <tuple>
 
+#include "geo/core/array_sizes.hpp"
 #include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/plates/plate_motion.hpp"
 
@@ -142,6 +143,7 @@ std::vector<BoundaryPoint> find_boundaries(const CubedSphere& mesh,
                                            std::span<const Vector3> rotation_rad_myr,
                                            double plate_speed_cm_yr, double smoothing_km,
                                            double radius_km) {
+  check_sizes("find_boundaries", mesh.size(), {{"plate", plate.size()}});
   std::vector<BoundaryPoint> points;
   std::vector<std::int32_t> point_of(mesh.size(), -1);
   for (std::int32_t cell = 0; cell < mesh.size(); ++cell) {
@@ -186,6 +188,7 @@ std::vector<BoundaryPoint> find_boundaries(const CubedSphere& mesh,
 CrustBudget crust_budget(const CubedSphere& mesh, std::span<const std::int16_t> plate,
                          std::span<const BoundaryPoint> boundaries,
                          std::span<const Vector3> rotation_rad_myr, double radius_km) {
+  check_sizes("crust_budget", mesh.size(), {{"plate", plate.size()}});
   std::vector<double> away(mesh.size(), 0.0);
   for (const BoundaryPoint& point : boundaries) {
     away[point.cell] = point.motion.opening - point.motion.closing;

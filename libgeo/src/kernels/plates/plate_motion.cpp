@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <numbers>
 
+#include "geo/core/array_sizes.hpp"
+
 namespace geo {
 
 Vector3 euler_rotation(double pole_latitude_deg, double pole_longitude_deg, double rate_deg_myr) {
@@ -52,6 +54,7 @@ Vector3 VelocityFit::rotation_rad_myr(double radius_km) const {
 
 Vector3 net_rotation(std::span<const std::int16_t> plate, std::span<const Vector3> unit,
                      std::span<const double> area_sr, std::span<const Vector3> rotation) {
+  check_sizes("net_rotation", plate.size(), {{"unit", unit.size()}, {"area_sr", area_sr.size()}});
   Vector3 sum{};
   for (std::size_t k = 0; k < plate.size(); ++k) {
     const Vector3& r = unit[k];

@@ -207,15 +207,19 @@ class Inflow {
 
 }  // namespace
 
-Crossings find_inflow(const PlanetCells& cells, const PlanetWater& water,
-                      std::span<float> elevation_m, std::span<double> inflow_area_m2,
-                      std::span<float> inflow_m3_s) {
-  check_sizes("find_inflow", cells.planet().size(),
+void check_sizes(std::string_view kernel, const Grid& planet, const PlanetWater& water) {
+  check_sizes(kernel, planet.size(),
               {{"elevation_m", water.elevation_m.size()},
                {"receiver", water.receiver.size()},
                {"drainage_area_m2", water.drainage_area_m2.size()},
                {"discharge_m3_s", water.discharge_m3_s.size()},
                {"lake_id", water.lake_id.size(), ArraySize::May::be_empty}});
+}
+
+Crossings find_inflow(const PlanetCells& cells, const PlanetWater& water,
+                      std::span<float> elevation_m, std::span<double> inflow_area_m2,
+                      std::span<float> inflow_m3_s) {
+  check_sizes("find_inflow", cells.planet(), water);
   check_sizes("find_inflow", cells.fine().size(),
               {{"elevation_m", elevation_m.size()},
                {"inflow_area_m2", inflow_area_m2.size()},

@@ -225,6 +225,7 @@ class Sea {
 }  // namespace
 
 SurfaceRivers route_rivers(const SurfaceGraph& graph, std::span<const float> elevation_m) {
+  check_sizes("route_rivers", graph.is_there.size(), {{"elevation_m", elevation_m.size()}});
   SurfaceRivers rivers = Flood(graph, elevation_m).run();
   rivers.area_m2.assign(elevation_m.size(), graph.area_m2);
   for (auto at = rivers.order.rbegin(); at != rivers.order.rend(); ++at) {

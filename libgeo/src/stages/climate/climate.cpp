@@ -148,17 +148,19 @@ class ClimateStage final : public Stage {
     const ClimateFrame& frame = *shared_frame;
     const auto size = static_cast<std::size_t>(frame.planet().size());
     std::vector<float> land(size), height_m(size);
-    frame.planet_relief(elevation, land, height_m);
+    frame.planet_topography(elevation, land, height_m);
     const auto model = on_planet(p_.seasonal, context.planet, p_.blueprint.greenhouse_k);
-    const auto relief_size = static_cast<std::size_t>(frame.relief().size());
-    std::vector<float> relief_land(relief_size), relief_height(relief_size), coverage(relief_size);
-    frame.on_relief().average_elevation(elevation, relief_land, relief_height, coverage);
+    const auto topography_size = static_cast<std::size_t>(frame.topography().size());
+    std::vector<float> topography_land(topography_size), topography_height(topography_size),
+        coverage(topography_size);
+    frame.on_topography().average_elevation(elevation, topography_land, topography_height,
+                                            coverage);
     const bool closed_formulas = p_.model == "blueprint";
     std::vector<float> ascent, planet_ascent;
     TerrainAscent ascent_of;  // the blueprint has its own
     if (!closed_formulas) {
       ascent_of = [&](std::span<const float> wind_east, std::span<const float> wind_north) {
-        ascent = orographic_ascent(frame, wind_east, wind_north, relief_height, p_);
+        ascent = orographic_ascent(frame, wind_east, wind_north, topography_height, p_);
         planet_ascent = mean_ascent(frame, ascent);
         return planet_ascent;
       };
@@ -169,9 +171,10 @@ class ClimateStage final : public Stage {
     const DimmedSun dimmed =
         dim_the_sun(model.energy, closed_formulas ? &p_.blueprint : nullptr, context);
     if (closed_formulas) {
-      ascent.resize(relief_size);
-      blueprint_orographic_precipitation(frame.relief(), p_.blueprint, frame.relief_latitudes_deg(),
-                                         relief_land, relief_height, ascent);
+      ascent.resize(topography_size);
+      blueprint_orographic_precipitation(frame.topography(), p_.blueprint,
+                                         frame.topography_latitudes_deg(), topography_land,
+                                         topography_height, ascent);
       planet_ascent.assign(size, 1.0F);
     }
     const FineClimate fine(frame, p_, model, fields, land, planet_ascent, ascent, dimmed, context);

@@ -44,7 +44,7 @@ ClimateFrame::ClimateFrame(const Grid& grid, const ClimateParameters& parameters
                            const Planet& planet)
     : edge_continues_(parameters.surroundings == "edge") {
   const double radius_m = grid.figure().radius_m;
-  const double relief_m = 1000.0 * parameters.topography_resolution_km;
+  const double topography_m = 1000.0 * parameters.topography_resolution_km;
   latitude_deg_ = row_latitudes(grid, parameters.latitude_deg, radius_m);
   const int rows = std::max(12, static_cast<int>(std::lround(180.0 / parameters.resolution_deg)));
   switch (grid.topology()) {
@@ -60,37 +60,40 @@ ClimateFrame::ClimateFrame(const Grid& grid, const ClimateParameters& parameters
   }
   // Small planes keep enough cells to show their own ranges.
   const double extent_m = grid.face_east_m(0) * grid.ny();
-  relief_ = std::make_unique<Grid>(coarser_grid(
-      grid, grid.topology() == Topology::sphere ? relief_m : std::min(relief_m, extent_m / 64.0)));
+  topography_ = std::make_unique<Grid>(coarser_grid(
+      grid, grid.topology() == Topology::sphere ? topography_m
+                                                : std::min(topography_m, extent_m / 64.0)));
   planet_latitude_deg_ = row_latitudes(*planet_, parameters.latitude_deg, radius_m);
-  on_relief_ = std::make_unique<ConservativeRemapping>(grid, *relief_);
+  on_topography_ = std::make_unique<ConservativeRemapping>(grid, *topography_);
   if (grid.topology() == Topology::plane) {
-    // The relief grid spans the same rows: its latitudes lie evenly between theirs.
+    // The topography grid spans the same rows: its latitudes lie evenly between theirs.
     const auto edges = edges_between(latitude_deg_);
-    const double step = (edges.back() - edges.front()) / relief_->ny();
-    for (int j = 0; j < relief_->ny(); ++j) {
-      relief_latitude_deg_.push_back(edges.front() + (j + 0.5) * step);
+    const double step = (edges.back() - edges.front()) / topography_->ny();
+    for (int j = 0; j < topography_->ny(); ++j) {
+      topography_latitude_deg_.push_back(edges.front() + (j + 0.5) * step);
     }
     const auto longitudes =
         edges_between(column_longitudes(grid, parameters.latitude_deg, radius_m));
-    std::vector<double> relief_rows{edges.front()}, relief_columns{longitudes.front()};
-    const double step_east = (longitudes.back() - longitudes.front()) / relief_->nx();
-    for (int j = 1; j <= relief_->ny(); ++j) relief_rows.push_back(edges.front() + j * step);
-    for (int i = 1; i <= relief_->nx(); ++i) {
-      relief_columns.push_back(longitudes.front() + i * step_east);
+    std::vector<double> topography_rows{edges.front()}, topography_columns{longitudes.front()};
+    const double step_east = (longitudes.back() - longitudes.front()) / topography_->nx();
+    for (int j = 1; j <= topography_->ny(); ++j)
+      topography_rows.push_back(edges.front() + j * step);
+    for (int i = 1; i <= topography_->nx(); ++i) {
+      topography_columns.push_back(longitudes.front() + i * step_east);
     }
     on_planet_ = std::make_unique<ConservativeRemapping>(grid, *planet_, edges, longitudes);
-    relief_on_planet_ =
-        std::make_unique<ConservativeRemapping>(*relief_, *planet_, relief_rows, relief_columns);
+    topography_on_planet_ = std::make_unique<ConservativeRemapping>(
+        *topography_, *planet_, topography_rows, topography_columns);
   } else {
-    relief_latitude_deg_ = row_latitudes(*relief_, parameters.latitude_deg, radius_m);
+    topography_latitude_deg_ = row_latitudes(*topography_, parameters.latitude_deg, radius_m);
     on_planet_ = std::make_unique<ConservativeRemapping>(grid, *planet_);
-    relief_on_planet_ = std::make_unique<ConservativeRemapping>(*relief_, *planet_);
+    topography_on_planet_ = std::make_unique<ConservativeRemapping>(*topography_, *planet_);
   }
 }
 
-void ClimateFrame::planet_relief(std::span<const float> elevation, std::span<float> land_fraction,
-                                 std::span<float> height_m) const {
+void ClimateFrame::planet_topography(std::span<const float> elevation,
+                                     std::span<float> land_fraction,
+                                     std::span<float> height_m) const {
   std::vector<float> coverage(land_fraction.size());
   on_planet_->average_elevation(elevation, land_fraction, height_m, coverage);
   if (on_planet_->fine().topology() == Topology::plane && edge_continues_) {

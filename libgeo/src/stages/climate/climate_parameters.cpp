@@ -1,29 +1,32 @@
 #include "geo/stages/climate/climate.hpp"
 
 namespace geo {
+namespace {
 
-std::vector<Parameter> ClimateParameters::declarations() {
-  EnergyBalance& e = seasonal.energy;
-  Circulation& c = seasonal.circulation;
-  StationaryWave& w = seasonal.wave;
-  MoistureBudget& m = seasonal.moisture;
-  SoilMoisture& soil = seasonal.soil;
-  BlueprintClimate& b = blueprint;
+/// The model and where it works.
+std::vector<Parameter> frame_rows(ClimateParameters& p) {
   return {
-      choice("climate.model", model, {"energy-balance", "blueprint"},
+      choice("climate.model", p.model, {"energy-balance", "blueprint"},
              "physics of the climate: energy and moisture budgets, or the closed formulas of the "
              "blueprint",
              "design"),
-      real("climate.resolution_deg", resolution_deg, "degree", 0.5, 10.0,
+      real("climate.resolution_deg", p.resolution_deg, "degree", 0.5, 10.0,
            "spacing of the grid on which air, heat and moisture move", "design"),
-      renamed(real("climate.topography_resolution_km", topography_resolution_km, "km", 5.0, 500.0,
+      renamed(real("climate.topography_resolution_km", p.topography_resolution_km, "km", 5.0, 500.0,
                    "spacing of the topography that lifts the air", "design"),
               "climate.relief_resolution_km"),
-      real("climate.latitude_deg", latitude_deg, "degree", -90.0, 90.0,
+      real("climate.latitude_deg", p.latitude_deg, "degree", -90.0, 90.0,
            "latitude of the middle of a grid that does not know where it lies", "design"),
-      choice("climate.surroundings", surroundings, {"edge", "ocean"},
+      choice("climate.surroundings", p.surroundings, {"edge", "ocean"},
              "what lies around a part of a planet: its own edge for 1000 km, or the sea", "design"),
-      // Energy balance
+  };
+}
+
+/// Heat of air, ground and sea.
+std::vector<Parameter> energy_rows(ClimateParameters& p) {
+  EnergyBalance& e = p.seasonal.energy;
+  SeasonalClimate& seasonal = p.seasonal;
+  return {
       real("climate.solar_constant_w_m2", e.solar_constant_w_m2, "W m-2", 10.0, 10000.0,
            "sunlight at the planet's distance", "berger1978"),
       real("climate.outgoing_w_m2", e.outgoing_w_m2, "W m-2", 0.0, 1000.0,
@@ -91,7 +94,14 @@ std::vector<Parameter> ClimateParameters::declarations() {
            "mean height of topography that halves the heat passing over it", "manabe1974"),
       real("climate.lapse_k_m", e.lapse_k_m, "K m-1", 0.0, 0.02, "fall of temperature with height",
            "holton2013"),
-      // Winds
+  };
+}
+
+/// Pressure and winds.
+std::vector<Parameter> wind_rows(ClimateParameters& p) {
+  Circulation& c = p.seasonal.circulation;
+  SeasonalClimate& seasonal = p.seasonal;
+  return {
       real("climate.rotation_period_h", c.rotation_period_h, "h", 1.0, 10000.0,
            "sidereal day of the planet", "holton2013"),
       flag("climate.retrograde", c.retrograde, "whether the planet turns from east to west",
@@ -122,7 +132,14 @@ std::vector<Parameter> ClimateParameters::declarations() {
       real("climate.itcz_locality", seasonal.itcz_locality, "1", 0.0, 1.0,
            "how far the trough follows the warmest latitude of each meridian, not of all",
            "peixoto1992"),
-      // Stationary waves
+  };
+}
+
+/// Waves that heating and mountains set up.
+std::vector<Parameter> wave_rows(ClimateParameters& p) {
+  StationaryWave& w = p.seasonal.wave;
+  SeasonalClimate& seasonal = p.seasonal;
+  return {
       real("climate.wave_speed_m_s", w.internal.speed_m_s, "m s-1", 5.0, 200.0,
            "speed of the troposphere's first baroclinic mode", "gill1980"),
       real("climate.wave_momentum_damping_d", w.internal.momentum_damping_d, "day", 0.1, 100.0,
@@ -145,7 +162,15 @@ std::vector<Parameter> ClimateParameters::declarations() {
       real("climate.sensible_w_m2_k", seasonal.sensible_w_m2_k, "W m-2 K-1", 0.0, 50.0,
            "heating of the air over land per kelvin that it is warmer than its parallel",
            "rodwell2001"),
-      // Moisture
+  };
+}
+
+/// Evaporation, transport and rain.
+std::vector<Parameter> moisture_rows(ClimateParameters& p) {
+  MoistureBudget& m = p.seasonal.moisture;
+  SeasonalClimate& seasonal = p.seasonal;
+  SoilMoisture& soil = p.seasonal.soil;
+  return {
       real("climate.rain_time_d", m.rain_time_d, "day", 0.1, 50.0,
            "rain-out time of a saturated column of air", "bretherton2004"),
       integer("climate.humidity_exponent", m.humidity_exponent, "1", 0, 12,
@@ -200,23 +225,34 @@ std::vector<Parameter> ClimateParameters::declarations() {
            "mean height at which topography halves the moist flow", "roe2005"),
       real("climate.land_transpiration", seasonal.land_transpiration, "1", 0.0, 1.0,
            "share of the soil's evaporation that returns to the air", "manabe1969"),
-      real("climate.lift_reach_km", lift_reach_km, "km", 1.0, 1000.0,
+      real("climate.lift_reach_km", p.lift_reach_km, "km", 1.0, 1000.0,
            "e-folding distance over which air remembers the topography that it crossed",
            "smith1979"),
-      real("climate.lift_height_m", lift_height_m, "m", 100.0, 1e6,
+      real("climate.lift_height_m", p.lift_height_m, "m", 100.0, 1e6,
            "lift that multiplies rain by e (and descent that divides it)", "roe2005"),
-      // Noise
-      real("climate.temperature_noise_k", temperature_noise_k, "K", 0.0, 20.0,
+  };
+}
+
+/// Noise on annual means.
+std::vector<Parameter> noise_rows(ClimateParameters& p) {
+  return {
+      real("climate.temperature_noise_k", p.temperature_noise_k, "K", 0.0, 20.0,
            "amplitude of coherent noise in temperature", "tectonica2026"),
-      real("climate.precipitation_noise_mm_yr", precipitation_noise_mm_yr, "mm yr-1", 0.0, 1000.0,
+      real("climate.precipitation_noise_mm_yr", p.precipitation_noise_mm_yr, "mm yr-1", 0.0, 1000.0,
            "amplitude of coherent noise in precipitation", "tectonica2026"),
-      real("climate.noise_wavelength_km", noise_wavelength_km, "km", 10.0, 20000.0,
+      real("climate.noise_wavelength_km", p.noise_wavelength_km, "km", 10.0, 20000.0,
            "longest wavelength of that noise", "tectonica2026"),
-      // Blueprint
+  };
+}
+
+/// The closed formulas, by the numbers of their equations.
+std::vector<Parameter> blueprint_rows(ClimateParameters& p) {
+  BlueprintClimate& b = p.blueprint;
+  return {
       real("climate.greenhouse_k", b.greenhouse_k, "K", 0.0, 100.0,
            "warming by air: greenhouse ln(1 + pressure in bar); energy-balance counts from 1 bar",
            "tectonica2026"),
-      real("climate.wind_speed_m_s", wind_speed_m_s, "m s-1", 0.0, 100.0,
+      real("climate.wind_speed_m_s", p.wind_speed_m_s, "m s-1", 0.0, 100.0,
            "speed of the blueprint's zonal winds", "peixoto1992"),
       real("climate.equator_c", b.equator_c, "degC", -100.0, 100.0,
            "blueprint: sea-level temperature at the equator (5.1)", "tectonica2026"),
@@ -260,6 +296,13 @@ std::vector<Parameter> ClimateParameters::declarations() {
            "impacts (5.10)",
            "tectonica2026"),
   };
+}
+
+}  // namespace
+
+std::vector<Parameter> ClimateParameters::declarations() {
+  return joined(*this, {frame_rows, energy_rows, wind_rows, wave_rows, moisture_rows, noise_rows,
+                        blueprint_rows});
 }
 
 }  // namespace geo

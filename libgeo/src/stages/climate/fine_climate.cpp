@@ -106,13 +106,15 @@ struct Currents {
   std::vector<float> east, north;
 };
 
-/// Those that the stress of the months' winds drives; none unless the grid is a whole planet.
-Currents wind_driven_currents(const ClimateFrame& frame, const SeasonalClimate& model,
-                              const SeasonalFields& fields, std::span<const float> land_fraction) {
+/// Those that the stress of the months' winds drives; none unless the grid is a whole planet, and
+/// they are wanted.
+Currents wind_driven_currents(const ClimateFrame& frame, const ClimateParameters& p,
+                              const SeasonalClimate& model, const SeasonalFields& fields,
+                              std::span<const float> land_fraction) {
   const Grid& grid = frame.planet();
   const auto size = static_cast<std::size_t>(grid.size());
   Currents currents{std::vector<float>(size), std::vector<float>(size)};
-  if (grid.topology() != Topology::sphere) return currents;
+  if (!p.solves_currents || grid.topology() != Topology::sphere) return currents;
   std::vector<double> east_pa(size), north_pa(size);
   for (std::size_t cell = 0; cell < size; ++cell) {
     for (int m = 0; m < kMonths; ++m) {
@@ -209,7 +211,7 @@ class FineClimate::Rows {
  public:
   Rows(const ClimateFrame& frame, const ClimateParameters& p, const SeasonalClimate& model,
        const SeasonalFields& fields, std::span<const float> land_fraction,
-       std::span<const float> planet_ascent, std::span<const float> on_relief,
+       std::span<const float> planet_ascent, std::span<const float> on_topography,
        const DimmedSun& dimmed, const Context& context)
       : frame_(frame),
         p_(p),
@@ -226,8 +228,8 @@ class FineClimate::Rows {
                  Interpolator::Kind::vector_component),
         north_of_(frame.on_planet(), annual_mean(year_->wind_north),
                   Interpolator::Kind::vector_component),
-        relief_of_(frame.on_relief(), on_relief),
-        currents_(wind_driven_currents(frame, model, fields, land_fraction)),
+        topography_of_(frame.on_topography(), on_topography),
+        currents_(wind_driven_currents(frame, p, model, fields, land_fraction)),
         current_east_of_(frame.on_planet(), currents_.east, Interpolator::Kind::vector_component),
         current_north_of_(frame.on_planet(), currents_.north, Interpolator::Kind::vector_component),
         seasons_(frame, model, *year_),
@@ -239,20 +241,18 @@ class FineClimate::Rows {
 
   /// What one thread works in.
   struct Work {
-    std::vector<float> scratch, over_relief, humidity, months;
+    std::vector<float> scratch, over_topography, humidity, months;
   };
   [[nodiscard]] Work work() const {
     const auto nx = static_cast<std::size_t>(grid().nx());
-    return {std::vector<float>(std::max(seasons_.scratch_size(), relief_of_.scratch_size())),
+    return {std::vector<float>(std::max(seasons_.scratch_size(), topography_of_.scratch_size())),
             std::vector<float>(nx), std::vector<float>(nx), std::vector<float>(2 * kMonths * nx)};
   }
 
   /// All outputs of a row; how many of its cells were held at an end of the temperatures' range.
   std::int64_t row(int j, std::span<const float> elevation, const ClimateOutputs& out,
                    Work& work) const {
-    const auto nx = static_cast<std::size_t>(grid().nx());
-    const std::size_t begin = static_cast<std::size_t>(j) * nx;
-    relief_of_.row(j, work.over_relief, work.scratch);
+    topography_of_.row(j, work.over_topography, work.scratch);
     humidity_of_.row(j, work.humidity, work.scratch);
     const std::int64_t held = closed_formulas() ? closed_row(j, elevation, out, work)
                                                 : balanced_row(j, elevation, out, work);
@@ -295,7 +295,7 @@ class FineClimate::Rows {
                                   noise_.temperature_k(i, j), dimmed_.cooling_k));
       held += limits_.is_end(out.temperature[cell]) ? 1 : 0;
       out.precipitation[cell] = static_cast<float>(
-          blueprint_precipitation_mm_yr(p_.blueprint, hadley, work.over_relief[i], h, coast_km,
+          blueprint_precipitation_mm_yr(p_.blueprint, hadley, work.over_topography[i], h, coast_km,
                                         pressure_bar_, noise_.rain_mm_yr(i, j), dimmed_.aerosol));
       out.wind_east[cell] = static_cast<float>(p_.wind_speed_m_s * wind.east);
       out.wind_north[cell] = static_cast<float>(p_.wind_speed_m_s * wind.north);
@@ -326,7 +326,7 @@ class FineClimate::Rows {
       temperature[i] += shake - cooling - lapse * above;
       held += limits_.hold(temperature[i]) ? 1 : 0;
       const auto stray = static_cast<float>(noise_.rain_mm_yr(column, j));
-      rain[i] = rain_left * std::max(0.0F, rain[i] * work.over_relief[i] + stray);
+      rain[i] = rain_left * std::max(0.0F, rain[i] * work.over_topography[i] + stray);
     }
     return held;
   }
@@ -339,7 +339,7 @@ class FineClimate::Rows {
   TemperatureLimits limits_;
   std::vector<float> mean_c_, rain_mm_yr_;  ///< of coarse cells, filled with the year
   std::shared_ptr<Climatology> year_;
-  Interpolator mean_of_, rain_of_, humidity_of_, east_of_, north_of_, relief_of_;
+  Interpolator mean_of_, rain_of_, humidity_of_, east_of_, north_of_, topography_of_;
   Currents currents_;
   Interpolator current_east_of_, current_north_of_;
   SeasonsOfRows seasons_;
@@ -349,10 +349,10 @@ class FineClimate::Rows {
 FineClimate::FineClimate(const ClimateFrame& frame, const ClimateParameters& parameters,
                          const SeasonalClimate& model, const SeasonalFields& fields,
                          std::span<const float> land_fraction, std::span<const float> planet_ascent,
-                         std::span<const float> on_relief, const DimmedSun& dimmed,
+                         std::span<const float> on_topography, const DimmedSun& dimmed,
                          const Context& context)
     : rows_(std::make_unique<const Rows>(frame, parameters, model, fields, land_fraction,
-                                         planet_ascent, on_relief, dimmed, context)) {}
+                                         planet_ascent, on_topography, dimmed, context)) {}
 
 FineClimate::~FineClimate() = default;
 

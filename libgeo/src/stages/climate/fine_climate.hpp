@@ -44,13 +44,14 @@ struct TemperatureLimits {
 /// The coarse year at the stage's own cells: their elevation, single ranges, noise and events.
 class FineClimate {
  public:
-  /// `land_fraction` is that of coarse cells. `on_relief` is the ascent over single ranges, of
+  /// `land_fraction` is that of coarse cells. `on_topography` is the ascent over single ranges, of
   /// which `planet_ascent` is the mean over each coarse cell; with the blueprint's closed formulas
   /// it is their rain.
   FineClimate(const ClimateFrame& frame, const ClimateParameters& parameters,
               const SeasonalClimate& model, const SeasonalFields& fields,
               std::span<const float> land_fraction, std::span<const float> planet_ascent,
-              std::span<const float> on_relief, const DimmedSun& dimmed, const Context& context);
+              std::span<const float> on_topography, const DimmedSun& dimmed,
+              const Context& context);
   ~FineClimate();
   FineClimate(const FineClimate&) = delete;
   FineClimate& operator=(const FineClimate&) = delete;

@@ -8,7 +8,8 @@
 namespace geo {
 
 /// How many times more than over level ground air rains out at the scale of single ranges, on the
-/// relief grid: e where it has just been lifted by `lift_height_m`, 1/e where it has sunk by that.
+/// topography grid: e where it has just been lifted by `lift_height_m`, 1/e where it has sunk by
+/// that.
 std::vector<float> orographic_ascent(const ClimateFrame& frame, std::span<const float> wind_east,
                                      std::span<const float> wind_north,
                                      std::span<const float> height_m, const ClimateParameters& p);

@@ -12,9 +12,11 @@ namespace {
 
 constexpr int kMostColumns = 512;
 
-/// The stage `climate` with the settings that it has in a run.
+/// The stage `climate` with the settings that it has in a run; currents of the sea are left out.
 std::unique_ptr<Stage> climate_stage_of(std::span<const Parameter> configuration) {
-  auto stage = make_climate_stage();
+  ClimateParameters land;
+  land.solves_currents = false;
+  auto stage = make_climate_stage(land);
   for (const Parameter& parameter : stage->parameters()) {
     if (const Parameter* outside = find_parameter(configuration, parameter.name)) {
       parameter.set(outside->value());

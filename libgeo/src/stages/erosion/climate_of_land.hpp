@@ -16,7 +16,8 @@ inline constexpr float kLapse_K_m = 6.5e-3F;
 
 /// The climate of a surface as it is now: the stage `climate`, with the settings that it has in
 /// this run, on a grid of at most 512 columns, interpolated; temperatures follow heights by
-/// `kLapse_K_m` from there. Events do not act on it: they are sudden, this is the mean of an age.
+/// `kLapse_K_m` from there. Currents of the sea are left out. Events do not act on it: they are
+/// sudden, this is the mean of an age.
 [[nodiscard]] LandClimate climate_of_land(const Grid& grid, std::span<const float> elevation_m,
                                           Context& context);
 /// What that takes, as in StageCost, with the climate's settings in `configuration`.

@@ -15,6 +15,16 @@
 namespace geo {
 namespace {
 
+/// Raises values of cells to at least so much for each square metre.
+void keep_at_least(const Grid& grid, double least_per_m2, std::span<double> values) {
+#pragma omp parallel for schedule(static)
+  for (int j = 0; j < grid.ny(); ++j) {
+    for (Index c = grid.cell(0, j); c < grid.cell(0, j) + grid.nx(); ++c) {
+      values[c] = std::max(values[c], least_per_m2 * grid.area_m2(j));
+    }
+  }
+}
+
 /// Area whose water each cell sheds at the reference runoff, m2: negative where a lake loses more.
 void shed_rain(const ErosionParameters& p, const Grid& grid, std::span<const float> elevation_m,
                std::span<const std::uint8_t> outlets, const LandClimate& climate,
@@ -27,12 +37,7 @@ void shed_rain(const ErosionParameters& p, const Grid& grid, std::span<const flo
              climate.on_cells(climate.potential_mm_yr, grid), shed, loss_m3_s);
   const double m2_per_m3_s = kSecondsPerYear / (1e-3 * p.reference_runoff_mm_yr);
   const double least = p.least_runoff_mm_yr / p.reference_runoff_mm_yr / m2_per_m3_s;
-#pragma omp parallel for schedule(static)
-  for (int j = 0; j < grid.ny(); ++j) {
-    for (Index c = grid.cell(0, j); c < grid.cell(0, j) + grid.nx(); ++c) {
-      shed[c] = std::max(shed[c], least * grid.area_m2(j));
-    }
-  }
+  keep_at_least(grid, least, shed);
   std::vector<Index> receiver(grid.size());
   steepest_receivers(grid, elevation_m, outlets, receiver);
   const auto hierarchy = build_depression_hierarchy(grid, elevation_m, outlets, receiver);
@@ -48,12 +53,7 @@ void shed_rain(const ErosionParameters& p, const Grid& grid, std::span<const flo
 /// Lakes whose water parts upstream may take more than comes.
 void keep_some_water(const ErosionParameters& p, const Grid& grid, std::span<double> area_m2) {
   const double least = p.least_runoff_mm_yr / p.reference_runoff_mm_yr;
-#pragma omp parallel for schedule(static)
-  for (int j = 0; j < grid.ny(); ++j) {
-    for (Index c = grid.cell(0, j); c < grid.cell(0, j) + grid.nx(); ++c) {
-      area_m2[c] = std::max(area_m2[c], least * grid.area_m2(j));
-    }
-  }
+  keep_at_least(grid, least, area_m2);
 }
 
 }  // namespace

@@ -80,6 +80,11 @@ std::vector<Parameter> straits_rows(ErosionParameters& p) {
            "planet "
            "and cut a strait; 0: seas stay as they are",
            "haq1987"),
+      real("erosion.strait_drawdown", p.strait_drawdown, "1", 0.0, 1.0,
+           "the same as a share of the depth of the sea, where that is more: rivers that fall into "
+           "the "
+           "hollow of a sea cut off from the ocean cut back through its rim",
+           "loget2006"),
       real("erosion.strait_land_km", p.strait_land_km, "km", 0.0, 1e5,
            "longest way of a strait over land", "design"),
       real("erosion.strait_depth_m", p.strait_depth_m, "m", 0.01, 5000.0, "depth of straits",

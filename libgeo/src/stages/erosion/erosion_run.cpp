@@ -99,7 +99,7 @@ ErosionRun::ErosionRun(const ErosionParameters& parameters, StageIo& io, Context
 /// Changes elevation at will; land and sea are then told apart again.
 template <class Change>
 bool ErosionRun::reshape(Change&& change) {
-  const bool did = landscape_.book_reshaping(change);
+  const bool did = landscape_.reshape(change);
   if (did) landscape_.set_outlets(find_outlets(grid_, elevation_m_));
   return did;
 }
@@ -165,7 +165,12 @@ void ErosionRun::finish() {
   landscape_.relax();
   reshape([&] { return SurfaceFinish(p_, grid_, context_).reshape(elevation_m_); });
   if (p_.steps > 0) {
-    reshape([&] { return keep_sea_share(p_, grid_, elevation_m_, sea_share_); });
+    const auto keep_share = [&] {
+      return reshape([&] { return keep_sea_share(p_, grid_, elevation_m_, sea_share_); });
+    };
+    // Where the sea has sunk, straits may have fallen dry.
+    keep_share();
+    if (reshape([&] { return join_seas(p_, grid_, elevation_m_); })) keep_share();
   }
   strike(p_.steps);
   if (ice_) ice_->settle_today(*climate_, elevation_m_);

@@ -15,12 +15,6 @@
 namespace geo {
 namespace {
 
-/// Value noise on the unit sphere, as the blueprint counts its frequencies.
-float octave(const Noise& noise, const std::array<double, 3>& at, double frequency) {
-  return noise.value(static_cast<float>(at[0] * frequency), static_cast<float>(at[1] * frequency),
-                     static_cast<float>(at[2] * frequency));
-}
-
 std::vector<std::uint8_t> land_of(std::span<const float> elevation_m) {
   std::vector<std::uint8_t> land(elevation_m.size());
   std::transform(elevation_m.begin(), elevation_m.end(), land.begin(),
@@ -75,8 +69,8 @@ void SurfaceFinish::add_detail(std::span<float> elevation_m) const {
       float& height = elevation_m[grid_.cell(i, j)];
       if (height <= 0.0F) continue;
       const auto at = grid_.unit_vector(i, j);
-      const float sum = 80.0F * octave(noise, at, 16.0) + 40.0F * octave(noise, at, 32.0) +
-                        20.0F * octave(noise, at, 64.0) + 10.0F * octave(noise, at, 128.0);
+      const float sum = 80.0F * noise.value(at, 16.0) + 40.0F * noise.value(at, 32.0) +
+                        20.0F * noise.value(at, 64.0) + 10.0F * noise.value(at, 128.0);
       height += static_cast<float>(p_.detail_noise) * sum *
                 std::sqrt(std::clamp(height / kHigh_m, 0.0F, 1.0F));
     }

@@ -13,6 +13,7 @@ namespace geo {
 bool join_seas(const ErosionParameters& p, const Grid& grid, std::span<float> elevation_m) {
   if (p.strait_sill_m <= 0.0 || grid.topology() == Topology::plane) return false;
   const StraitLaw law{.sill_m = p.strait_sill_m,
+                      .drawdown = p.strait_drawdown,
                       .land_m = 1e3 * p.strait_land_km,
                       .depth_m = p.strait_depth_m,
                       .width_m = 1e3 * p.strait_width_km,

@@ -16,6 +16,7 @@
 #include "geo/stages/erosion/erosion.hpp"
 #include "geo/stages/hydrology/hydrology.hpp"
 #include "island_climate.hpp"
+#include "island_erosion.hpp"
 #include "island_surface.hpp"
 #include "stages/climate/climate_events.hpp"
 #include "stages/isostasy/guided_by_folds.hpp"

@@ -138,7 +138,7 @@ class PlaceLaw {
   [[nodiscard]] double least_moisture_mm_yr() const { return closed_ ? -1e9 : 0.0; }
 
  private:
-  /// Rain, or what wind and relief add to the blueprint's (5.5-5.8): eq. 5.10 backwards.
+  /// Rain, or what wind and topography add to the blueprint's (5.5-5.8): eq. 5.10 backwards.
   [[nodiscard]] float moisture_mm_yr(const Place& at, double rain_mm_yr) const {
     if (!closed_) return static_cast<float>(rain_mm_yr);
     if (at.elevation_m < 0.0)

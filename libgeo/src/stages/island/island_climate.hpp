@@ -36,11 +36,11 @@ struct IslandAir {
 /// interpolated, and the island's own put on.
 /// Precipitation: interpolated, times exp(lift difference / lift height), where lift is that of the
 /// fine surface less that of the interpolated one (`upwind_lift`), so that both join at the edge.
-/// With the blueprint's climate, what wind and relief add (5.5-5.8) is interpolated, with 5.7 of
-/// the lift difference, and eq. 5.10 holds at the island's own heights and distances to the coast.
-/// Potential evapotranspiration: interpolated, in proportion to what the formula of Oudin et al.
-/// (2005) makes of the change in temperature. Distance to the coast: on the fine grid as far as it
-/// reaches, the planet's beyond. Seasons and winds: interpolated.
+/// With the blueprint's climate, what wind and topography add (5.5-5.8) is interpolated, with 5.7
+/// of the lift difference, and eq. 5.10 holds at the island's own heights and distances to the
+/// coast. Potential evapotranspiration: interpolated, in proportion to what the formula of Oudin et
+/// al. (2005) makes of the change in temperature. Distance to the coast: on the fine grid as far as
+/// it reaches, the planet's beyond. Seasons and winds: interpolated.
 void island_climate(const PlanetCells& cells, const ClimateParameters& climate,
                     const IslandAir& air, const IslandParameters& p, const IslandHeights& heights,
                     const ClimateFields<const float>& from, const ClimateFields<float>& to);

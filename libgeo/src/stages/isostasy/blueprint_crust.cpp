@@ -12,11 +12,6 @@
 namespace geo {
 namespace {
 
-double octave(const Noise& noise, const std::array<double, 3>& at, double frequency) {
-  return noise.value(static_cast<float>(at[0] * frequency), static_cast<float>(at[1] * frequency),
-                     static_cast<float>(at[2] * frequency));
-}
-
 /// Calls `at_cell(cell, unit vector)` for every cell.
 template <class AtCell>
 void for_each_cell(const Grid& grid, AtCell&& at_cell) {
@@ -33,7 +28,7 @@ void perturb_coasts(const Crust<float>& crust) {
   for_each_cell(crust.grid, [&](Index cell, const std::array<double, 3>& at) {
     float& share = crust.fraction[cell];
     const double noise =
-        0.10 * octave(coast, at, 4) + 0.04 * octave(coast, at, 8) + 0.01 * octave(coast, at, 16);
+        0.10 * coast.value(at, 4) + 0.04 * coast.value(at, 8) + 0.01 * coast.value(at, 16);
     const double margin = 1.0 - std::abs(2.0 * share - 1.0);
     share = static_cast<float>(std::clamp(share + noise * margin, 0.0, 1.0));
   });
@@ -75,7 +70,7 @@ void draw_thickness(const Crust<float>& crust) {
     }
     const double share = crust.fraction[cell];
     if (share > 0.1) crust.convergent[cell] *= crust.weakness[cell];
-    const double noise = p.thickness_noise_km * (octave(broad, at, 3) + 0.5 * octave(fine, at, 6));
+    const double noise = p.thickness_noise_km * (broad.value(at, 3) + 0.5 * fine.value(at, 6));
     const double base = p.oceanic_km + (p.continental_km + noise - p.oceanic_km) * share;
     const double change =
         crust.convergent[cell] * (p.arc_km + (p.collision_km - p.arc_km) * share) -
@@ -108,8 +103,8 @@ void draw_heights(const Crust<float>& crust) {
         p.density.oceanic_crust + (p.density.continental_crust - p.density.oceanic_crust) * share;
     crust.density[cell] =
         static_cast<float>(density * (1.0 - p.thermal_coefficient * crust.in.heat[cell]));
-    const double noise = 60.0 * octave(overlay, at, 3) + 35.0 * octave(overlay, at, 6) +
-                         18.0 * octave(overlay, at, 12) + 7.0 * octave(overlay, at, 24);
+    const double noise = 60.0 * overlay.value(at, 3) + 35.0 * overlay.value(at, 6) +
+                         18.0 * overlay.value(at, 12) + 7.0 * overlay.value(at, 24);
     crust.elevation_m[cell] =
         static_cast<float>(balanced_m(crust, is_dry, cell) + p.noise_factor * noise);
   });

@@ -74,7 +74,8 @@ Crust<float> open_crust(const IsostasyParameters& parameters, StageIo& io, const
 }
 
 void float_crust(const Crust<float>& crust, const CoarseGrid& coarse, const Context& context) {
-  const TectonicFrame frame = tectonic_frame(crust.parameters, coarse, crust.in, crust.fraction);
+  const TectonicFrame frame =
+      tectonic_frame(crust.parameters, coarse, crust.in, crust.fraction, crust.seed);
   context.advance(0.3);
   if (crust.parameters.crust == "blueprint") {
     draw_blueprint_crust(crust, coarse, deform(crust, coarse, frame));

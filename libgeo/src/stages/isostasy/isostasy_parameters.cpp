@@ -118,10 +118,16 @@ std::vector<Parameter> sea_floor_rows(IsostasyParameters& p) {
       real("isostasy.shelf_edge", p.shelf_edge, "1", 0.0, 0.99,
            "share of continental crust in a column from which on shelves are built", "watts2001"),
       real("isostasy.trench_depth_m", p.trench_depth_m, "m", 0.0, 15000.0,
-           "depth of the deepest trenches below the floor, before their flanks are smoothed",
+           "depth of the deepest trenches below the floor, before their flanks are smoothed, where "
+           "plates made the crust (crust = simulated)",
            "turcotte2002"),
+      real("isostasy.slab_trench_m", p.slab_trench_m, "m", 0.0, 15000.0,
+           "depth of a trench below the floor where floor of 100 Myr subducts at 100 mm/yr, crust "
+           "= margins",
+           "hilde1983"),
       real("isostasy.seamount_m", p.seamount_m, "m", 0.0, 10000.0,
-           "height of the largest seamounts", "turcotte2002"),
+           "height of the largest seamounts; volcanoes of a margins crust have their own at 1800",
+           "turcotte2002"),
       real("isostasy.seafloor_roughness_m", p.seafloor_roughness_m, "m", 0.0, 5000.0,
            "standard deviation of the hills of young sea floor", "huang1989"),
       real("isostasy.fracture_m", p.fracture_m, "m", 0.0, 5000.0,

@@ -28,6 +28,8 @@ class Table {
   [[nodiscard]] const std::vector<std::string>& header() const { return header_; }
   /// Whether these, in this order, are the columns.
   [[nodiscard]] bool has_columns(std::initializer_list<std::string_view> names) const;
+  /// Where a column stands. Throws InputError where there is none, followed by `needs`.
+  [[nodiscard]] std::size_t column(std::string_view name, std::string_view needs = {}) const;
   [[nodiscard]] std::size_t rows() const { return rows_.size(); }
   /// Text of a cell; rows and columns count from 0.
   [[nodiscard]] const std::string& text(std::size_t row, std::size_t column) const {

@@ -51,8 +51,8 @@ void write_vti(const std::filesystem::path& path, const Snapshot& snapshot,
 /// Writes a snapshot of a whole planet as a closed surface, VTK XML PolyData: a face for each cell
 /// in the order of the cells, quadrilaterals and at the poles triangles, that share their corners,
 /// so that there is no seam and no hole. Fields are cell data. Corners lie on the ellipsoid, raised
-/// by `times` the mean elevation around them (m, point data `relief`); an empty `elevation_m` is
-/// flat. 32 bytes a cell besides the fields. Compression as of write_vti. Temporary name, flush,
+/// by `times` the mean elevation around them (m, point data `topography`); an empty `elevation_m`
+/// is flat. 32 bytes a cell besides the fields. Compression as of write_vti. Temporary name, flush,
 /// rename.
 void write_globe(const std::filesystem::path& path, const Snapshot& snapshot,
                  const Provenance& provenance, std::span<const float> elevation_m, double times,
@@ -65,7 +65,7 @@ void write_pvd(const std::filesystem::path& path, const std::vector<std::filesys
 /// Reads back the grid and the vocabulary fields of a stage file, bit for bit. InputError when it
 /// is not one (names path and what is missing), IoError when it cannot be read.
 Snapshot read_netcdf(const std::filesystem::path& path);
-/// The same of those fields alone that `wanted` says yes to; perhaps none.
+/// The same with those fields alone that `wanted` accepts; perhaps none.
 Snapshot read_netcdf(const std::filesystem::path& path,
                      const std::function<bool(const FieldSpec&)>& wanted);
 /// One month, from 0 for January, of a field of months that a stage file has beside those of the

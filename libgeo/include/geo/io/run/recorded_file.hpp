@@ -24,7 +24,7 @@ struct Standing {
 /// Compares all values of a stage's file with its record.
 Standing standing_of(const std::filesystem::path& folder, const StageRecord& record);
 
-/// The fields of a stage's file that `wanted` says yes to, held against the record. Throws
+/// The fields of a stage's file that `wanted` accepts, held against the record. Throws
 /// InputError that names the file and the field whose values are not those of the record, or that
 /// cannot be read; IoError.
 Snapshot read_recorded(const std::filesystem::path& folder, const StageRecord& record,

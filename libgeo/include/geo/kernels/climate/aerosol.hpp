@@ -2,7 +2,7 @@
 
 namespace geo {
 
-/// Fine particles that a cause has thrown above the weather, and the climate they dim.
+/// Aerosol that an event has put into the stratosphere, and the climate that it dims.
 struct AerosolVeil {
   double mass_kg;
   double lifetime_yr;      ///< time in which the mass falls to 1/e
@@ -15,8 +15,8 @@ struct AerosolVeil {
 /// Optical depth 2500 m2 kg-1 * mass / area: the particles of Pinatubo (30 Tg of solution, 0.15).
 [[nodiscard]] double aerosol_optical_depth(const AerosolVeil& veil);
 
-/// By how much the planet is cooler than before, K, `age_yr` after the cause, in its coldest year
-/// when that is still to come. The forcing is -25 W m-2 per unit of optical depth (Hansen et al.
+/// By how much the planet is cooler than before, K, `age_yr` after the event, or in the coldest
+/// year if that is still to come. The forcing is -25 W m-2 per unit of optical depth (Hansen et al.
 /// 2005) and never takes more than all sunlight,
 ///   F = absorbed (1 - exp(-25 tau / absorbed)),
 /// decays with the lifetime L, and meets one heat capacity C with feedback B, so that with

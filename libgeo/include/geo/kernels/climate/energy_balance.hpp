@@ -87,10 +87,9 @@ using HeatWinds =
 /// for the periodic year, by harmonics: for each a sparse linear system with the annual and zonal
 /// mean of u, in whose source all else is found by iteration: the albedo of the months' snow and
 /// ice, the heat that sea ice takes as it melts in summer and gives as it freezes in winter, and
-/// what the winds of each month carry besides, which adds up to nothing over the planet. F is the
-/// advected heat; without `winds` nothing is carried.
-/// Throws Bug if a solver does not converge. Threads: one for each harmonic; the same bits for any
-/// number of them.
+/// what the winds of each month carry besides, which sums to zero over the planet. F is the
+/// advected heat; without `winds` nothing is carried. Throws Bug if a solver does not converge.
+/// Threads: one for each harmonic; the same bits for any number of them.
 ///
 /// @param latitude_deg   per row
 /// @param land_fraction  0..1 per cell

@@ -34,9 +34,9 @@ struct MoistureSeason {
 /// Steady moisture budgets of the air column on a sphere or torus:
 ///   div(u W - K grad W) = E - P,   P = W (a (W/W_s)^n + e W/W_s) / tau,
 ///   E = water v (W_s - W)+ + what land, and the sea under cold air, give whatever W is,
-/// W column water (mm), W_s what the column holds at saturation, a the activity of ascent,
-/// which rains the more sharply the more humid the air is on the whole, and e that of eddies, whose
-/// own moist air rises wherever that is. Finite volumes, upwind; nonlinear Gauss-Seidel in four
+/// W column water (mm), W_s what the column holds at saturation, a the activity of large-scale
+/// ascent, whose rain grows steeply with relative humidity, and e that of eddies, which lift moist
+/// air of their own wherever they are. Finite volumes, upwind; nonlinear Gauss-Seidel in four
 /// alternating directions, which leaves some thousandths of the water unaccounted for, then
 /// Newton's method with a sparse solver, which leaves none. Sequential: seasons are independent, a
 /// few are swept side by side in the lanes of vector registers, and more by threads. Bits do not

@@ -26,12 +26,12 @@ struct WindStress {
 /// interior of oceans and Stommel's western boundary currents: transports U = (-dPsi/dy, dPsi/dx),
 ///   div(r grad Psi) + beta dPsi/dx = curl(stress) / rho,   velocity U / H,
 /// beta = df/dy (Sverdrup 1947, Stommel 1948). On land r is so large that Psi is the same all round
-/// a coast, and as the equation is that of the momentum of all water, each island has the value
-/// that the circulation round it asks for (Godfrey 1989). Where no land stands in the way, wind and
-/// friction balance along the whole parallel. Finite volumes, beta's term upwind; one sparse
-/// system, solved directly. Ekman's drift and what density drives are not in it.
-/// Near a pole, where cells are narrower than they are high, velocities are means over several.
-/// Cost: a direct solver's, as cells to the power 1.5; 0.1 s at 2 degrees, 5 s at half a degree.
+/// a coast, and as the equation is that of the momentum of all water, each island takes the value
+/// that the circulation around it sets (the island rule, Godfrey 1989). Where no land stands in the
+/// way, wind and friction balance along the whole parallel. Finite volumes, beta's term upwind; one
+/// sparse system, solved directly. Ekman transport and density-driven flow are left out. Near a
+/// pole, where cells are narrower than they are high, velocities are means over several. Cost: a
+/// direct solver's, as cells to the power 1.5; 0.1 s at 2 degrees, 5 s at half a degree.
 ///
 /// Shapes: latitude_deg one per row; all else one per cell, row-major from the southernmost row.
 /// @param rotation_rad_s                   of the planet, negative if retrograde

@@ -7,8 +7,8 @@
 
 namespace geo {
 
-/// Heat that wind-driven currents bring to the sea, W m-2, the sum of three, less what these add up
-/// to over the planet, which all water gives alike: currents make no heat.
+/// Heat that wind-driven currents bring to the sea, W m-2, the sum of three terms, less their mean
+/// over all water: currents move heat and make none.
 ///
 /// Gyres, which turn with the curl of the wind stress of trades, westerlies and polar easterlies:
 /// below 45 deg warm water flows polewards along the western coast of an ocean and cold water back
@@ -22,7 +22,7 @@ namespace geo {
 /// which lies highest at the eastern coast, and the higher the wider the ocean,
 ///   q = -upwelling exp(-(lat / 5 deg)^2) exp(-distance to the coast in the east / reach)
 ///       (1 - exp(-distance to the coast in the west / reach)) * water
-/// (Wyrtki 1981). Nothing wells up that cools where no coast stands in the way.
+/// (Wyrtki 1981). Without a coast in the way upwelling does not cool.
 ///
 /// On a planet that turns the other way, west is east.
 /// Throws Bug where sizes differ.

@@ -69,15 +69,16 @@ using TerrainAscent = std::function<std::vector<float>(std::span<const float> wi
                                                        std::span<const float> wind_north)>;
 
 /// Twelve months of climate of a sphere or torus from its topography. Temperature at sea level
-/// comes from the energy balance; pressure from cells about the thermal equator, heat lows and the
-/// stationary waves that latent heat and warm land set up; winds balance it with friction. The sea
-/// evaporates the more, the faster they blow, and where they come from the cold; they
-/// and eddies, strongest where temperature changes most, carry moisture, which rains out where air
-/// is humid, rises, or is warmer and moister than the tropics' even free atmosphere; soil gives
-/// rain back. Waves and rain are iterated together. What `ascent` (empty: level ground) lets rain
-/// in one cell the air lacks in the next; rain and evaporation of the whole surface agree every
-/// month. Months run in parallel; the same bits for any number of threads.
-/// `latitude_deg`: one value per row, from south to north; the others one per cell; Bug otherwise.
+/// comes from the energy balance; pressure from the meridional cells about the thermal equator,
+/// heat lows and the stationary waves that latent heat and warm land set up. Winds balance it with
+/// friction. Evaporation from the sea grows with the speed of the wind, and where that comes from
+/// the cold. Winds carry moisture, and so do eddies, which are strongest where temperature
+/// gradients are steepest. It rains where air is humid, rises, or has more moist static energy than
+/// the free atmosphere of the tropics; soil returns a part of the rain to the air. Waves and rain
+/// are iterated together. What `ascent` (empty: level ground) lets rain out over one cell the air
+/// lacks over the next; rain and evaporation of the whole surface agree every month. Months run in
+/// parallel; the same bits for any number of threads. `latitude_deg`: one value per row, from south
+/// to north; the others one per cell; Bug otherwise.
 SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& model,
                                       std::span<const double> latitude_deg,
                                       std::span<const float> land_fraction,

@@ -14,7 +14,7 @@ struct WaveMode {
   double wind_share;          ///< of the given zonal wind that carries the waves along
 };
 
-/// Constants of the response of an atmosphere to heating and mountains that do not move.
+/// Constants of the response of an atmosphere to stationary heating and mountains.
 struct StationaryWave {
   /// What heating sets up: the first baroclinic mode, whose winds turn with height.
   WaveMode internal{49.3, 0.995, 18.8, 0};

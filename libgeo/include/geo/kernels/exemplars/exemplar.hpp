@@ -51,8 +51,8 @@ struct ExemplarLibrary {
 /// Fills what is measured: the fold direction of the elevation smoothed over 3 % of its shorter
 /// side, the range of elevations and the local relief. With no `terrain` that of its local relief:
 /// himalayan from 1500 m, andean from 600 m, old mountains from 150 m. Throws InputError when it
-/// has fewer than 32 cells a side, cells of no size, more than 2000 km, heights that are no
-/// numbers, or level everywhere.
+/// has fewer than 32 cells a side, cells of no size, more than 2000 km, heights that are not
+/// numbers, or no relief.
 void measure_exemplar(Exemplar& exemplar, std::optional<Terrain> terrain = {});
 
 /// How large terrain is that is grown, on a torus of 256 cells a side.
@@ -66,11 +66,11 @@ inline constexpr GrownSize kGrownForIslands{};
 /// For what is finer than a planet's plates: 1024 km a side, ranges and basins some 85 km apart.
 inline constexpr GrownSize kGrownForPlanets{.cell_m = 4000.0, .folds = 1.75, .ranges = 3.0};
 
-/// A library grown with the kernel that wears continents down: for each terrain, stream power and
-/// creep against uplift on a torus, over beds of hard and soft rock and folds that run east. Uplift
-/// is one-sided (andean), broad and fast (himalayan), slow over strongly banded rock with much
-/// creep (old mountains), or next to none (plain). With exponents 1/2 and 1 of area and slope,
-/// steady terrain is as high on a torus of any size. A function of its size alone: the same library
+/// A library grown with the erosion kernels of planets: for each terrain, stream power and creep
+/// against uplift on a torus, over beds of hard and soft rock and folds that run east. Uplift is
+/// one-sided (andean), broad and fast (himalayan), slow over strongly banded rock with much creep
+/// (old mountains), or next to none (plain). With exponents 1/2 and 1 of area and slope, steady
+/// terrain is as high on a torus of any size. A function of its size alone: the same library
 /// always. Takes some seconds.
 [[nodiscard]] ExemplarLibrary grow_exemplars(const GrownSize& size = kGrownForIslands);
 [[nodiscard]] Exemplar grow_exemplar(Terrain terrain, const GrownSize& size = kGrownForIslands);

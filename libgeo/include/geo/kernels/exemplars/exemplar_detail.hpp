@@ -60,7 +60,8 @@ struct ExemplarBand {
 /// variance that a weighted mean would lose (Heitz & Neyret 2018).
 ///
 /// `fine` is a projected plane. The same bits for any number of threads. Cost: about eight products
-/// with 16 taps per cell. Throws InputError when the library is empty or `fine` has no place.
+/// with 16 taps per cell. Throws InputError when the library is empty or `fine` has no place, Bug
+/// where sizes differ.
 void exemplar_detail(const Grid& planet, const TerrainGuide& guide, const Grid& fine,
                      const ExemplarLibrary& library, const ExemplarBand& band, std::uint64_t seed,
                      std::span<float> detail);
@@ -81,7 +82,7 @@ void exemplar_detail(const Grid& planet, const TerrainGuide& guide, const Grid& 
 /// Grids differ by what their cells can show, waves longer than about 2.5 of them; there is no seam
 /// at a meridian or a pole. The same bits for any number of threads. Cost: about eight products
 /// with 16 taps per wanted cell, besides two blurs of each exemplar. Throws InputError when the
-/// library is empty or a grid is no sphere.
+/// library is empty or a grid is no sphere, Bug where sizes differ.
 void exemplar_detail_on_sphere(const Grid& grid, std::span<const std::uint8_t> wanted,
                                const Grid& on, const TerrainGuide& guide,
                                const ExemplarLibrary& library, const ExemplarBand& band,

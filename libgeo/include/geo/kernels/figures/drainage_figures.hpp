@@ -16,7 +16,7 @@ struct DrainedPlanet {
 };
 
 /// Flow length, m: that of the longest flow path to each cell from upstream, centre to centre along
-/// receivers. Sea cells end ways. Throws Bug on a cycle. Cost: linear.
+/// receivers. Paths end at sea cells. Throws Bug on a cycle. Cost: linear.
 std::vector<float> flow_length_m(const Grid& grid, const DrainedPlanet& drainage);
 
 /// Exponent h of L ~ A^h (Hack 1957) over the basins that drain at least `least_area_m2`, each

@@ -8,7 +8,7 @@
 
 namespace geo {
 
-/// How the heights of a planet are spread over its true area.
+/// Hypsometry of a planet, by true area.
 struct HypsometryFigures {
   double land_fraction = 0.0;    ///< share of the area with elevation >= 0
   double land_mean_m = 0.0;      ///< NaN when there is no land
@@ -25,7 +25,7 @@ HypsometryFigures measure_hypsometry(const Grid& grid, std::span<const float> el
 std::vector<double> shares_between(const Grid& grid, std::span<const float> field,
                                    std::span<const double> levels);
 
-/// Where elevations crowd, and where they are rare in between.
+/// Modes of elevation, and the antimode between them.
 struct ElevationModes {
   double ocean_m, land_m, antimode_m;
 };

@@ -11,7 +11,7 @@ namespace geo {
 
 /// Kinds of plate boundary as Bird (2003) tells them apart, by the direction of the relative motion
 /// however slow it is; his ocean-continent and oceanic convergence are one here. Rifts and
-/// transforms are continental where the crust of both sides is so on the mean.
+/// transforms are continental where the crust of both sides is continental on average.
 enum class BoundaryKind : int {
   ocean_ridge,
   continental_rift,
@@ -47,7 +47,7 @@ struct BoundaryFigures {
 /// within 2.5 % of the truth for a straight line in any direction. Continental crust comes from the
 /// cells of the same neighbourhood, kind and rate from the relative velocity of the two plates
 /// across the boundary, which is that along the gradient, and along it; the kind is right on 95 %
-/// of a straight line in any direction. Of Earth's plates (Bird's outlines and poles) this makes
+/// of a straight line in any direction. For Earth's plates (Bird's outlines and poles) it gives
 /// lengths within the tolerances of the scorecard. Shapes must fit the grid (InputError). Cost:
 /// linear.
 BoundaryFigures measure_boundaries(const Grid& grid, const PlateFields& plates);

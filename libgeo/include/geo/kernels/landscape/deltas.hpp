@@ -18,7 +18,7 @@ struct DeltaLaw {
 /// Builds deltas: from each river mouth, the one that brings most first, the sea is filled to the
 /// height of the plain, cell by cell, the nearest and shallowest first (distance times 1 + depth /
 /// 10 m), as long as there is enough for a whole cell and the next is no deeper than `deepest_m`.
-/// A river grows no delta through another's. What is left is for the sea to spread.
+/// No delta grows through that of another river. The sea spreads what is left (lay_at_sea).
 ///
 /// `volume_m3` in: what each river brings to its cell of the sea, 0 elsewhere; out: what is left of
 /// it. `sea`: one byte per cell. `laid_m`: by how much each cell rises, added to; `elevation_m` is

@@ -18,9 +18,9 @@ struct GlacialErosion {
   double density_ratio = 910.0 / 1030.0;  ///< of ice and sea water
 };
 
-/// Lets ice work on its bed for `time_yr`. Ice of thickness H that passes on Q moves by u = Q / (w
-/// H) in a trough of width w = c Q^p, at most the cell's (valleys': valley_width_m), and lowers its
-/// bed by
+/// Lets ice work on its bed for `time_yr`. Ice of thickness H that carries a flux Q moves at u = Q
+/// / (w H) in a trough of width w = c Q^p, at most the cell's (valleys': valley_width_m), and
+/// lowers its bed by
 ///
 ///   dz/dt = -K u
 ///

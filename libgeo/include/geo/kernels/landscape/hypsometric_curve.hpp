@@ -16,9 +16,8 @@ namespace geo {
 double bend_hypsometry(const Grid& grid, std::span<float> elevation_m, double median_m,
                        double smoothing_m);
 
-/// The same as the blueprint has it: alpha within 1 and 5, set once, so that the smoothing may
-/// leave the median beside its aim.
-/// `elevation_m`: one value per cell, in and out; Bug otherwise.
+/// The same as the blueprint has it: alpha within 1 and 5, set once, so that smoothing may shift
+/// the median off its target. `elevation_m`: one value per cell, in and out; Bug otherwise.
 double bend_hypsometry_once(const Grid& grid, std::span<float> elevation_m, double median_m,
                             double smoothing_m);
 

@@ -28,12 +28,12 @@ struct Crater {
 /// Crater of an impact (Collins, Melosh & Marcus 2005):
 ///   D_t = 1.161 (rho_i / rho_t)^(1/3) L^0.78 v^0.44 g^-0.22 sin^(1/3) angle,
 /// after water of depth w has slowed the impactor by exp(-3 rho_w C_D w / (2 rho_i L sin angle));
-/// D = 1.25 D_t where that is below D_c = 3.2 km at 9.81 m s-2 and goes with 1/g, otherwise
+/// D = 1.25 D_t where that is below D_c = 3.2 km at 9.81 m s-2 and scales with 1/g, otherwise
 /// D = 1.17 D_t^1.13 D_c^-0.13. Rim 0.07 D_t^4 / D^3. Depth of a bowl: transient depth D_t / 2.83
 /// and rim less its lens of breccia; of a complex crater 0.4 km (D / km)^0.3 at Earth's gravity,
 /// elsewhere the same depth over D_c at the same D over D_c. The central uplift stands 0.35 of the
 /// depth over the floor, as in Tycho and Copernicus; it is a ring from 140 km on the Moon
-/// (Melosh 1989), a diameter that goes with 1/g. The air does not slow or break the impactor.
+/// (Melosh 1989), a diameter that scales with 1/g. The air does not slow or break the impactor.
 [[nodiscard]] Crater crater_of(const ImpactScene& scene);
 
 /// Change of a level ground at `distance_m` from the centre, continuous: bowl r^2, or floor to 0.6

@@ -21,8 +21,8 @@ namespace geo {
 ///
 /// with S what arrives and D what settles, m per cell; mass Σ S · area is kept. Where D exceeds the
 /// room up to wave base, waves take the excess up again and it spreads anew, three times as far:
-/// shelves fill to wave base and build their edges out. What then still finds no room
-/// goes with turbidity currents to wherever in the sea there is room, in proportion to it.
+/// shelves fill to wave base and build their edges out. What still finds no accommodation space
+/// goes with turbidity currents to wherever in the sea there is some, in proportion to it.
 ///
 /// `sea`: one byte per cell, non-zero where it is. `room_m`: up to wave base, one per cell, not
 /// negative. `supply_m` in: S, 0 on land; out: D, at most the room as long as the sea has room for

@@ -10,7 +10,7 @@
 
 namespace geo {
 
-/// What a cell is to the ice.
+/// Whether ice can be on a cell.
 enum class IceGround : std::uint8_t {
   away,  ///< no ice ever comes here: the sea, warm land; what flows in is gone
   bare,  ///< ice may come here
@@ -25,8 +25,8 @@ struct IceSurface {
   SparseValues<Index> lowest;    ///< neighbour that each cell was reached from; itself where away
 };
 
-/// Perfectly plastic ice: its base bears the stress τ everywhere (Nye 1951; Reeh 1982), so that its
-/// surface s over the bed b rises from the margins by
+/// Perfectly plastic ice: the shear stress at its base is the yield stress τ everywhere (Nye 1951;
+/// Reeh 1982), so that its surface s over the bed b rises from the margins by
 ///
 ///   (s - b) |∇s| = τ / (ρ g) = k
 ///
@@ -34,7 +34,7 @@ struct IceSurface {
 /// margins up in one sweep (fast marching, Sethian 1996): each cell from the neighbours below it by
 /// a first-order upwind difference in two directions, or along a diagonal where that is lower.
 /// Cells that are `away` are margins, at their bed or at sea level 0; bare ground is filled as far
-/// as it does not drain to one. On a world without a margin it is its lowest cell.
+/// as it does not drain to one. On a world without a margin the lowest cell serves as one.
 ///
 /// `bed_m`, `ground`: one value per cell. `k_m` > 0, m. Throws InputError where shapes do not fit
 /// or k is not positive and finite. Cost: n log n in the cells that are not away, for which it

@@ -29,12 +29,12 @@ RegionFigures region_figures(const Grid& planet, std::span<const float> elevatio
 
 /// How the land of a window lies in it, as shares of its land: pieces that it holds whole, the
 /// largest piece that its border cuts, and the other pieces that it cuts. Cells whose corners touch
-/// hang together; of windows more than 128 cells wide or high every second cell is looked at, or
-/// every third and so on.
+/// are connected. In windows more than 128 cells wide or high only every second cell is looked at,
+/// or every third and so on.
 struct RegionLand {
   double whole = 0.0, main = 0.0, others = 0.0;
   /// What its score is multiplied by where it is positive: 1 for islands, 0.85 for one coast, less
-  /// the more is seen of other lands of which only an end is there (design).
+  /// the more of other lands the window cuts (design).
   [[nodiscard]] double weight() const;
 };
 /// `elevation_m`: one value per cell; Bug otherwise.
@@ -47,10 +47,10 @@ enum class RegionRule { figures, whole };
 /// The best window's centre cell, of those that have land where any has. Windows smaller than three
 /// cells a side are judged with the cells around them. Candidates lie an eighth of a window apart;
 /// windows that reach into the polar tenth of the rows at either end are left out; if none is left,
-/// the middle row alone is searched. Noise in 0..1 is a function of seed and position. How whole
-/// their land is, is asked of the 64 best windows of each row, best first, until none behind can be
-/// better. Cost: linear in cells. Throws InputError unless `planet` is a sphere.
-/// Arrays have one value per cell, `boundary_type` may be empty; Bug otherwise.
+/// the middle row alone is searched. Noise in 0..1 is a function of seed and position. The land of
+/// the 64 best windows of each row is looked at, best first, until no later one can be better.
+/// Cost: linear in cells. Throws InputError unless `planet` is a sphere. Arrays have one value per
+/// cell, `boundary_type` may be empty; Bug otherwise.
 Index best_region(const Grid& planet, std::span<const float> elevation_m,
                   std::span<const std::int8_t> boundary_type, double width_m, double height_m,
                   std::uint64_t seed, RegionRule rule = RegionRule::whole);

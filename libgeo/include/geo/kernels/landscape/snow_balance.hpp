@@ -28,8 +28,8 @@ struct FrostOfYear {
 [[nodiscard]] FrostOfYear frost_of_year(const SnowLaw& law, double mean_c, double range_k);
 
 /// Mass balance of a surface under that year, m of ice a year: snow, less what degree-days melt,
-/// first snow, beyond what freezes in it again, then ice. What rains runs off. In its mean
-/// temperature the balance falls, as snow and frost do.
+/// first snow, beyond what freezes in it again, then ice. What rains runs off. The balance falls as
+/// the mean temperature rises.
 [[nodiscard]] double snow_balance_m_yr(const SnowLaw& law, double mean_c, double range_k,
                                        double precipitation_mm_yr);
 

@@ -5,8 +5,8 @@
 
 namespace geo {
 
-/// What the Köppen-Geiger rules ask of a climate. Temperatures in °C, precipitation in mm (per
-/// month unless said). Half-years are the six warm and the six cold months of the hemisphere.
+/// What the Köppen-Geiger rules need to know of a climate. Temperatures in °C, precipitation in mm
+/// (per month unless said). Half-years are the six warm and the six cold months of the hemisphere.
 struct KoppenIndices {
   double mean_c = 0.0;       ///< annual mean
   double warmest_c = 0.0;    ///< warmest month

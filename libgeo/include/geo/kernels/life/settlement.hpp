@@ -14,7 +14,7 @@ struct MonthlyClimate {
 [[nodiscard]] MonthlyClimate harmonic_months(double mean_c, double range_k, double annual_mm,
                                              double seasonality);
 
-/// What people who live by farming meet with, each 0 (nobody can) to 1 (no limit).
+/// Limits to farming, each from 0 (impossible) to 1 (no limit).
 struct SettlementLimits {
   double warmth;  ///< long enough a growing season: 1 / (1 + exp(0.0052 (1334 - D))), D in degree
                   ///< days above 5 degC (Ramankutty et al. 2002)
@@ -31,7 +31,8 @@ struct SettlementLimits {
 };
 [[nodiscard]] SettlementLimits settlement_limits(const MonthlyClimate& climate);
 
-/// What fields lose to slope (tangent): 1 up to 0.08, falling to 0 at 0.45 (Fischer et al. 2012).
+/// Share of land that slope (its tangent) leaves for fields: 1 up to 0.08, falling to 0 at 0.45
+/// (Fischer et al. 2012).
 [[nodiscard]] double slope_limit(double slope);
 
 /// The slope at the length of fields, 1 km, from the range of elevation in a wider neighbourhood:

@@ -30,12 +30,19 @@ class Noise {
   /// Value noise, quintic interpolation of uniform lattice values, within [-1, 1], zero mean,
   /// standard deviation 0.40.
   [[nodiscard]] float value(float x, float y, float z) const;
+  /// The same at a position times a frequency.
+  [[nodiscard]] float value(const std::array<double, 3>& position, double frequency) const {
+    return value(static_cast<float>(position[0] * frequency),
+                 static_cast<float>(position[1] * frequency),
+                 static_cast<float>(position[2] * frequency));
+  }
   /// Fractional Brownian motion: sum of `octaves` of gradient noise, frequency doubled and
   /// amplitude times `gain` each (gain = 2^-H), divided by the sum of amplitudes. About [-1, 1]
   /// and of zero mean for any `octaves` >= 0; no octaves give 0.
   [[nodiscard]] float fbm(const std::array<double, 3>& position, double frequency, int octaves,
                           double gain = 0.5) const;
-  /// The same bits at many positions, in a third of the time. `out` has one value for each.
+  /// The same bits at many positions, in a third of the time. `out` has one value for each, Bug
+  /// otherwise.
   void fbm(std::span<const std::array<double, 3>> positions, double frequency, int octaves,
            double gain, std::span<float> out) const;
 

@@ -42,7 +42,8 @@ struct OrientedBand {
 /// crests run otherwise fade. `on` is the grid of the orientation, `values` belong to `grid`; both
 /// are whole spheres. Waves that `grid` cannot show, shorter than about two and a half cells, are
 /// left out, so that a coarse grid has what a fine one has, but for its fine detail. The same bits
-/// for any number of threads. Cost: about overlap * 4 products per cell.
+/// for any number of threads. Cost: about overlap * 4 products per cell. Throws Bug where sizes
+/// differ.
 void add_oriented_noise(const Grid& grid, const Grid& on, const Orientation& crests,
                         const OrientedBand& band, double factor, std::uint64_t seed,
                         std::string_view stream, std::span<float> values);

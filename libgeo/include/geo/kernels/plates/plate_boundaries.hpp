@@ -37,7 +37,8 @@ struct BoundaryPoint {
 /// All boundary cells of a mesh, by cell. The boundary's direction is taken over about
 /// `smoothing_km`, and so is the motion of each pair of plates, so that the steps of the mesh do
 /// not turn a trench into a chain of transforms. On planets so small that this is more than
-/// kWidestSmoothing_rad, over that: further off lie other boundaries.
+/// kWidestSmoothing_rad, over that: further off lie other boundaries. Throws Bug unless `plate` has
+/// one value per cell of the mesh.
 inline constexpr double kWidestSmoothing_rad = 0.35;
 std::vector<BoundaryPoint> find_boundaries(const CubedSphere& mesh,
                                            std::span<const std::int16_t> plate,

@@ -110,7 +110,7 @@ struct TectonicConstants {
 }
 
 /// Share of its first thickness that a passive margin's crust keeps at a share s of its width, from
-/// whole to stretched fourfold; the haste of 1 or more brings it sooner to that.
+/// whole to stretched fourfold; a `haste` above 1 brings it there sooner.
 [[nodiscard]] inline double stretched_share(double s, double haste = 1.0) {
   constexpr double kOuter = 0.25;
   return kOuter + (1.0 - kOuter) * std::pow(1.0 - s * s * (3.0 - 2.0 * s), haste);

@@ -14,4 +14,14 @@ template <class Real>
           half * t * ((four - three * t) * t + one), half * t * t * (t - one)};
 }
 
+/// The same of the cubic B-spline, which smooths: between the values, twice continuously
+/// differentiable; the weights are positive and sum to 1.
+template <class Real>
+[[nodiscard]] constexpr std::array<Real, 4> b_spline_weights(Real t) {
+  constexpr Real one(1), two(2), three(3), six(6);
+  const Real u = one - t;
+  return {u * u * u / six, two / three - t * t * (two - t) / two,
+          two / three - u * u * (two - u) / two, t * t * t / six};
+}
+
 }  // namespace geo

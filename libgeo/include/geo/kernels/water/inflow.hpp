@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "geo/core/grid.hpp"
@@ -17,6 +18,9 @@ struct PlanetWater {
   std::span<const float> discharge_m3_s;
   std::span<const std::int32_t> lake_id;  ///< may be empty
 };
+
+/// Throws Bug unless all of it has one value for each cell of the planet (core/array_sizes.hpp).
+void check_sizes(std::string_view kernel, const Grid& planet, const PlanetWater& water);
 
 /// Where a river of the planet crosses the edge of a part of it.
 struct RiverCrossing {

@@ -28,10 +28,9 @@ struct RiverScale {
 };
 
 /// The blueprint's own measure of rivers (6.4, 6.5), by drainage area: they show from a share
-/// 0.00018 + 0.00007 `rounds` of all area on (6.4 counts it in cells), are as large as rivers get
-/// where `area_m2` is largest on land, and the slope is 35 m from cell to cell of 9.77 km. Both
-/// areas stand in place of discharges.
-/// Arrays have one value per cell (`check_sizes`); Bug otherwise.
+/// 0.00018 + 0.00007 `rounds` of all area on (6.4 counts it in cells), are of full size where
+/// `area_m2` is largest on land, and the slope is 35 m from cell to cell of 9.77 km. Both areas
+/// stand in place of discharges. Arrays have one value per cell (`check_sizes`); Bug otherwise.
 RiverScale blueprint_river_scale(const Grid& grid, std::span<const double> area_m2,
                                  std::span<const std::uint8_t> sea, double rounds);
 

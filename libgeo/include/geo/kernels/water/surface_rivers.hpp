@@ -41,7 +41,7 @@ struct SurfaceRivers {
 /// Steepest descent over filled ground: land is flooded from the coast inland, lowest first (Barnes
 /// et al. 2014); of the neighbours that water has reached before it, a place drains to the one to
 /// which its level falls most steeply, in a lake to that from which the flood came. No cycles, no
-/// place left out. Cost n log n in places of land.
+/// place left out. Cost n log n in places of land. Throws Bug unless there is one value per place.
 SurfaceRivers route_rivers(const SurfaceGraph& graph, std::span<const float> elevation_m);
 
 /// What a step of rivers moved, m3 of rock.

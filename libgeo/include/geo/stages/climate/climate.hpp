@@ -24,6 +24,9 @@ struct ClimateParameters {
   double precipitation_noise_mm_yr = 0.0;
   double noise_wavelength_km = 500.0;
   double wind_speed_m_s = 7.0;
+  /// No key of its own: off where nobody reads the currents of the sea, which are then 0. Nothing
+  /// else depends on them.
+  bool solves_currents = true;
 
   [[nodiscard]] std::vector<Parameter> declarations();
 };

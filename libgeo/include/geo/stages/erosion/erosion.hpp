@@ -42,6 +42,7 @@ struct ErosionParameters {
   double till_share = 0.3;
   double grounding_m = 300.0;
   double strait_sill_m = 300.0;
+  double strait_drawdown = 0.2;
   double strait_land_km = 3000.0;
   double strait_depth_m = 60.0;
   double strait_width_km = 80.0;
@@ -75,7 +76,7 @@ struct ErosionParameters {
   [[nodiscard]] std::vector<Parameter> declarations();
   /// Whether rivers deposit what they cannot carry.
   [[nodiscard]] bool deposits() const { return model == "sediment" && deposition > 0.0; }
-  /// Whether ice is looked for at all.
+  /// Whether ice is modelled.
   [[nodiscard]] bool freezes() const {
     return ice_model != "none" && discharge == "rain" && steps > 0;
   }
@@ -85,16 +86,15 @@ struct ErosionParameters {
 /// 2013; Davy & Lague 2009; Hergarten 2020), with the sea and open edges as base level. The model
 /// "detachment" has G = 0: what rivers take is lost. Each step: route the water, raise the
 /// ground, let rivers cut and, with "sediment", deposit (implicit, any m and n), let hillslopes
-/// creep (implicit), lay on the floor of the sea what rivers bring there, let the crust rise under
-/// what was taken from it and sink under what was laid on it. With the discharge "rain" the area A
-/// counts for as much as it yields: the climate stage is run within on a coarse grid, `climates`
-/// times, and runoff over the reference weighs cells; on whole planets whose run has that stage.
-/// There ice forms in the last `glacial_time_yr`, in cold and warm times by turns, and works on its
-/// bed after the rivers; that of today lies on the finished bed, and elevation is then its surface.
-/// Before the first step and after the last straits join seas behind low sills to the ocean of a
-/// whole planet; those that stay cut off fill to the brim and become land. In the last step rivers
-/// build deltas. With no steps elevation stays as it is and the present rate of incision is
-/// reported.
+/// creep (implicit), deposit on the sea floor what rivers bring there, and let isostasy respond to
+/// erosion and deposition. With the discharge "rain" the area A is weighted by runoff over the
+/// reference, for which the climate stage is run on a coarse grid, `climates` times; on whole
+/// planets whose run has that stage. There ice forms in the last `glacial_time_yr`, in cold and
+/// warm times by turns, and works on its bed after the rivers; that of today lies on the finished
+/// bed, and elevation is then its surface. Before the first step and after the last straits join
+/// seas behind low sills to the ocean of a whole planet; those that stay cut off fill to the brim
+/// and become land. In the last step rivers build deltas. With no steps elevation stays as it is
+/// and the present rate of incision is reported.
 std::unique_ptr<Stage> make_erosion_stage();
 
 }  // namespace geo

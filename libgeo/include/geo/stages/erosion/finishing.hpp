@@ -39,7 +39,7 @@ bool inject_noise(const ErosionParameters& p, const ActiveVariables<V>& active, 
   return true;
 }
 
-/// Noise by which the ground has warped, along one row of the grid. Its derivative with respect to
+/// Noise of the warping of the ground, along one row of the grid. Its derivative with respect to
 /// the wavelength is a difference of the noise alone, extrapolated from two steps (Richardson's
 /// way) over which the finest waves hardly move: right to about 1e-4.
 class WarpingRow {

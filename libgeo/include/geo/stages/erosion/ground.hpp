@@ -103,9 +103,9 @@ void break_rock(const ErosionParameters& p, const ActiveVariables<V>& active,
 }
 
 /// Erodibility for the cells of this grid; `given` has one value per cell or none at all. A cell's
-/// own hillslopes and brooks rise above its outlet by a height that grows with its size; a grid of
-/// larger cells lacks it, so its rivers must be steeper by as much for the mean height of the land
-/// to be the same.
+/// own hillslopes and headwaters rise above its outlet by a height that grows with its size; a grid
+/// of larger cells lacks it, so its rivers must be steeper by as much for the mean height of the
+/// land to be the same.
 template <class V>
 std::vector<V> resolved_erodibility(const ErosionParameters& p, const ActiveVariables<V>& active,
                                     const Grid& grid, std::span<const float> given) {

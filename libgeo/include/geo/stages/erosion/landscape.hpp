@@ -101,67 +101,25 @@ class Landscape {
   /// Whether water cuts down the sills that it crosses.
   [[nodiscard]] bool breaches() const { return p_.depressions == "breach" && p_.steps > 0; }
   /// Lets it do so.
-  void breach(const Drainage& drainage) {
-    if (!breaches()) return;
-    before_.assign(z_.begin(), z_.end());
-    breach_sills(grid_, drainage.graph, z_);
-    book_lowering();
-    carry(drainage.graph);
-    release(before_);
-  }
+  void breach(const Drainage& drainage);
 
   /// `builds_deltas`: the step ends at a time when the sea has stood still for a while. `ice`, if
   /// any, works after the rivers; where it lets the sea in, the coast moves. `done`: see there.
   void step(const Drainage& drainage, bool builds_deltas = false, const IceWork& ice = {},
-            const DrainageDone& done = {}) {
-    builds_deltas_ = builds_deltas;
-    release(sediment_.carried_m3_yr);
-    raise();
-    before_.assign(z_.begin(), z_.end());
-    const std::span<const double> area_m2(drainage.area_m2);
-    if (deposits()) {
-      incise_and_deposit<V, V>(grid_, drainage.graph, area_m2, erodibility_, law(),
-                               active_(p_.deposition), drainage.flooded, z_);
-    } else {
-      incise(grid_, drainage.graph, area_m2, erodibility_, law(), z_);
-    }
-    if (done.area) done.area();
-    creep();
-    hold_outlets();
-    widen_valleys<V>(grid_, before_, outlets_, z_);
-    book_lowering();
-    carry(drainage.graph, ice, done.graph);
-    if (p_.rebound_fraction > 0.0) rebound();
-    release(before_);
-  }
+            const DrainageDone& done = {});
 
   /// Rock that sinks under a load that is none of its own, m per cell, as a part of the rebound.
-  void sink(std::span<const float> by_m) {
-    before_.assign(z_.begin(), z_.end());
-    on_land([&](Index cell) { z_[cell] -= V(by_m[cell]); });
-    book_land(rock_.rebound, [&](Index cell) { return Number(-Number(by_m[cell])); });
-    release(before_);
-  }
+  void sink(std::span<const float> by_m);
 
   /// Blueprint 4.6: part of the way back to the isostatic elevation.
-  void relax() {
-    if (p_.relaxation_fraction <= 0.0) return;
-    const V share(active_(p_.relaxation_fraction));
-    before_.assign(z_.begin(), z_.end());
-    on_land([&](Index cell) { z_[cell] += share * (initial_[cell] - z_[cell]); });
-    book_land(rock_.rebound, [&](Index cell) {
-      return Number(Number(active_(p_.relaxation_fraction)) *
-                    (Number(initial_[cell]) - Number(before_[cell])));
-    });
-    release(before_);
-  }
+  void relax();
 
-  /// Lets `reshape` change elevation at will. Returns whether it did; land and sea are then to be
+  /// Lets `change` change elevation at will. Returns whether it did; land and sea are then to be
   /// told apart again.
-  template <class Reshape>
-  bool book_reshaping(Reshape&& reshape) {
+  template <class Change>
+  bool reshape(Change&& change) {
     before_.assign(z_.begin(), z_.end());
-    const bool did = reshape();
+    const bool did = change();
     if (did) rock_.reshaped += volume_since_before();
     release(before_);
     return did;
@@ -171,7 +129,7 @@ class Landscape {
   /// Those that are full are land.
   void dry_filled_seas() {
     if (landlocked_.empty()) return;
-    book_reshaping([&] {
+    reshape([&] {
 #pragma omp parallel for schedule(static)
       for (Index cell = 0; cell < grid_.size(); ++cell) {
         if (landlocked_[cell] != 0 && value_of(z_[cell]) >= -1.5F * kShallowest_m) {
@@ -227,18 +185,20 @@ class Landscape {
       if (outlets_[cell] != 0 && value_of(z_[cell]) < 0.0) change(cell);
     }
   }
-  /// Books what a process has added to the land since `before_`, m per cell.
+  /// Adds to a volume of the budget what a process has added to the land since `before_`, m per
+  /// cell.
   template <class Height>
-  void book_land(Number& volume, Height&& rise_m) {
-    book(volume, rise_m, [&](Index c) { return outlets_[c] == 0; });
+  void account_land(Number& volume, Height&& rise_m) {
+    account(volume, rise_m, [&](Index c) { return outlets_[c] == 0; });
   }
   /// And to the floor of the sea.
   template <class Height>
-  void book_sea_floor(Number& volume, Height&& rise_m) {
-    book(volume, rise_m, [&](Index c) { return outlets_[c] != 0 && value_of(before_[c]) < 0.0; });
+  void account_sea_floor(Number& volume, Height&& rise_m) {
+    account(volume, rise_m,
+            [&](Index c) { return outlets_[c] != 0 && value_of(before_[c]) < 0.0; });
   }
   template <class Height, class Where>
-  void book(Number& volume, Height&& rise_m, Where&& where) {
+  void account(Number& volume, Height&& rise_m, Where&& where) {
     volume += area_sum<Number>(grid_, [&](Index c) { return where(c) ? rise_m(c) : Number(0.0); });
     if constexpr (kRecords) {
       rock_.rounded += area_sum<double>(
@@ -266,92 +226,19 @@ class Landscape {
   [[nodiscard]] Number volume_since_before() const {
     return area_sum<Number>(grid_, [&](Index c) { return Number(z_[c]) - Number(before_[c]); });
   }
-  void raise() {
-    before_.assign(z_.begin(), z_.end());
-    const Number dt = active_(p_.time_step_yr), everywhere = 1e-3 * active_(p_.uplift_mm_yr);
-    const auto uplift_m = [&](Index cell) {
-      const Number field = uplift_m_yr_.empty() ? Number(0.0) : Number(uplift_m_yr_[cell]);
-      return Number((field + everywhere) * dt);
-    };
-    on_land([&](Index cell) {
-      // Subsidence ends at the sea: a step that drowned land would move the coast without a
-      // routing.
-      z_[cell] = greater(V(0.0F), V(Number(z_[cell]) + uplift_m(cell)));
-    });
-    book_land(rock_.uplifted, [&](Index cell) { return rise_of_land(cell, uplift_m(cell)); });
-    if (!thickening_m_yr_.empty()) thicken(dt);
-    record_raising();
-  }
-  void record_raising() {
-    if constexpr (kRecords) {
-      if (raised_m_.empty()) return;
-      on_land([&](Index cell) { raised_m_[cell] += z_[cell] - before_[cell]; });
-    }
-  }
+  void raise();
+  void record_raising();
   /// Crust grows also where the sea stands on it.
-  void thicken(const Number& dt) {
-    at_sea_floor([&](Index cell) {
-      z_[cell] = lesser(V(Number(z_[cell]) + Number(uplift_m_yr_[cell]) * dt), V(-kShallowest_m));
-    });
-    // Floor that stood a hair below the sea is let down to where it stays sea.
-    book_sea_floor(rock_.uplifted, [&](Index cell) {
-      return lesser(Number(Number(uplift_m_yr_[cell]) * dt),
-                    Number(Number(-kShallowest_m) - Number(before_[cell])));
-    });
-    rock_.shortened +=
-        area_sum<Number>(grid_, [&](Index cell) { return Number(thickening_m_yr_[cell]) * dt; });
-    if constexpr (kRecords) {
-#pragma omp parallel for schedule(static)
-      for (Index cell = 0; cell < grid_.size(); ++cell) {
-        crust_change_m_[cell] += Number(thickening_m_yr_[cell]) * dt;
-      }
-    }
-  }
+  void thicken(const Number& dt);
   /// Hillslopes end at the shore: what moves down them does not see the depth of the sea.
-  void creep() {
-    if (p_.diffusivity_m2_yr <= 0.0) return;
-    std::vector<V> surface(z_.size());
-#pragma omp parallel for schedule(static)
-    for (Index cell = 0; cell < grid_.size(); ++cell) {
-      surface[cell] = greater(z_[cell], V(0.0F));
-    }
-    apply_linear<V, 2>(surface, {active_(p_.diffusivity_m2_yr), active_(p_.time_step_yr)},
-                       [&](auto values, const std::array<double, 2>& at) {
-                         diffuse(grid_, values, at[0], at[1],
-                                 {.fixed = outlets_, .scheme = DiffusionScheme::positive});
-                       });
-    on_land([&](Index cell) { z_[cell] = surface[cell]; });
-  }
+  void creep();
   /// Where rivers pass through outlets, as they do where they enter a part of a planet.
-  void hold_outlets() {
-#pragma omp parallel for schedule(static)
-    for (Index cell = 0; cell < grid_.size(); ++cell) {
-      if (outlets_[cell] != 0) z_[cell] = before_[cell];
-    }
-  }
-  void book_lowering() {
-    rock_.eroded -= volume_since_before();
-    on_land([&](Index cell) { lowered_[cell] += before_[cell] - z_[cell]; });
-    if constexpr (kRecords) {
-      on_land([&](Index cell) { crust_change_m_[cell] += Number(z_[cell]) - before_[cell]; });
-    }
-  }
+  void hold_outlets();
+  void account_lowering();
   /// Takes what this step lowered down the rivers and lays it at sea. `graph_done`: as in
   /// DrainageDone.
   void carry(const FlowGraph& graph, const IceWork& ice = {},
-             const std::function<void()>& graph_done = {}) {
-    if constexpr (kRecords) {
-      if (ice) return let_ice_work(graph, ice, graph_done);
-    }
-    std::vector<Number> volume_m3;
-    if (deposits()) {
-      volume_m3 = outflow(graph, before_, z_);
-      record_layers();
-      record_carried(volume_m3);
-    }
-    if (graph_done) graph_done();
-    if (deposits()) spread_at_sea(volume_m3);
-  }
+             const std::function<void()>& graph_done = {});
   [[nodiscard]] std::vector<Number> outflow(const FlowGraph& graph, std::span<const V> before_m,
                                             std::span<const V> after_m) const {
     return sediment_outflow<V>(grid_, graph, before_m, after_m);
@@ -359,182 +246,23 @@ class Landscape {
   /// What rivers bring, what ice takes and what it lays down; what it lets out goes down the rivers
   /// with theirs.
   void let_ice_work(const FlowGraph& graph, const IceWork& ice,
-                    const std::function<void()>& graph_done) {
-    if (deposits()) record_layers();
-    std::vector<V> before_rivers = std::exchange(before_, {z_.begin(), z_.end()});
-    std::vector<double> let_out_m3 = ice(z_, before_);
-    rock_.eroded -= volume_since_before();
-#pragma omp parallel for schedule(static)
-    for (Index cell = 0; cell < grid_.size(); ++cell) {
-      if (outlets_[cell] == 0) lowered_[cell] += before_[cell] - z_[cell];
-      crust_change_m_[cell] += Number(z_[cell]) - Number(before_[cell]);
-    }
-    if (deposits()) {
-      for (const Index cell : graph.order) {
-        const Index to = graph.receiver[cell];
-        if (to != cell) let_out_m3[to] += let_out_m3[cell];
-      }
-      std::vector<double> volume_m3 = outflow(graph, before_rivers, before_);
-      if (graph_done) graph_done();
-#pragma omp parallel for schedule(static)
-      for (Index cell = 0; cell < grid_.size(); ++cell) volume_m3[cell] += let_out_m3[cell];
-      release(let_out_m3);
-      record_layers();
-      record_carried(volume_m3);
-      before_.assign(z_.begin(), z_.end());
-      spread_at_sea(volume_m3);
-    }
-    outlets_ = find_outlets(grid_, z_);
-    before_ = std::move(before_rivers);
-  }
+                    const std::function<void()>& graph_done);
   /// Lays at sea what has come to its shores.
-  void spread_at_sea(std::vector<Number>& volume_m3) {
-    std::vector<std::uint8_t> sea(grid_.size());
-    const Number wave_base_m = active_(p_.wave_base_m);
-#pragma omp parallel for schedule(static)
-    for (Index cell = 0; cell < grid_.size(); ++cell) {
-      sea[cell] = outlets_[cell] != 0 && value_of(z_[cell]) < 0.0 ? 1 : 0;
-    }
-    build_at_mouths(sea, volume_m3);
-    std::vector<Number> room_m(grid_.size(), Number(0.0)), supply_m(grid_.size(), Number(0.0));
-#pragma omp parallel for schedule(static)
-    for (Index cell = 0; cell < grid_.size(); ++cell) {
-      if (sea[cell] == 0) continue;
-      const Number up_to_m = is_landlocked(cell) ? Number(-kShallowest_m) : Number(-wave_base_m);
-      room_m[cell] = greater(Number(up_to_m - Number(z_[cell])), Number(0.0));
-      supply_m[cell] = volume_m3[cell] / grid_.area_m2(grid_.row(cell)) + unsettled_m_[cell];
-    }
-    rock_.over_edges += area_sum<Number>(grid_, [&](Index cell) {
-      return outlets_[cell] != 0 && sea[cell] == 0
-                 ? volume_m3[cell] / grid_.area_m2(grid_.row(cell))
-                 : Number(0.0);
-    });
-    release(volume_m3);
-    lay_at_sea<Number>(grid_, sea, 1e3 * active_(p_.dispersal_km), room_m, supply_m);
-    release(room_m);
-    std::vector<V> laid_m(grid_.size(), V(0.0F));
-#pragma omp parallel for schedule(static)
-    for (Index cell = 0; cell < grid_.size(); ++cell) {
-      if (sea[cell] == 0) continue;
-      const V floor = z_[cell];
-      z_[cell] = lesser(V(Number(floor) + supply_m[cell]), greater(floor, V(-kShallowest_m)));
-      laid_m[cell] = z_[cell] - floor;
-      unsettled_m_[cell] = supply_m[cell] - (Number(z_[cell]) - Number(floor));
-      if constexpr (kRecords) crust_change_m_[cell] += Number(z_[cell]) - Number(floor);
-    }
-    rock_.laid_at_sea += area_sum<Number>(grid_, [&](Index c) {
-      return sea[c] != 0 ? Number(z_[c]) - Number(before_[c]) : Number(0.0);
-    });
-    record_at_sea(laid_m);
-  }
+  void spread_at_sea(std::vector<Number>& volume_m3);
   [[nodiscard]] bool is_landlocked(Index cell) const {
     return !landlocked_.empty() && landlocked_[cell] != 0;
   }
   /// What rivers bring while the sea stands where it does builds land at their mouths; `volume_m3`
   /// keeps what is left. Not where numbers carry derivatives: a cell is filled or it is not.
-  void build_at_mouths(const std::vector<std::uint8_t>& sea, std::vector<Number>& volume_m3) {
-    if constexpr (kRecords) {
-      if (!builds_deltas_ || p_.highstand_yr <= 0.0) return;
-      const double share = std::min(1.0, p_.highstand_yr / p_.time_step_yr);
-      const auto brought_m3 = [&](Index cell) {
-        return sea[cell] != 0 ? std::max(0.0, share * volume_m3[cell]) : 0.0;
-      };
-      std::vector<float> laid_m(grid_.size());
-      std::vector<double> left_m3(grid_.size());
-      for (Index cell = 0; cell < grid_.size(); ++cell) left_m3[cell] = brought_m3(cell);
-      for (const auto& [cell, mouth] : build_deltas(grid_, {}, sea, z_, left_m3, laid_m)) {
-        if (mouth != kNoCell) sediment_.carried_m3_yr[mouth] += sediment_.carried_m3_yr[cell];
-      }
-      for (Index cell = 0; cell < grid_.size(); ++cell) {
-        volume_m3[cell] -= brought_m3(cell) - left_m3[cell];
-      }
-      release(left_m3);
-      for (Index cell = 0; cell < grid_.size(); ++cell) {
-        if (laid_m[cell] == 0.0F) continue;
-        const float floor = z_[cell];
-        z_[cell] += laid_m[cell];
-        crust_change_m_[cell] += Number(z_[cell]) - Number(floor);
-        // What rounding to the height of the plain took or gave.
-        unsettled_m_[cell] += Number(laid_m[cell]) - (Number(z_[cell]) - Number(floor));
-      }
-      record_at_sea(laid_m);
-    }
-  }
+  void build_at_mouths(const std::vector<std::uint8_t>& sea, std::vector<Number>& volume_m3);
   /// What has been laid on land and taken from it since `before_`.
-  void record_layers() {
-    if constexpr (kRecords) {
-      on_land([&](Index cell) {
-        const float rise_m = z_[cell] - before_[cell];
-        float& thickness_m = sediment_.thickness_m[cell];
-        thickness_m = std::max(0.0F, thickness_m + rise_m);
-        sediment_.laid_m[cell] += std::max(0.0F, rise_m);
-      });
-    }
-    rock_.laid_on_land += area_sum<Number>(grid_, [&](Index c) {
-      return outlets_[c] == 0 ? greater(Number(Number(z_[c]) - Number(before_[c])), Number(0.0))
-                              : Number(0.0);
-    });
-  }
-  void record_carried(const std::vector<Number>& volume_m3) {
-    if constexpr (kRecords) {
-      sediment_.carried_m3_yr.resize(grid_.size());
-#pragma omp parallel for schedule(static)
-      for (Index cell = 0; cell < grid_.size(); ++cell) {
-        sediment_.carried_m3_yr[cell] =
-            static_cast<float>(std::max(0.0, volume_m3[cell]) / p_.time_step_yr);
-      }
-    }
-  }
-  void record_at_sea(const std::vector<V>& laid_m) {
-    if constexpr (kRecords) {
-#pragma omp parallel for schedule(static)
-      for (Index cell = 0; cell < grid_.size(); ++cell) {
-        // What heights round away may be taken off again.
-        float& thickness_m = sediment_.thickness_m[cell];
-        thickness_m = std::max(0.0F, thickness_m + laid_m[cell]);
-        sediment_.laid_m[cell] += std::max(0.0F, laid_m[cell]);
-      }
-    }
-  }
+  void record_layers();
+  void record_carried(const std::vector<Number>& volume_m3);
+  void record_at_sea(const std::vector<V>& laid_m);
   /// Airy rebound of the eroded load, and subsidence under what is laid, spread by the plate and
   /// delayed by the mantle: the part 1 - exp(-dt / tau) of what is still owed comes in each step.
   /// At sea rock takes the place of water.
-  void rebound() {
-    owed_m_.resize(grid_.size(), V(0.0F));
-    const V share(active_(p_.rebound_fraction));
-    on_land([&](Index cell) { owed_m_[cell] += share * (before_[cell] - z_[cell]); });
-    if (deposits()) {
-      constexpr double kWaterOverMantle = 1030.0 / 3300.0;
-      const V at_sea(greater(
-          Number((active_(p_.rebound_fraction) - kWaterOverMantle) / (1.0 - kWaterOverMantle)),
-          Number(0.0)));
-      at_sea_floor([&](Index cell) { owed_m_[cell] += at_sea * (before_[cell] - z_[cell]); });
-    }
-    const Number part = -expm1_of(Number(-active_(p_.time_step_yr) / active_(p_.rebound_time_yr)));
-    std::vector<V> response(owed_m_);
-    if (p_.rebound_length_km > 0.0) {
-      apply_linear<V, 1>(response, {1000.0 * active_(p_.rebound_length_km)},
-                         [&](auto values, const std::array<double, 1>& length_m) {
-                           smooth_broadly(grid_, values, length_m[0]);
-                         });
-    }
-    before_.assign(z_.begin(), z_.end());
-    const auto comes_m = [&](Index cell) { return Number(part * Number(response[cell])); };
-    on_land([&](Index cell) {
-      z_[cell] = greater(V(0.0F), V(z_[cell] + V(comes_m(cell))));
-      owed_m_[cell] -= V(part) * owed_m_[cell];
-    });
-    book_land(rock_.rebound, [&](Index cell) { return rise_of_land(cell, comes_m(cell)); });
-    if (deposits()) {
-      at_sea_floor([&](Index cell) {
-        z_[cell] = lesser(V(z_[cell] + V(comes_m(cell))), greater(z_[cell], V(-kShallowest_m)));
-        owed_m_[cell] -= V(part) * owed_m_[cell];
-      });
-      book_sea_floor(rock_.rebound,
-                     [&](Index cell) { return rise_of_sea_floor(cell, comes_m(cell)); });
-    }
-    record_raising();
-  }
+  void rebound();
 
   const ErosionParameters& p_;
   ActiveVariables<V> active_;
@@ -554,4 +282,74 @@ class Landscape {
   RockVolumes<Number> rock_;
 };
 
+template <class V>
+void Landscape<V>::breach(const Drainage& drainage) {
+  if (!breaches()) return;
+  before_.assign(z_.begin(), z_.end());
+  breach_sills(grid_, drainage.graph, z_);
+  account_lowering();
+  carry(drainage.graph);
+  release(before_);
+}
+
+template <class V>
+void Landscape<V>::step(const Drainage& drainage, bool builds_deltas, const IceWork& ice,
+                        const DrainageDone& done) {
+  builds_deltas_ = builds_deltas;
+  release(sediment_.carried_m3_yr);
+  raise();
+  before_.assign(z_.begin(), z_.end());
+  const std::span<const double> area_m2(drainage.area_m2);
+  if (deposits()) {
+    incise_and_deposit<V, V>(grid_, drainage.graph, area_m2, erodibility_, law(),
+                             active_(p_.deposition), drainage.flooded, z_);
+  } else {
+    incise(grid_, drainage.graph, area_m2, erodibility_, law(), z_);
+  }
+  if (done.area) done.area();
+  creep();
+  hold_outlets();
+  widen_valleys<V>(grid_, before_, outlets_, z_);
+  account_lowering();
+  carry(drainage.graph, ice, done.graph);
+  if (p_.rebound_fraction > 0.0) rebound();
+  release(before_);
+}
+
+template <class V>
+void Landscape<V>::creep() {
+  if (p_.diffusivity_m2_yr <= 0.0) return;
+  std::vector<V> surface(z_.size());
+#pragma omp parallel for schedule(static)
+  for (Index cell = 0; cell < grid_.size(); ++cell) {
+    surface[cell] = greater(z_[cell], V(0.0F));
+  }
+  apply_linear<V, 2>(surface, {active_(p_.diffusivity_m2_yr), active_(p_.time_step_yr)},
+                     [&](auto values, const std::array<double, 2>& at) {
+                       diffuse(grid_, values, at[0], at[1],
+                               {.fixed = outlets_, .scheme = DiffusionScheme::positive});
+                     });
+  on_land([&](Index cell) { z_[cell] = surface[cell]; });
+}
+
+template <class V>
+void Landscape<V>::hold_outlets() {
+#pragma omp parallel for schedule(static)
+  for (Index cell = 0; cell < grid_.size(); ++cell) {
+    if (outlets_[cell] != 0) z_[cell] = before_[cell];
+  }
+}
+
+template <class V>
+void Landscape<V>::account_lowering() {
+  rock_.eroded -= volume_since_before();
+  on_land([&](Index cell) { lowered_[cell] += before_[cell] - z_[cell]; });
+  if constexpr (kRecords) {
+    on_land([&](Index cell) { crust_change_m_[cell] += Number(z_[cell]) - before_[cell]; });
+  }
+}
+
 }  // namespace geo
+
+#include "geo/stages/erosion/landscape_sediment.hpp"
+#include "geo/stages/erosion/landscape_uplift.hpp"

@@ -16,7 +16,7 @@ namespace geo {
 // for belts that wind and swell.
 
 /// How much a deviation of the noise along a boundary makes it stronger or weaker, and the bounds
-/// of that for shortening (a share) and for the strength of a section, which ends nowhere in a cut.
+/// of that for shortening (a share) and for the strength of a section, which nowhere ends abruptly.
 inline constexpr double kAlongBoundary = 0.35;
 inline constexpr double kLeastClosing = 0.2, kMostClosing = 2.0;
 inline constexpr double kLeastStrength = 0.05, kMostStrength = 1.3;
@@ -35,6 +35,11 @@ inline constexpr double kWornDown = -0.4, kWhole = 1.2, kSuture = 0.16;
 /// Over which arcs and trenches are smoothed, in the length for shortening, and plateaus: narrow
 /// features less, broad ones more.
 inline constexpr double kArcSmoothing = 0.7, kTrenchSmoothing = 0.6, kBeltSmoothing = 2.0;
+
+/// Towards the ends of a boundary, where plates begin to slide past each other, arcs and trenches
+/// of a margins crust fade over this, km: sections are cut by the distance from a boundary, and
+/// would close in a half circle round its end.
+inline constexpr double kFadesFrom_km = 300.0;
 
 /// How convergence shortens crust.
 template <class V>
@@ -61,10 +66,47 @@ Arithmetic<V> shortening_km_myr(const ConvergentMargins& margins, Index cell, do
          (closing_km_myr * (density.sheet + s.front * (density.wedge - density.sheet)));
 }
 
+/// How deep trenches are: of a margins crust by the age and the speed of the subducting floor,
+/// else by the strength of the boundary.
+template <class V>
+struct Trenches {
+  bool by_floor;
+  double cell_km;
+  Arithmetic<V> slab_m, strong;
+};
+
+inline double fading(const ConvergentMargins& margins, Index cell) {
+  return smooth_step(0.0, kFadesFrom_km, static_cast<double>(margins.from_end_km[cell]));
+}
+
+/// Mean of a trench's profile over a cell: plates meet at the edge of the cells at their boundary,
+/// which count as 0 km from it, and a trench is narrower than a cell.
+inline double profile_over_cell(double from_cell_km, double cell_km) {
+  constexpr double kReach_km = 600.0;
+  constexpr int kParts = 8;
+  if (std::abs(from_cell_km) > kReach_km) return 0.0;
+  double sum = 0.0;
+  for (int k = 0; k < kParts; ++k) {
+    sum += bent_plate(from_cell_km + std::copysign((k + 0.5) / kParts * cell_km, from_cell_km));
+  }
+  return sum / kParts;
+}
+
+/// The depth of a trench and its forebulge, m, negative down.
+template <class V>
+Arithmetic<V> depth_of_trench_m(const ConvergentMargins& margins, Index cell, double strength,
+                                const Trenches<V>& trenches) {
+  const double from_cell_km = margins.across_km[cell];
+  if (!trenches.by_floor) return trenches.strong * trench_m(from_cell_km, strength);
+  return trenches.slab_m * (fading(margins, cell) *
+                            trench_share(margins.floor_myr[cell], margins.closing_mm_yr[cell]) *
+                            profile_over_cell(from_cell_km, trenches.cell_km));
+}
+
 /// What a convergent margin does to one cell; noise makes its belts wind and swell.
 template <class V>
 void cut_section(const ConvergentMargins& margins, Index cell, double along, double shift,
-                 const Arithmetic<V>& trenches, const Shortening<V>& shortening, Tectonics<V>& t) {
+                 const Trenches<V>& trenches, const Shortening<V>& shortening, Tectonics<V>& t) {
   const double straight_km = margins.across_km[cell];
   const double across =
       straight_km +
@@ -73,14 +115,15 @@ void cut_section(const ConvergentMargins& margins, Index cell, double along, dou
                                      kLeastStrength, kMostStrength);
   switch (margins.kind[cell]) {
     case Convergence::oceans:
-      t.arc[cell] = V(island_arc(across, strength));
-      t.trench_m[cell] = V(trenches * trench_m(straight_km, strength));
+      t.arc[cell] =
+          V((trenches.by_floor ? fading(margins, cell) : 1.0) * island_arc(across, strength));
+      t.trench_m[cell] = V(depth_of_trench_m(margins, cell, strength, trenches));
       break;
     case Convergence::ocean_continent:
       t.thickening[cell] = V(andean_thickening(across, strength));
       t.shortening_km_myr[cell] =
           V(shortening_km_myr(margins, cell, along, across, strength, shortening));
-      t.trench_m[cell] = V(trenches * trench_m(straight_km, strength));
+      t.trench_m[cell] = V(depth_of_trench_m(margins, cell, strength, trenches));
       break;
     case Convergence::continents:
       t.thickening[cell] = V(himalayan_thickening(across, strength));
@@ -142,7 +185,9 @@ class SectionRow {
         worn_(noise.worn, grid.nx()),
         thickness_noise_km_(crust.active(crust.parameters.thickness_noise_km)),
         swell_m_(crust.active(crust.parameters.swell_m)),
-        trenches_(crust.active(crust.parameters.trench_depth_m) / kDeepestTrench_m),
+        trenches_{crust.parameters.crust == "margins", 1e-3 * grid.spacing_north_m(grid.ny() / 2),
+                  crust.active(crust.parameters.slab_trench_m),
+                  crust.active(crust.parameters.trench_depth_m) / kDeepestTrench_m},
         shortening_{crust.active(crust.parameters.collision_shortening),
                     crust.active(crust.parameters.subduction_shortening),
                     crust.active(crust.parameters.continental_km),
@@ -184,7 +229,8 @@ class SectionRow {
   Tectonics<V>& t_;
   NoiseRow row_;
   UnitNoise::Line along_, shift_, thickness_, mantle_swell_, ocean_floor_, suture_, worn_;
-  Arithmetic<V> thickness_noise_km_, swell_m_, trenches_;
+  Arithmetic<V> thickness_noise_km_, swell_m_;
+  Trenches<V> trenches_;
   Shortening<V> shortening_;
 };
 

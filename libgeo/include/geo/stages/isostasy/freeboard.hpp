@@ -9,8 +9,8 @@
 
 namespace geo {
 
-/// Whether continents settle at the height that the depth of the sea asks for. By volume the sea
-/// finds its own level.
+/// Whether the freeboard of continents is adjusted to the depth of the sea. Where the volume of
+/// water is given, the sea finds its own level.
 [[nodiscard]] inline bool settles_continents(const IsostasyParameters& p, const Planet& planet) {
   return (p.crust == "margins" || p.crust == "simulated") && p.ocean_depth_m > 0.0 &&
          planet.sea_level == "fraction";

@@ -51,6 +51,7 @@ struct IsostasyParameters {
   double shelf_depth_m = 90.0;
   double shelf_edge = 0.78;
   double trench_depth_m = 1700.0;
+  double slab_trench_m = 4200.0;
   double seamount_m = 1800.0;
   double seafloor_roughness_m = 130.0;
   double fracture_m = 0.0;

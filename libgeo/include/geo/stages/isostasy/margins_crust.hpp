@@ -70,13 +70,20 @@ class Columns {
       ranges.read(noise_);
       noise_.choose(j, [&](int i) { return share[i] < 1.0F; });
       hills.read(noise_);
-      mounts.read(noise_);
+      if (frame.seamounts_m.empty()) {
+        mounts.read(noise_);
+      } else {
+        const auto first = static_cast<std::size_t>(crust.grid.cell(0, j));
+        seamounts_m = std::span(frame.seamounts_m).subspan(first, nx);
+        arc_volcanoes = std::span(frame.arc_volcanoes).subspan(first, nx);
+      }
     }
 
     int nx;
     Tectonics<V> from_afar;
     std::vector<float> rift_km, offshore_km, inland_km;
     UnitNoise::Line land, ranges, hills, mounts;
+    std::span<const float> seamounts_m, arc_volcanoes;  // of a margins crust alone
 
    private:
     NoiseRow noise_;
@@ -131,9 +138,9 @@ class Columns {
   /// stays.
   static constexpr double kMeanHeat = 0.25;
 
-  /// Height of an island arc of full strength above its floor, and how much of it is in single
-  /// volcanoes, m.
-  static constexpr double kArc_m = 2600.0, kVolcanoes_m = 1500.0;
+  /// Height of the ridge of an island arc of full strength above its floor [christensen1995], how
+  /// that varies, and the height of one of its volcanoes of middling size, m.
+  static constexpr double kArc_m = 3000.0, kArcRoughness_m = 700.0, kVolcanoes_m = 3000.0;
   /// Share of a trench's depth that a continent beside it feels.
   static constexpr double kTrenchOnLand = 0.5;
   /// Depth from which on a trench is as empty of sediment as any, and the share that it lacks: what
@@ -144,6 +151,8 @@ class Columns {
   /// Deviations of the noise from which on a seamount stands, so that they are few, and above that
   /// the most that one counts.
   static constexpr double kSeamount = 1.9, kHighestSeamount = 1.5;
+  /// Value of isostasy.seamount_m at which volcanoes have their own height.
+  static constexpr double kHighestMount_m = 1800.0;
 
   struct Continent {
     Number thickness_km, elevation_m;
@@ -292,7 +301,8 @@ class Columns {
                                    double rough) const {
     const Tectonics<V>& row = along.from_afar;
     return -ocean_depth_m(age_myr) + floor_cover_m(i, along, age_myr) +
-           island * (kArc_m + kVolcanoes_m * rough) + Number(row.trench_m[i]);
+           island * (kArc_m + kArcRoughness_m * rough + kVolcanoes_m * along.arc_volcanoes[i]) +
+           Number(row.trench_m[i]);
   }
   /// Sediment, swells, hills and seamounts on a floor.
   [[nodiscard]] Number floor_cover_m(int i, const Row& along, double crust_age_myr) const {
@@ -302,11 +312,14 @@ class Columns {
     const Number sediment_m = deep_sediment_m(p_.sediment, age_myr, along.offshore_km[i]) *
                               (1.0 - kTrenchLacks * in_trench);
     const Number buried = 1.0 / (1.0 + sediment_m / kBurying_m);
-    const double mount = std::max(0.0, along.mounts[i] - kSeamount);
     return datum_.rise_per_sediment() * sediment_m +
            p_.ocean_swell_m * static_cast<double>(row.ocean_swell[i]) +
-           p_.seafloor_roughness_m * buried * along.hills[i] +
-           p_.seamount_m * std::min(kHighestSeamount, mount);
+           p_.seafloor_roughness_m * buried * along.hills[i] + p_.seamount_m * seamount(i, along);
+  }
+  /// Seamounts over isostasy.seamount_m: volcanoes of a margins crust, else noise.
+  static double seamount(int i, const Row& along) {
+    if (!along.seamounts_m.empty()) return along.seamounts_m[i] / kHighestMount_m;
+    return std::min(kHighestSeamount, std::max(0.0, along.mounts[i] - kSeamount));
   }
 
   /// A dry column under the sea, whose water loads it unless the compensation is dry.

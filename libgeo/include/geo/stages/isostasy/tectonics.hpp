@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "geo/kernels/plates/growth/convergent_margins.hpp"
@@ -9,16 +10,20 @@
 namespace geo {
 
 /// Where cells of the coarse grid lie with regard to plate boundaries and coasts of continental
-/// crust. Of the settings, only the lengths over which deformation dies away have a say in it.
+/// crust. Of the settings it depends on the lengths alone over which deformation dies away.
 struct TectonicFrame {
   DeformationSources convergent, divergent, transform;
   std::vector<float> boundary_km;             // distance to any boundary
   std::vector<float> rift_km;                 // distance to divergent boundaries
   std::vector<float> offshore_km, inland_km;  // distance to continental crust, to the ocean's
-  ConvergentMargins margins;                  // of a margins crust alone
+  ConvergentMargins margins;                  // of a crust with cross sections
+  // Volcanoes on the floor of a margins crust, on the full grid: those of arcs as shares of the
+  // height of one of middling size, plumes' and lone ones in m.
+  std::vector<float> arc_volcanoes, seamounts_m;
 };
 TectonicFrame tectonic_frame(const IsostasyParameters& parameters, const CoarseGrid& coarse,
-                             const CrustInputs& in, std::span<const float> fraction);
+                             const CrustInputs& in, std::span<const float> fraction,
+                             std::uint64_t seed);
 
 /// What plate boundaries do to the crust, and its broad variation, on the coarse grid.
 template <class V>

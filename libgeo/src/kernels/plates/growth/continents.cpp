@@ -6,6 +6,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "geo/core/array_sizes.hpp"
 #include "geo/core/random.hpp"
 #include "geo/kernels/noise/noise.hpp"
 
@@ -21,6 +22,7 @@ struct Craton {
 
 std::vector<double> plate_areas_sr(const CubedSphere& mesh, std::span<const std::int16_t> plate,
                                    std::size_t plates) {
+  check_sizes("continental_plates", mesh.size(), {{"plate", plate.size()}});
   std::vector<double> area(plates, 0.0);
   for (std::int32_t cell = 0; cell < mesh.size(); ++cell) area[plate[cell]] += mesh.area_sr(cell);
   return area;

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "geo/core/array_sizes.hpp"
 #include "geo/core/field.hpp"
@@ -102,6 +104,24 @@ double island_arc(double across_km, double strength) {
 double trench_m(double across_km, double strength) {
   return -(900.0 + 2100.0 * strength) * bell(across_km, -5.0, 36.0) +
          320.0 * bell(across_km, -170.0, 65.0);
+}
+
+double trench_share(double floor_myr, double closing_mm_yr) {
+  constexpr double kMost = 1.2;  // 120 Myr, 120 mm/yr
+  return std::sqrt(std::clamp(0.01 * floor_myr, 0.0, kMost) *
+                   std::clamp(0.01 * closing_mm_yr, 0.0, kMost));
+}
+
+double bent_plate(double across_km) {
+  // As deep at the trench as the plate is bent there.
+  constexpr double kZero_km = 58.0, kToBulge_km = 55.0, kWall_km = 34.0;
+  constexpr double kPerKm = 0.25 * std::numbers::pi / kToBulge_km, kYields = 0.53;
+  const auto bent = [](double out_km) {
+    const double t = kPerKm * (out_km - kZero_km);
+    return (t > 0.0 ? kYields : 1.0) * std::exp(-t) * std::sin(t);
+  };
+  if (across_km > 0.0) return -bell(across_km, 0.0, kWall_km);
+  return bent(-across_km) / -bent(0.0);
 }
 
 namespace {
@@ -208,6 +228,10 @@ std::optional<std::array<Side, 2>> sides_at(const Grid& grid, const PlateFields&
 struct Subduction {
   Convergence kind;
   std::int16_t down;
+  std::array<std::int16_t, 2> plates;
+  std::array<double, 2> floor_myr;  // of the two
+
+  [[nodiscard]] double floor_down_myr() const { return floor_myr[down == plates[0] ? 0 : 1]; }
 };
 
 /// Sea floor subducts below a continent, the older of two floors, the faster of two continents.
@@ -215,7 +239,10 @@ Subduction subduction_of(const std::array<Side, 2>& sides) {
   constexpr double kContinental = 0.45;
   const Side &first = sides[0], &second = sides[1];
   const auto subducts = [&](bool is_first, Convergence kind) {
-    return Subduction{kind, is_first ? first.plate : second.plate};
+    return Subduction{kind,
+                      is_first ? first.plate : second.plate,
+                      {first.plate, second.plate},
+                      {first.floor_myr, second.floor_myr}};
   };
   const auto decides = [&](double left, double right) {
     return left < right || (left == right && first.plate < second.plate);
@@ -226,6 +253,23 @@ Subduction subduction_of(const std::array<Side, 2>& sides) {
   return subducts(decides(second.floor_myr, first.floor_myr), Convergence::oceans);
 }
 
+/// Of every two plates that meet as oceans, the one whose floor is older on the mean of the places
+/// where they do subducts at all of them.
+void hold_slabs_together(std::vector<Subduction>& subductions) {
+  std::map<std::pair<std::int16_t, std::int16_t>, double> older_myr;  // the first of them
+  const auto pair_of = [](const Subduction& s) { return std::minmax(s.plates[0], s.plates[1]); };
+  for (const Subduction& s : subductions) {
+    if (s.kind != Convergence::oceans) continue;
+    const double by_myr = s.floor_myr[0] - s.floor_myr[1];
+    older_myr[pair_of(s)] += s.plates[0] < s.plates[1] ? by_myr : -by_myr;
+  }
+  for (Subduction& s : subductions) {
+    if (s.kind != Convergence::oceans) continue;
+    const auto [low, high] = pair_of(s);
+    s.down = older_myr[{low, high}] >= 0.0 ? low : high;
+  }
+}
+
 }  // namespace
 
 ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int16_t> plate,
@@ -234,7 +278,7 @@ ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int1
                                      std::span<const float> continental_fraction,
                                      std::span<const float> age_myr,
                                      std::span<const float> east_mm_yr,
-                                     std::span<const float> north_mm_yr) {
+                                     std::span<const float> north_mm_yr, Polarity polarity) {
   check_sizes("convergent_margins", grid.size(),
               {{"plate", plate.size()},
                {"boundary_type", boundary_type.size()},
@@ -260,12 +304,20 @@ ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int1
         closing_speed(grid, sides->front(), sides->back(), east_mm_yr, north_mm_yr)));
     sources.add(grid, cell, kHandicap_m * (1.0 - boundary_strength[cell]));
   }
+  if (polarity == Polarity::of_pair) hold_slabs_together(subductions);
+  std::vector<std::uint8_t> ends(grid.size());
+  for (Index cell = 0; cell < grid.size(); ++cell) {
+    ends[cell] = boundary_type[cell] != 0 && boundary_type[cell] != kConvergent ? 1 : 0;
+  }
+  const std::vector<float> to_end_km = distance_to_marked_km(grid, ends);
   sources.propagate(grid);
   ConvergentMargins margins;
   margins.across_km.assign(grid.size(), kFar_km);
   margins.strength.assign(grid.size(), 0.0F);
   margins.kind.assign(grid.size(), Convergence::none);
   margins.closing_mm_yr.assign(grid.size(), 0.0F);
+  margins.floor_myr.assign(grid.size(), 0.0F);
+  margins.from_end_km.assign(grid.size(), kFar_km);
   if (sources.position.empty()) return margins;
 #pragma omp parallel for schedule(static)
   for (Index cell = 0; cell < grid.size(); ++cell) {
@@ -275,6 +327,9 @@ ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int1
     margins.strength[cell] = boundary_strength[sources.cell[source]];
     margins.kind[cell] = subductions[source].kind;
     margins.closing_mm_yr[cell] = closing[source];
+    margins.from_end_km[cell] = to_end_km[sources.cell[source]];
+    if (subductions[source].kind == Convergence::continents) continue;
+    margins.floor_myr[cell] = static_cast<float>(subductions[source].floor_down_myr());
   }
   return margins;
 }

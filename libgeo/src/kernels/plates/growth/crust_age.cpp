@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "geo/core/array_sizes.hpp"
 #include "geo/core/parallel_errors.hpp"
 #include "kernels/numerics/wide.hpp"
 
@@ -156,6 +157,7 @@ std::vector<float> ocean_age_myr(const CubedSphere& mesh, std::span<const std::i
                                  std::span<const BoundaryPoint> boundaries,
                                  std::span<const Vector3> rotation_rad_myr, double oldest_myr,
                                  double radius_km) {
+  check_sizes("ocean_age_myr", mesh.size(), {{"plate", plate.size()}});
   constexpr double kSlowest_mm_yr = 4.0;
   const auto plates = 1 + *std::max_element(plate.begin(), plate.end());
   std::vector<std::vector<Ridges::Point>> points(plates);

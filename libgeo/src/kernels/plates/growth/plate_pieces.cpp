@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "geo/core/array_sizes.hpp"
 #include "geo/core/error.hpp"
 
 namespace geo {
@@ -214,6 +215,7 @@ void merge_small_pieces(const CubedSphere& mesh, double smallest_sr,
 }
 
 void connect_plates(const CubedSphere& mesh, std::vector<std::int16_t>& plate) {
+  check_sizes("connect_plates", mesh.size(), {{"plate", plate.size()}});
   // A piece may join one that is handed over itself; their number falls each time.
   while (merge_pieces(mesh, By::sides, std::numeric_limits<double>::infinity(), plate)) {
   }

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "geo/core/error.hpp"
 #include "geo/core/random.hpp"
+#include "raster_first_map.hpp"
 #include "raster_growth.hpp"
 
 namespace geo {
@@ -81,23 +81,7 @@ std::vector<RasterCrust> start_raster(const RasterWorld& world, double sea_share
   constexpr int kOctaves = 9;
   constexpr double kGain = 0.55;
   const std::vector<float> noise = seamless_noise(world, cells_across, kGain, kOctaves, seed);
-  std::vector<float> sorted = noise;
-  const auto place = std::min<std::size_t>(
-      noise.size() - 1, static_cast<std::size_t>(sea_share * static_cast<double>(noise.size())));
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(place),
-                   sorted.end());
-  const float sea = sea_share >= 1.0 ? INFINITY : sorted[place];
-  const auto [low, high] = std::minmax_element(noise.begin(), noise.end());
-  const float least = *low, range = std::max(1e-6F, *high - *low);
-  std::vector<RasterCrust> crust(noise.size());
-  // Floor of the first map is no longer young.
-  constexpr std::int16_t kBorn = -60;
-  for (std::size_t k = 0; k < noise.size(); ++k) {
-    crust[k].height =
-        noise[k] >= sea ? 1.0F + (noise[k] - least) / range : static_cast<float>(ocean_crust);
-    crust[k].born = kBorn;
-  }
-  return crust;
+  return first_map(noise, sea_share, ocean_crust);
 }
 
 namespace {
@@ -119,10 +103,7 @@ std::vector<std::int16_t> grow(const RasterWorld& lattice, int plates, std::uint
 
 std::vector<std::int16_t> grow_raster_plates(const RasterWorld& world, int plates,
                                              std::uint64_t seed, std::uint64_t round) {
-  if (plates < 1 || plates > 32767 || plates > world.size()) {
-    throw ConfigurationError("raster plates: 1 to 32767, no more than cells, not " +
-                             std::to_string(plates));
-  }
+  check_plates(plates, world.size());
   constexpr double kPlaces = 9000.0, kPlacesOfAPlate = 60.0;
   const double shape = static_cast<double>(world.rows) / world.columns;
   const double places = std::max(kPlaces, kPlacesOfAPlate * plates);

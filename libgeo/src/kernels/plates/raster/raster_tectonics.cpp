@@ -10,6 +10,7 @@
 #include "geo/core/parallel_errors.hpp"
 #include "geo/core/random.hpp"
 #include "geo/kernels/plates/raster/raster_start.hpp"
+#include "raster_cycles.hpp"
 
 namespace geo {
 
@@ -20,12 +21,7 @@ RasterTectonics::RasterTectonics(const RasterSettings& settings, std::uint64_t s
     throw ConfigurationError("raster plates: a world of " + std::to_string(world.columns) + " x " +
                              std::to_string(world.rows) + " cells; at least 16 x 16");
   }
-  constexpr std::int64_t kMostSteps = 32'000;  // as cells count them
-  if (std::int64_t{settings_.cycles} * settings_.cycle_steps > kMostSteps) {
-    throw ConfigurationError("raster plates: " + std::to_string(settings_.cycles) + " cycles of " +
-                             std::to_string(settings_.cycle_steps) +
-                             " steps; at most 32000 steps in all");
-  }
+  check_steps(settings_);
   constexpr std::int32_t kPays = 1'000'000;  // cells
   pays_ = world.size() >= kPays;
   rows_.resize(world.rows);
@@ -103,16 +99,9 @@ RasterCycle::Motion RasterTectonics::motion() const {
 bool RasterTectonics::advance() {
   if (over_) return false;
   if (cycle_.is_over(settings_.limits(), motion())) {
-    if (budget_.cycles >= settings_.cycles) {
-      over_ = true;
-      return false;
-    }
-    std::vector<RasterCrust> crust = map().crust;
-    double all = 0.0;
-    for (const RasterCrust& cell : crust) all += cell.height;
-    budget_.rounded += all - mass();
-    divide(std::move(crust));
-    return true;
+    over_ = budget_.cycles >= settings_.cycles;
+    if (!over_) divide(gathered(map(), mass(), budget_.rounded));
+    return !over_;
   }
   ++budget_.steps;
   cycle_.begin_step();
@@ -136,17 +125,11 @@ bool RasterTectonics::advance() {
 }
 
 void RasterTectonics::move() {
-  constexpr int kTighten = 32;
   std::vector<double> rounded(plates_.size(), 0.0);
   const auto move_plate = [&](int p) {
     RasterPlate& plate = plates_[p];
     if (!plate.alive) return;
-    const auto period = static_cast<std::int64_t>(
-        settings_.of(p, &RasterPlateSettings::erosion_steps, settings_.erosion_steps));
-    if (period > 0 && budget_.steps % period == 0) {
-      rounded[p] = plate.erode(settings_.erosion);
-    }
-    if (budget_.steps % kTighten == 0) plate.tighten();
+    rounded[p] = tend(plate, p, settings_, budget_.steps);
     // With a spin, the path bends as the plate turns: motion about a pole.
     const double c = std::cos(plate.spin + plate.curve), s = std::sin(plate.spin + plate.curve);
     const double east = c * plate.east - s * plate.north;
@@ -164,7 +147,7 @@ void RasterTectonics::move() {
   for (const double added : rounded) budget_.rounded += added;
 }
 
-/// Where magma of what went down rises: inland, along the motion of the lower plate as the upper
+/// Where magma of subducted crust rises: inland, along the motion of the lower plate as the upper
 /// one sees it, with some scatter.
 std::int32_t RasterTectonics::arc_place(const Subduction& event, int row,
                                         const RandomStream& random) const {
@@ -180,8 +163,8 @@ std::int32_t RasterTectonics::arc_place(const Subduction& event, int row,
                     static_cast<int>(std::floor(row + offset[1] + sy)));
 }
 
-/// Takes what went down out of the budget and lets its magma rise; where the upper plate has no
-/// crust it stays below.
+/// Takes subducted crust out of the budget and lets its magma rise; where the overriding plate has
+/// no crust it stays below.
 void RasterTectonics::raise_arcs() {
   const RandomStream random(seed_, "raster.arcs");
   const auto now = static_cast<std::int16_t>(budget_.steps);
@@ -349,8 +332,7 @@ double RasterTectonics::mass() const {
 }
 
 double RasterTectonics::progress() const {
-  const double cycle = static_cast<double>(cycle_.steps()) / std::max(1, settings_.cycle_steps);
-  return std::min(1.0, (budget_.cycles - 1 + cycle) / settings_.cycles);
+  return share_of_steps(settings_, budget_.cycles, cycle_);
 }
 
 }  // namespace geo

@@ -12,7 +12,8 @@
 namespace geo {
 
 /// Whole plates as continents: the most buoyant first, without those that are too large to bring
-/// their area nearer to `share` of the sphere. One entry per plate.
+/// their area nearer to `share` of the sphere. One entry per plate. Throws Bug unless `plate` has
+/// one value per cell of the mesh, as all below.
 std::vector<std::uint8_t> continental_plates(const CubedSphere& mesh,
                                              std::span<const std::int16_t> plate,
                                              const std::vector<Plate>& plates, double share);

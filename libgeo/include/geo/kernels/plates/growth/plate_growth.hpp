@@ -19,7 +19,8 @@ struct PlateGrowth {
   double polar_resistance = 0.0;   ///< extra cost at the poles; the blueprint's is 0.1
   double smallest_part_km2 = 8e4;  ///< smaller pieces join a neighbour at once
   double radius_km = 6371.0;
-  /// Places drawn for each centre, of which the one farthest from its elders is taken; 1: anywhere.
+  /// Places drawn for each centre, of which the one farthest from those already placed is taken; 1:
+  /// anywhere.
   std::int64_t centre_candidates = 6;
 };
 

@@ -13,11 +13,11 @@ namespace geo {
 /// which it has the longest common border, the smallest piece first; the largest piece of each
 /// plate stays. Linear cost but for sorting the pieces.
 
-/// Hands over the pieces smaller than `smallest_sr`, whose cells hang together by sides or corners.
+/// Hands over the pieces smaller than `smallest_sr`, whose cells are connected by sides or corners.
 void merge_small_pieces(const CubedSphere& mesh, double smallest_sr,
                         std::vector<std::int16_t>& plate);
 
-/// Hands over all pieces until the cells of each plate hang together by their sides, so that finer
+/// Hands over all pieces until the cells of each plate are connected by their sides, so that finer
 /// grids than the mesh see them do so too.
 void connect_plates(const CubedSphere& mesh, std::vector<std::int16_t>& plate);
 

@@ -28,9 +28,8 @@ void fit_scale(std::vector<float> heights, double ocean_share, double median_lan
                RasterScale& scale);
 
 /// Elevation of land, m: S y / (1 + y) with y = ((h - h_s) / c)^1.5, so that plains stay low and no
-/// pile of crust outgrows the planet. Of what is below the sea: the depth of ocean floor of that
-/// age (Stein & Stein 1992), less the more crust there is: -d(a) (1 - t), t = (h - h_0) / (h_s -
-/// h_0).
+/// pile of crust outgrows the planet. Below sea level it is that of ocean floor of this age (Stein
+/// & Stein 1992), reduced by the crust there is: -d(a) (1 - t), t = (h - h_0) / (h_s - h_0).
 [[nodiscard]] double raster_elevation_m(double height, double age_myr, double ocean_crust,
                                         const RasterScale& scale);
 /// Thickness of the crust, m: 30 km where land begins, its root 6.6 times what stands out, thinning

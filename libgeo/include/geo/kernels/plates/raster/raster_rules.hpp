@@ -10,8 +10,8 @@
 
 namespace geo {
 
-/// The rules of plates as height maps (Viitanen 2012, chapter 7), which know of no map: the same on
-/// a torus and on a sphere. Heights: 1 is sea level.
+/// The rules of plates as height maps (Viitanen 2012, chapter 7), which do not depend on the map:
+/// the same on a torus and on a sphere. Heights: 1 is sea level.
 
 /// Which of two plates at a place subducts, or that both are too thick for it: the one with less
 /// crust, if that is below sea level; of equals the older, and of twins the second.

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "geo/core/random.hpp"
@@ -98,6 +99,8 @@ class RasterSphere {
     std::int32_t continent_a, continent_b;
     std::int64_t cells;
   };
+  /// Crust at samples of a plate.
+  using PlacedCrust = std::vector<std::pair<std::int32_t, RasterCrust>>;
 
   void divide(std::vector<RasterCrust> crust);
   [[nodiscard]] RasterCycle::Motion motion() const;
@@ -112,6 +115,9 @@ class RasterSphere {
   void raise_arcs();
   void slow_down();
   void merge_continents();
+  [[nodiscard]] std::vector<std::int32_t> samples_under(int plate, int other,
+                                                        const PlacedCrust& crust) const;
+  [[nodiscard]] PlacedCrust seen_by(int plate, int other, const PlacedCrust& crust) const;
   void merge(const Overlap& overlap);
   void fill_gaps();
   [[nodiscard]] std::int32_t own_sample(int plate, const Vector3& place, std::int32_t from) const {

@@ -65,10 +65,10 @@ def shown_fields(images):
     return fields
 
 
-def make_relief(algorithm, stages=(), factor=1, draped=False, skirt_m=0.0):
+def make_topography(algorithm, stages=(), factor=1, draped=False, skirt_m=0.0):
     """Fills the output of a programmable filter with the solid surface.
 
-    `relief` is the height to warp by, m. `skirt_m` draws the edges of a map down, as the sides of
+    `topography` is the height to warp by, m. `skirt_m` draws the edges of a map down, as the sides of
     a block. What the inputs beyond `stages` cover, islands, is left out.
     """
     output = algorithm.GetOutput()
@@ -76,7 +76,7 @@ def make_relief(algorithm, stages=(), factor=1, draped=False, skirt_m=0.0):
     layout = layout_of(images[0], draped)
     blocks = Blocks(layout, factor)
     fields = {name: blocks.thin(name, v) for name, v in shown_fields(images).items()}
-    fields["relief"] = blocks.thin("elevation", heights_of(images, layout)).astype(np.float32)
+    fields["topography"] = blocks.thin("elevation", heights_of(images, layout)).astype(np.float32)
     columns, rows = np.meshgrid(blocks.columns, blocks.rows)
     columns, rows, shape = columns.ravel(), rows.ravel(), blocks.shape
     if layout.wraps:
@@ -94,7 +94,7 @@ def make_relief(algorithm, stages=(), factor=1, draped=False, skirt_m=0.0):
     for name, values in fields.items():
         add_array(output, name, values)
     add_up(output, up)
-    output.GetPointData().SetActiveScalars("relief")
+    output.GetPointData().SetActiveScalars("topography")
     for island in islands_of(algorithm, stages):
         cut_out(output, layout_of(island, draped=True))
 
@@ -103,10 +103,10 @@ def with_skirt(blocks, fields, depth_m):
     """The edge once more, lower."""
     columns, rows = np.meshgrid(np.pad(blocks.columns, 1, "edge"), np.pad(blocks.rows, 1, "edge"))
     fields = {name: np.pad(values, 1, "edge") for name, values in fields.items()}
-    relief = fields["relief"]
-    floor = relief[1:-1, 1:-1].min() - depth_m
+    topography = fields["topography"]
+    floor = topography[1:-1, 1:-1].min() - depth_m
     for edge in EDGES:
-        relief[edge] = floor
+        topography[edge] = floor
     return columns.ravel(), rows.ravel(), fields, columns.shape
 
 
@@ -144,7 +144,7 @@ def cut_out(output, island):
     both.AddInputConnection(clip.GetOutputPort())
     both.Update()
     output.ShallowCopy(both.GetOutput())
-    output.GetPointData().SetActiveScalars("relief")
+    output.GetPointData().SetActiveScalars("topography")
 
 
 def make_sea(algorithm, stages=(), factor=1, draped=False, names=(), sides=False):
@@ -160,14 +160,14 @@ def make_sea(algorithm, stages=(), factor=1, draped=False, names=(), sides=False
     ground = blocks.thin("elevation", heights_of(images, layout))
     known = shown_fields(images)
     fields = {name: blocks.thin(name, known[name]) for name in names if name in known}
-    fields["relief"] = np.zeros(blocks.shape, np.float32)
+    fields["topography"] = np.zeros(blocks.shape, np.float32)
     columns, rows, shape = blocks.columns, blocks.rows, blocks.shape
     if sides:
         columns, rows = np.pad(columns, 1, "edge"), np.pad(rows, 1, "edge")
         ground = np.pad(ground, 1, "edge")
         fields = {name: np.pad(values, 1, "edge") for name, values in fields.items()}
         for edge in EDGES:
-            fields["relief"][edge] = np.minimum(ground[edge], 0.0)
+            fields["topography"][edge] = np.minimum(ground[edge], 0.0)
         shape = ground.shape
     columns, rows = (axis.ravel() for axis in np.meshgrid(columns, rows))
     base, up = layout.base(columns, rows), layout.up(columns, rows)
@@ -183,7 +183,7 @@ def make_sea(algorithm, stages=(), factor=1, draped=False, names=(), sides=False
     for name, values in fields.items():
         add_array(output, name, values.ravel())
     add_up(output, up)
-    output.GetPointData().SetActiveScalars("relief")
+    output.GetPointData().SetActiveScalars("topography")
 
 
 def make_lakes(algorithm, stages=(), factor=1, draped=False):
@@ -207,12 +207,12 @@ def make_lakes(algorithm, stages=(), factor=1, draped=False):
     level = np.where(np.isfinite(level), level, shore)
     used, faces = used_only(faces)
     rows, columns = used // layout.nx, used % layout.nx
-    relief = level[used]
+    topography = level[used]
     blocks = Blocks(layout, factor)
     if factor > 1:
-        relief = np.maximum(relief, blocks.at(blocks.thin("elevation", ground), columns, rows))
+        topography = np.maximum(topography, blocks.at(blocks.thin("elevation", ground), columns, rows))
     set_points(output, layout.base(columns, rows))
     output.SetPolys(cells_of(faces))
-    add_array(output, "relief", relief.astype(np.float32))
+    add_array(output, "topography", topography.astype(np.float32))
     add_array(output, "lake_depth", lake_depth.ravel()[used])
     add_up(output, layout.up(columns, rows))

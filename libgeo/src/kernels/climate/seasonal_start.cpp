@@ -1,0 +1,154 @@
+// Temperatures of the months, and what of their air follows from them alone.
+#include <algorithm>
+#include <cmath>
+
+#include "geo/kernels/climate/evaporation.hpp"
+#include "geo/kernels/climate/insolation.hpp"
+#include "geo/kernels/climate/thermodynamics.hpp"
+#include "kernels/climate/zonal.hpp"
+#include "seasonal_year.hpp"
+
+namespace geo {
+
+/// Pressure over ground that is warmer or colder than its parallel is through the year, hPa.
+double SeasonalYear::thermal_pressure_hpa(double warmer_k) const {
+  return -model_.circulation.thermal_low_hpa_k * warmer_k *
+         (warmer_k > 0.0 ? 1.0 : model_.circulation.cold_high_share);
+}
+
+/// Winds that carry heat: a share of the thermal wind, the same all along a parallel, and a share
+/// of the winds about heat lows and cold highs.
+void SeasonalYear::carry_heat(std::span<const float> month_c, std::span<const double> annual_mean_c,
+                              std::span<float> east, std::span<float> north) const {
+  std::vector<float> pressure_hpa(size_);
+  for (std::size_t cell = 0; cell < size_; ++cell) {
+    const int row = grid_.row(static_cast<Index>(cell));
+    pressure_hpa[cell] =
+        static_cast<float>(thermal_pressure_hpa(month_c[cell] - annual_mean_c[row]));
+  }
+  balanced_winds(grid_, model_.circulation, latitude_deg_, land_, pressure_hpa, east, north);
+  const auto mean_east = row_means<float>(grid_, east), mean_north = row_means<float>(grid_, north);
+  const std::vector<double> aloft =
+      thermal_wind_m_s(grid_, model_.circulation, latitude_deg_, row_means<float>(grid_, month_c));
+  const EnergyBalance& energy = model_.energy;
+  for (std::size_t cell = 0; cell < size_; ++cell) {
+    const int row = grid_.row(static_cast<Index>(cell));
+    east[cell] = static_cast<float>(energy.heat_wave_share * (east[cell] - mean_east[row]) +
+                                    energy.heat_wind_share * aloft[row]);
+    north[cell] = static_cast<float>(energy.heat_wave_share * (north[cell] - mean_north[row]));
+    const double open = open_to_heat(energy, height_m_[cell]);
+    east[cell] *= static_cast<float>(open);
+    north[cell] *= static_cast<float>(open);
+  }
+}
+
+/// Temperatures of the months, and all that follows from them alone.
+void SeasonalYear::warm() {
+  const int ny = grid_.ny();
+  const TemperatureCycle temperature =
+      solve_energy_balance(grid_, model_.energy, model_.circulation.retrograde, latitude_deg_,
+                           land_, height_m_, [this](auto... fields) { carry_heat(fields...); });
+  // Evaporation in series with the energy that the sun gives through the year.
+  constexpr double kWattsEvaporating = 28.36;
+  most_evaporation_mm_d_.resize(ny);
+  for (int j = 0; j < ny; ++j) {
+    const double sun_w_m2 = annual_insolation_w_m2(latitude_deg_[j], model_.energy.orbit,
+                                                   model_.energy.solar_constant_w_m2);
+    most_evaporation_mm_d_[j] =
+        std::max(1.0e-6, model_.moisture.evaporating_share * sun_w_m2 / kWattsEvaporating);
+  }
+  ParallelErrors errors;
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int m = 0; m < kMonths; ++m) errors.guard([&] { begin_month(m, temperature); });
+  errors.rethrow();
+}
+
+void SeasonalYear::begin_month(int m, const TemperatureCycle& temperature) {
+  AirOfMonth& month = months_[m];
+  clear(month);
+  std::vector<double> annual_c(size_);
+  for (std::size_t cell = 0; cell < size_; ++cell) {
+    month.temperature_c[cell] = static_cast<float>(temperature.month_c(cell, m));
+    annual_c[cell] = temperature.mean_c(cell);
+  }
+  month.sun_w_m2.resize(grid_.ny());
+  for (int j = 0; j < grid_.ny(); ++j) {
+    month.sun_w_m2[j] =
+        daily_insolation_w_m2(latitude_deg_[j], sun_of_month(model_.energy.orbit, m),
+                              model_.energy.orbit.obliquity_deg, model_.energy.solar_constant_w_m2);
+  }
+  const std::vector<double> zonal_c = row_means<float>(grid_, month.temperature_c);
+  month.zonal_wind_m_s = thermal_wind_m_s(grid_, model_.circulation, latitude_deg_, zonal_c);
+  press(month, zonal_c, row_means<double>(grid_, annual_c));
+  stir(month, zonal_c);
+  moisten(month);
+}
+
+void SeasonalYear::clear(AirOfMonth& month) const {
+  for (auto* values :
+       {&month.temperature_c, &month.pressure_hpa, &month.wind_east, &month.wind_north,
+        &month.descent_1_s, &month.open_flow, &month.diffusivity, &month.own_eddies, &month.eddies,
+        &month.activity, &month.saturated_mm, &month.open_water_1_d, &month.gust_m_s,
+        &month.potential_evapotranspiration_mm_d, &month.land_evaporation_mm_d,
+        &month.cold_air_evaporation_mm_d, &month.given_evaporation_mm_d, &month.heating_w_m2}) {
+    values->assign(size_, 0.0F);
+  }
+  month.column_mm.resize(size_);
+  month.rain_mm_d.assign(size_, 0.0);
+}
+
+/// Pressure of the three cells about the trough, and of heat lows and cold highs.
+void SeasonalYear::press(AirOfMonth& month, std::span<const double> zonal_c,
+                         std::span<const double> annual_mean_c) const {
+  const std::vector<double> trough_deg = trough_latitudes_deg(
+      grid_, latitude_deg_, month.temperature_c, zonal_c, model_.itcz_locality);
+  for (std::size_t cell = 0; cell < size_; ++cell) {
+    const Index here = static_cast<Index>(cell);
+    const int row = grid_.row(here);
+    month.pressure_hpa[cell] = static_cast<float>(
+        three_cell_pressure_hpa(latitude_deg_[row], model_.circulation,
+                                model_.itcz_share * trough_deg[grid_.column(here)]) +
+        thermal_pressure_hpa(month.temperature_c[cell] - annual_mean_c[row]));
+  }
+}
+
+/// Eddies, which mix the air's water and let it rain; mountains hold the flow back.
+void SeasonalYear::stir(AirOfMonth& month, std::span<const double> zonal_c) const {
+  constexpr double kFastest_1_s = 0.01;  // on tiny planets: what mixes in minutes is mixed
+  const std::vector<float> eddies =
+      eddy_strength(grid_, latitude_deg_, month.temperature_c, zonal_c,
+                    model_.eddy_gradient_k_1000km, model_.eddy_exponent, model_.eddy_locality);
+  for (std::size_t cell = 0; cell < size_; ++cell) {
+    const double relative = height_m_[cell] / model_.blocking_height_m;
+    month.open_flow[cell] = static_cast<float>(1.0 / (1.0 + relative * relative));
+    const double spacing_m = grid_.spacing_north_m(grid_.row(static_cast<Index>(cell)));
+    month.diffusivity[cell] = static_cast<float>(
+        std::min(month.open_flow[cell] *
+                     (model_.base_diffusivity_m2_s + model_.eddy_diffusivity_m2_s * eddies[cell]),
+                 kFastest_1_s * spacing_m * spacing_m));
+    month.own_eddies[cell] = static_cast<float>(model_.eddy_rain * eddies[cell]);
+    month.gust_m_s[cell] =
+        static_cast<float>(model_.gust_m_s * std::pow(eddies[cell], 1.0 / model_.eddy_exponent));
+  }
+}
+
+/// What the air can hold, what sea and ground can give it, and a first guess of both.
+void SeasonalYear::moisten(AirOfMonth& month) const {
+  for (std::size_t cell = 0; cell < size_; ++cell) {
+    const int row = grid_.row(static_cast<Index>(cell));
+    const double at_sea_c = month.temperature_c[cell];
+    const double surface_c = at_sea_c - model_.energy.lapse_k_m * height_m_[cell];
+    const double lifted_c =
+        at_sea_c - model_.energy.lapse_k_m * model_.orographic_share * height_m_[cell];
+    const double saturated = saturated_column_mm(lifted_c);
+    month.saturated_mm[cell] = static_cast<float>(saturated);
+    month.potential_evapotranspiration_mm_d[cell] =
+        static_cast<float>(oudin_evaporation_mm_d(month.sun_w_m2[row], surface_c));
+    month.column_mm[cell] = (has_sea_ ? 0.7 : 0.0) * saturated;
+    month.land_evaporation_mm_d[cell] = has_sea_ ? static_cast<float>(0.5 * land_[cell]) *
+                                                       month.potential_evapotranspiration_mm_d[cell]
+                                                 : 0.0F;
+  }
+}
+
+}  // namespace geo

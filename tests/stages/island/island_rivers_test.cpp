@@ -1,0 +1,225 @@
+// An island's rivers and lakes against those of the planet.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "geo/core/projection.hpp"
+#include "geo/kernels/remapping/planet_cells.hpp"
+#include "stages/island/island_of_planet.hpp"
+
+namespace geo {
+namespace {
+
+TEST(Island, LandDrainsToTheSeaOffTheEdgeOrIntoALake) { expect_drained(example().island); }
+
+TEST(Island, RiversThatEnterAreThereAndNoWaterIsLost) {
+  const auto& [island, budget] = example();
+  const auto inflow = island.read(field::inflow_discharge);
+  const auto inflow_area = island.read(field::inflow_area);
+  const auto discharge = island.read(field::discharge);
+  const auto area = island.read(field::drainage_area);
+  const auto lake = island.read(field::lake_id);
+  double entering = 0.0;
+  for (Index c = 0; c < island.grid().size(); ++c) {
+    entering += inflow[c];
+    if (inflow[c] == 0.0F) continue;
+    EXPECT_TRUE(on_edge(island.grid(), c));
+    EXPECT_GE(area[c], inflow_area[c]);
+    if (lake[c] == 0) {
+      EXPECT_GE(discharge[c], inflow[c] * (1.0F - 1e-5F));
+    }
+  }
+  EXPECT_GT(entering, 100.0);
+  EXPECT_NEAR(budget.at("river_inflow_m3_s"), entering, 1e-4 * entering);
+  EXPECT_LT(std::abs(budget.at("water_closing_error")), 1e-6);
+}
+
+// Interpolation dams a valley that is one cell wide: rivers must not leave by the edge that they
+// came in over.
+TEST(Island, RiversCarryWhatTheyCarryOnThePlanet) {
+  double carried = 0.0;
+  int rivers = 0, poor = 0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const State whole = make_planet(seed);
+    const auto receiver = whole.read(field::flow_receiver);
+    const auto planets = whole.read(field::discharge);
+    for (const Index c : great_rivers(4, whole)) {
+      SCOPED_TRACE("seed " + std::to_string(seed) + ", river at " +
+                   text(place_of(c, whole.grid())));
+      const State island = make(around(place_of(c, whole.grid())), whole, seed).island;
+      const PlanetCells cells(whole.grid(), island.grid());
+      const auto discharge = island.read(field::discharge);
+      float most = 0.0F;
+      for (Index k = 0; k < island.grid().size(); ++k) {
+        if (cells.cell_of()[k] == c) most = std::max(most, discharge[k]);
+      }
+      // Where rivers meet may move by a cell or two, and a brook may join the river beside: of many
+      // rivers one may lose a branch.
+      EXPECT_GT(most, 0.8 * planets[c]);
+      poor += most < 0.9 * planets[c] ? 1 : 0;
+      EXPECT_LT(most, 1.1 * planets[receiver[receiver[c]]]);
+      carried += std::min(1.0, static_cast<double>(most) / planets[c]);
+      ++rivers;
+    }
+  }
+  EXPECT_GT(carried, 0.97 * rivers);
+  EXPECT_LE(poor, rivers / 16);
+}
+
+/// Whether a planet's cell has a river of its own, whose centre is well inside an island.
+bool has_river(const State& whole, const Grid& fine, Index cell) {
+  const Grid& grid = whole.grid();
+  const auto [x, y] =
+      EqualAreaProjection(*fine.centre(), fine.figure()).project(place_of(cell, grid));
+  const bool inside = std::abs(x) < 0.5 * fine.nx() * fine.spacing_east_m(0) &&
+                      std::abs(y) < 0.5 * fine.ny() * fine.step_north_m();
+  return inside && whole.read(field::elevation)[cell] >= 0.0F &&
+         whole.read(field::lake_id)[cell] == 0 &&
+         whole.read(field::drainage_area)[cell] > 10.0 * grid.area_m2(grid.row(cell));
+}
+
+// They must not meet beyond the edge, leave over a lower place, or end in lakes of the detail.
+TEST(Island, RiversKeepTheirWaterAllTheWay) {
+  double all_there = 0.0, all_kept = 0.0;
+  int rivers = 0, poor = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    const State whole = make_planet(seed);
+    const auto planets = whole.read(field::discharge);
+    const auto receiver = whole.read(field::flow_receiver);
+    for (const Index c : great_rivers(4, whole)) {
+      SCOPED_TRACE("seed " + std::to_string(seed) + ", window at " +
+                   text(place_of(c, whole.grid())));
+      const State island = make(around(place_of(c, whole.grid())), whole, seed).island;
+      const PlanetCells cells(whole.grid(), island.grid());
+      const auto discharge = island.read(field::discharge);
+      const auto z = island.read(field::elevation);
+      const auto lake = island.read(field::lake_id);
+      std::map<Index, double> most, in_rivers;  // a lake shows its outflow everywhere
+      std::set<Index> shore;
+      for (Index k = 0; k < island.grid().size(); ++k) {
+        const Index cell = cells.cell_of()[k];
+        if (z[k] < 0.0F) shore.insert(cell);
+        const double here = discharge[k];
+        most[cell] = std::max(most[cell], here);
+        if (lake[k] == 0) in_rivers[cell] = std::max(in_rivers[cell], here);
+      }
+      double there = 0.0, kept = 0.0, too_much = 0.0;
+      for (const auto& [cell, here] : most) {
+        if (!has_river(whole, island.grid(), cell) || shore.contains(cell)) continue;
+        // A river may cross a corner of the next cell.
+        double beside = planets[receiver[receiver[cell]]];
+        for (int k = 0; k < kDirections; ++k) {
+          const Index next = whole.grid().neighbour(cell, k);
+          if (next != kNoCell) beside = std::max<double>(beside, planets[next]);
+        }
+        const double below = std::max<double>(beside, planets[cell]);
+        there += planets[cell];
+        kept += std::min<double>(here, planets[cell]);
+        too_much += std::max(0.0, in_rivers[cell] - 1.1 * below);
+      }
+      EXPECT_GT(kept, 0.8 * there);
+      ++rivers;
+      poor += kept < 0.9 * there ? 1 : 0;
+      EXPECT_LT(too_much, 0.05 * there);
+      all_there += there;
+      all_kept += kept;
+    }
+  }
+  EXPECT_GT(all_kept, 0.95 * all_there);
+  EXPECT_LE(poor, rivers / 8);
+}
+
+// Detail must not dip plains to the level of the sea, nor let rivers leave flats over its edge.
+TEST(Island, PlainsHaveNoLakesThatThePlanetLacks) {
+  double land = 0.0, lakes = 0.0;
+  for (const std::uint64_t seed : {3, 6}) {
+    const State whole = make_planet(seed);
+    const auto planets_m = whole.read(field::elevation);
+    const auto planets_lake = whole.read(field::lake_id);
+    for (const Index c : great_rivers(4, whole)) {
+      const State island = make(around(place_of(c, whole.grid())), whole, seed).island;
+      const PlanetCells cells(whole.grid(), island.grid());
+      const auto lake = island.read(field::lake_id);
+      for (Index k = 0; k < island.grid().size(); ++k) {
+        const Index cell = cells.cell_of()[k];
+        if (planets_m[cell] < 20.0F || planets_m[cell] > 200.0F || planets_lake[cell] > 0) continue;
+        land += 1.0;
+        lakes += lake[k] > 0 ? 1.0 : 0.0;
+      }
+    }
+  }
+  EXPECT_LT(lakes, 0.01 * land);
+}
+
+/// Of the river cells near the edge of a plane and of those farther in, which share lies in
+/// straight runs of eight steps or more.
+struct Straight {
+  double near_edge = 0.0, inside = 0.0;
+  int longest = 0;  ///< steps
+};
+Straight straight_rivers(const std::vector<State>& islands) {
+  constexpr int kLong = 8, kEdge_cells = 25;
+  constexpr double kRiver_m2 = 20e6;
+  Straight found;
+  double straight[2] = {}, all[2] = {};
+  for (const State& island : islands) {
+    const Grid& fine = island.grid();
+    const auto z = island.read(field::elevation);
+    const auto lake = island.read(field::lake_id);
+    const auto area = island.read(field::drainage_area);
+    const auto receiver = island.read(field::flow_receiver);
+    const auto direction = island.read(field::flow_direction);
+    const auto is_river = [&](Index c) {
+      return z[c] >= 0.0F && lake[c] == 0 && area[c] > kRiver_m2;
+    };
+    const auto goes_on = [&](Index c) {
+      return receiver[c] != c && is_river(receiver[c]) && direction[receiver[c]] == direction[c];
+    };
+    std::vector<std::uint8_t> begins(fine.size(), 1);
+    for (Index c = 0; c < fine.size(); ++c) {
+      if (is_river(c) && goes_on(c)) begins[receiver[c]] = 0;
+    }
+    std::vector<Index> run;
+    for (Index c = 0; c < fine.size(); ++c) {
+      if (!is_river(c) || begins[c] == 0) continue;
+      run.assign(1, c);
+      while (goes_on(run.back())) run.push_back(receiver[run.back()]);
+      const bool is_long = std::ssize(run) >= kLong;
+      found.longest = std::max(found.longest, static_cast<int>(run.size()));
+      for (const Index at : run) {
+        const int i = fine.column(at), j = fine.row(at);
+        const bool inside = std::min({i, fine.nx() - 1 - i, j, fine.ny() - 1 - j}) >= kEdge_cells;
+        all[inside] += 1.0;
+        straight[inside] += is_long ? 1.0 : 0.0;
+      }
+    }
+  }
+  found.near_edge = straight[0] / std::max(1.0, all[0]);
+  found.inside = straight[1] / std::max(1.0, all[1]);
+  return found;
+}
+
+// A planet's cells are as large as these windows: what lies between them is the island's own.
+TEST(Island, RiversBetweenThePlanetsCellsDoNotFollowTheGrid) {
+  std::vector<State> islands;
+  for (const Index river : great_rivers(3)) {
+    for (const Centre place : {place_of(river), mouth_of(river)}) {
+      IslandParameters p;
+      p.nx = 512;
+      p.ny = 256;
+      p.center = text(place);
+      islands.push_back(make(p).island);
+    }
+  }
+  const Straight found = straight_rivers(islands);
+  // Valleys of mountains run straight for three kilometres now and then: 0.06 of their length.
+  EXPECT_LT(found.inside, 0.08);
+  EXPECT_LT(found.near_edge, 0.12);
+  EXPECT_LT(found.longest, 32);
+}
+
+}  // namespace
+}  // namespace geo
