@@ -142,7 +142,8 @@ TEST(Ridges, FloorAgesFromTheRidgeToThePlatesEdge) {
     const double off_km = std::abs(longitude_deg(at) -
                                    ridge[static_cast<std::size_t>(std::lround(latitude + 30.0))]) /
                           kDegrees * kRadius_km * std::cos(latitude / kDegrees);
-    // Near the ridge of a segment, the floor is young; ridges lie on meridians, fabric follows them.
+    // Near the ridge of a segment, the floor is young; ridges lie on meridians, fabric follows
+    // them.
     if (off_km < 150.0) worst = std::max<double>(worst, crust.age_myr[i]);
     ++seen;
     EXPECT_GT(std::abs(crust.ridge[i][2]), 0.85F) << latitude;

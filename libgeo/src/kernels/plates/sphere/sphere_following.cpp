@@ -127,6 +127,7 @@ void vote(SphereTectonics& follower, const SphereTectonics& leader,
 
 void follow(SphereTectonics& follower, const SphereTectonics& leader) {
   take_plates(follower, leader);
+  derive_motion(follower);
   const LeadersPlates leaders = leaders_plates(follower, leader);
   vote(follower, leader, leaders.plate);
   SphereCrust& crust = follower.state.crust;

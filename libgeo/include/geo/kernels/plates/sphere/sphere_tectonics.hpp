@@ -76,7 +76,7 @@ struct SphereTectonics {
   /// Derived from where the last step has moved them.
   SphereMargins margins;
 
-  // Books.
+  // What has happened.
   SphereBudget budget;              ///< of the last step, or of the one that has begun
   bool has_begun = false;           ///< whether the budget of the next step is open
   std::vector<SphereEvent> events;  ///< all that have happened so far
