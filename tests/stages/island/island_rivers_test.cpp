@@ -52,13 +52,18 @@ TEST(Island, RiversCarryWhatTheyCarryOnThePlanet) {
       const State island = make(around(place_of(c, whole.grid())), whole, seed).island;
       const PlanetCells cells(whole.grid(), island.grid());
       const auto discharge = island.read(field::discharge);
-      float most = 0.0F;
-      for (Index k = 0; k < island.grid().size(); ++k) {
-        if (cells.cell_of()[k] == c) most = std::max(most, discharge[k]);
-      }
+      const auto carried_in = [&](Index cell) {
+        float most = 0.0F;
+        for (Index k = 0; k < island.grid().size(); ++k) {
+          if (cells.cell_of()[k] == cell) most = std::max(most, discharge[k]);
+        }
+        return most;
+      };
+      const float most = carried_in(c);
       // Where rivers meet may move by a cell or two, and a brook may join the river beside: of many
-      // rivers one may lose a branch.
-      EXPECT_GT(most, 0.8 * planets[c]);
+      // rivers one may lose a branch, which meets it in the next cell then.
+      EXPECT_TRUE(most > 0.8 * planets[c] || carried_in(receiver[c]) > 0.95 * planets[receiver[c]])
+          << most << " of " << planets[c];
       poor += most < 0.9 * planets[c] ? 1 : 0;
       EXPECT_LT(most, 1.1 * planets[receiver[receiver[c]]]);
       carried += std::min(1.0, static_cast<double>(most) / planets[c]);

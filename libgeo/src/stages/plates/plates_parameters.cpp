@@ -228,6 +228,10 @@ std::vector<Parameter> sphere_collision_rows(PlatesParameters& p) {
   return {
       real("plates.sphere.penetration_km", p.sphere.penetration_km, "km", 0.0, 5000.0,
            "how far one continent is thrust below another before they collide", "cortial2019"),
+      real("plates.sphere.suturing_mm_yr", p.sphere.suturing_mm_yr, "mm yr-1", 0.0, 1000.0,
+           "speed below which continents of which one is thrust 300 km below the other become one "
+           "plate; 0: they do so only after plates.sphere.penetration_km",
+           "copley2010"),
       real("plates.sphere.suture_drag", p.sphere.suture_drag, "1", 0.0, 1e6,
            "drag between continents of which one is thrust below the other, over that of "
            "the mantle below a plate; 0: they do not slow each other",
@@ -264,6 +268,10 @@ std::vector<Parameter> sphere_surface_rows(PlatesParameters& p) {
           "continents erode according to their height, and basins below the sea fill up; the same "
           "on land alone; or rivers erode them between the steps and deposit what they carry",
           "cortial2019"),
+      choice("plates.sphere.sea_level", p.sea_level, {"fixed", "ocean"},
+             "base level of that erosion: elevation 0, or, in each step, the level below which "
+             "planet.ocean_fraction of the surface lies",
+             "design"),
       real("plates.sphere.river_erodibility_yr", p.sphere.rivers.erodibility_yr, "yr-1", 0.0, 1.0,
            "erodibility K for the square root of the drained area, with rivers", "whipple1999"),
       real("plates.sphere.settling_km", p.sphere.rivers.settling_km, "km", 1.0, 5000.0,

@@ -57,6 +57,7 @@ struct PlatesParameters {
   std::string accretion = "wedge";
   std::string rifting = "any";
   std::string erosion = "height";
+  std::string sea_level = "fixed";
   std::string ocean_floor = "damping";
   SphereSettings sphere;
   SphereStart start;

@@ -12,6 +12,9 @@ namespace {
 /// A plate that would keep less than this share of the mean area goes along with its terrane.
 constexpr double kRemnant = 0.05;
 
+/// Continents that have all but stopped grow together once one is thrust this far below the other.
+constexpr double kSuture_km = 300.0;
+
 std::vector<std::int32_t> terrane_of(const SphereTectonics& model, std::int32_t sample) {
   const SphereCrust& crust = model.state.crust;
   const std::int16_t plate = crust.plate[sample];
@@ -26,6 +29,15 @@ const PlatePair& pair_of(const SphereTectonics& model, std::int32_t sample) {
   const auto& plate = model.state.crust.plate;
   return model.state.pair(model.state.root(plate[sample]),
                           model.state.root(plate[model.margins.partner[sample]]));
+}
+
+/// Whether a sample and what it touches hardly move beside each other any more.
+bool is_still(const SphereTectonics& model, std::int32_t sample) {
+  const auto& plate = model.state.crust.plate;
+  const int lower = plate[sample], upper = plate[model.margins.partner[sample]];
+  const Vector3 at = times(model.frame[lower], model.mesh->samples().position(sample));
+  const Vector3 relative = add(model.rotation[lower], model.rotation[upper], -1.0);
+  return model.settings.radius_km * length(cross(relative, at)) < model.settings.suturing_mm_yr;
 }
 
 /// How far a sample has been thrust below another plate: back along the way by which it has come
@@ -148,7 +160,8 @@ void collide_continents(SphereTectonics& model) {
         continue;
       const std::int32_t trench = model.margins.nearest_trench[above];
       if (trench < 0 || model.margins.trenches[trench].lower != crust.plate[i]) continue;
-      const double still_km = needed_km - pair_of(model, i).under_km;
+      const double still_km = (is_still(model, i) ? std::min(needed_km, kSuture_km) : needed_km) -
+                              pair_of(model, i).under_km;
       if (model.distance_km(above, model.margins.trenches[trench].sample) < still_km) continue;
       if (penetration_km(model, i) < still_km) continue;
       found[chunk].push_back(i);

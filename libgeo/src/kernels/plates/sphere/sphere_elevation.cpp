@@ -110,6 +110,23 @@ std::vector<float> summed_uplift_km(const SphereTectonics& model, const TrenchUp
   return uplift_km;
 }
 
+/// The elevation above which a share of the planet lies, to a metre. Gaps that have opened are sea.
+double level_above_which_lies(const SphereTectonics& model, double share) {
+  constexpr int kLowest_m = -12000, kHighest_m = 12000, kBins = kHighest_m - kLowest_m;
+  const SphereCrust& crust = model.state.crust;
+  std::vector<std::int32_t> count(kBins, 0);
+  for (std::int32_t i = 0; i < crust.size(); ++i) {
+    if (crust.plate[i] < 0 || model.margins.hidden[i] != 0) continue;
+    const int bin = static_cast<int>(std::floor(crust.elevation_m[i])) - kLowest_m;
+    ++count[std::clamp(bin, 0, kBins - 1)];
+  }
+  const double wanted = share * crust.size();
+  double above = 0.0;
+  int bin = kBins;
+  while (bin > 0 && above < wanted) above += count[--bin];
+  return bin + kLowest_m;
+}
+
 /// What a step does to crust everywhere: uplift of overriding plates, erosion, damping, accretion,
 /// ageing.
 class CrustStep {
@@ -123,6 +140,8 @@ class CrustStep {
         crust_(model.state.crust),
         nearest_trench_(model.margins.nearest_trench),
         uplift_(model),
+        sea_km_(s_.ocean_share > 0.0 ? 1e-3 * level_above_which_lies(model, 1.0 - s_.ocean_share)
+                                     : 0.0),
         step_myr_(static_cast<float>(law_.step_myr)),
         decayed_(share_gone(s_.swell_decay_myr)),
         worn_(share_gone(s_.island_wear_myr)) {
@@ -146,6 +165,8 @@ class CrustStep {
     bool is_wedge = false, is_arc = false;
   };
 
+  /// Above the sea, without the load of water.
+  [[nodiscard]] double dry_km(double z_km) const { return dry_height(z_km - sea_km_); }
   [[nodiscard]] double share_gone(double time_myr) const {
     return time_myr > 0.0 ? -std::expm1(-law_.step_myr / time_myr) : 0.0;
   }
@@ -160,7 +181,7 @@ class CrustStep {
       turn_fold(i, work.speed);
       const bool collided =
           crust_.orogeny[i] == kHimalayan && crust_.orogeny_age_myr[i] < kYoung_myr;
-      if (crust_.continental[i] != 0 && z_km + raised_km > 0.0 && !collided) {
+      if (crust_.continental[i] != 0 && z_km + raised_km > sea_km_ && !collided) {
         crust_.orogeny[i] = kAndean;
         crust_.orogeny_age_myr[i] = -step_myr_;  // 0 when this step has passed
       }
@@ -175,10 +196,11 @@ class CrustStep {
   }
   /// Height after uplift and erosion, which thicken and thin the crust.
   double continent_after(std::int32_t i, double z_km, double raised_km, Sums& sum) {
-    const bool wears = !s_.by_rivers && (!s_.wears_land_alone || z_km > 0.0);
-    const double worn_km = wears ? erosion_km(z_km, law_) : 0.0, top_km = z_km + raised_km;
-    const double thicker_km = s_.rebound * (dry_height(top_km) - dry_height(z_km));
-    const double thinner_km = s_.rebound * (dry_height(top_km) - dry_height(top_km + worn_km));
+    const bool wears = !s_.by_rivers && (!s_.wears_land_alone || z_km > sea_km_);
+    const double worn_km = wears ? erosion_km(z_km - sea_km_, law_) : 0.0;
+    const double top_km = z_km + raised_km;
+    const double thicker_km = s_.rebound * (dry_km(top_km) - dry_km(z_km));
+    const double thinner_km = s_.rebound * (dry_km(top_km) - dry_km(top_km + worn_km));
     sum[kRaised] += 1e-3 * put(crust_.thickness_m[i], 1e3 * thicker_km);
     sum[kEroded] -= 1e-3 * put(crust_.thickness_m[i], -1e3 * thinner_km);
     crust_.orogeny_age_myr[i] += step_myr_;
@@ -188,8 +210,8 @@ class CrustStep {
   /// becomes continental.
   double floor_after(std::int32_t i, double z_km, const Overriding& above, Sums& sum) {
     double sunk_km = sunk_at(i, z_km, above.is_arc);
-    if (z_km > 0.0) {
-      const double worn_km = z_km * worn_;
+    if (z_km > sea_km_) {
+      const double worn_km = (z_km - sea_km_) * worn_;
       sunk_km -= worn_km;
       crust_.thickness_m[i] -= static_cast<float>(1e3 * worn_km);
     }
@@ -200,7 +222,7 @@ class CrustStep {
       z_km = piled_km;
     }
     crust_.age_myr[i] += step_myr_;
-    if (z_km > 0.0 && above.raised_km > 0.0) emerge(i, sum);
+    if (z_km > sea_km_ && above.raised_km > 0.0) emerge(i, sum);
     return z_km;
   }
   /// How far floor sinks in the step, less than 0. By age, what volcanoes have laid on it subsides
@@ -227,6 +249,7 @@ class CrustStep {
   const std::vector<std::int32_t>& nearest_trench_;
   TrenchUplift uplift_;
   std::vector<float> summed_km_;  // of each sample, where uplifts add up
+  double sea_km_;
   float step_myr_;
   double decayed_, worn_;  // shares of a swell and of an island that go in a step
 };

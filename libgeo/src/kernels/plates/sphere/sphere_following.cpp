@@ -79,16 +79,31 @@ void repeat(SphereTectonics& follower, const std::vector<PlateChange>& changes, 
   }
 }
 
-/// Each connected piece of a type of crust comes to the plate that holds most of it.
-void vote(SphereTectonics& follower, const SphereTectonics& leader) {
+/// The plate that holds the place of each sample of the follower on the leader's samples, and
+/// whether it does so well within its borders.
+struct LeadersPlates {
+  std::vector<std::int16_t> plate;
+  std::vector<std::uint8_t> is_inside;
+};
+LeadersPlates leaders_plates(const SphereTectonics& follower, const SphereTectonics& leader) {
   const std::int32_t n = follower.mesh->size();
-  SphereCrust& crust = follower.state.crust;
-  std::vector<std::int16_t> wanted(n);
+  const auto& plate = leader.state.crust.plate;
+  LeadersPlates found{std::vector<std::int16_t>(n), std::vector<std::uint8_t>(n)};
 #pragma omp parallel for schedule(static)
   for (std::int32_t i = 0; i < n; ++i) {
     const std::int32_t there = leader.mesh->samples().nearest(follower.mesh->samples().position(i));
-    wanted[i] = leader.state.crust.plate[there];
+    found.plate[i] = plate[there];
+    found.is_inside[i] = std::ranges::all_of(
+        leader.mesh->neighbours(there), [&](std::int32_t j) { return plate[j] == plate[there]; });
   }
+  return found;
+}
+
+/// Each connected piece of a type of crust comes to the plate that holds most of it.
+void vote(SphereTectonics& follower, const SphereTectonics& leader,
+          const std::vector<std::int16_t>& wanted) {
+  const std::int32_t n = follower.mesh->size();
+  SphereCrust& crust = follower.state.crust;
   const std::vector<std::int16_t> before = crust.plate;
   std::vector<std::uint8_t> seen(n, 0);
   std::vector<std::int32_t> votes(leader.state.plates.size());
@@ -112,7 +127,13 @@ void vote(SphereTectonics& follower, const SphereTectonics& leader) {
 
 void follow(SphereTectonics& follower, const SphereTectonics& leader) {
   take_plates(follower, leader);
-  vote(follower, leader);
+  derive_motion(follower);
+  const LeadersPlates leaders = leaders_plates(follower, leader);
+  vote(follower, leader, leaders.plate);
+  SphereCrust& crust = follower.state.crust;
+  for (std::int32_t i = 0; i < crust.size(); ++i) {
+    if (crust.continental[i] == 0 && leaders.is_inside[i] != 0) crust.plate[i] = leaders.plate[i];
+  }
   join_small_pieces(follower);
   derive_followed_plates(follower);
 }

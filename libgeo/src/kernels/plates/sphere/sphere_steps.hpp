@@ -141,7 +141,8 @@ bool part_plate(SphereTectonics& model, int plate, std::span<const std::int8_t> 
 /// resample(), with something else done to plates that have come apart: `settle` leaves them
 /// derived.
 void resample(SphereTectonics& model, const std::function<void(SphereTectonics&)>& settle);
-/// Detached pieces of plates that are too small to be plates join the neighbour they border most.
+/// Detached pieces of plates that are too small to be plates join the neighbour beside which they
+/// move slowest.
 void join_small_pieces(SphereTectonics& model);
 /// Ends the step: what follows happens at its end, and the next one may begin.
 void end_step(SphereTectonics& model);
@@ -157,7 +158,7 @@ void stretch_margins(SphereTectonics& model, std::span<const std::int32_t> gaps,
                      std::span<const std::int32_t> nearest, SphereCrust& now,
                      std::span<const std::int16_t> owner);
 
-// Books.
+// The budget.
 
 /// Volume of the continents, number of plates and what their areas miss.
 void measure_volume(SphereTectonics& model);

@@ -24,6 +24,7 @@ struct SphereSettings {
   bool by_forces = false;      ///< motion balances forces, in place of that
   PlateForces force;
   double penetration_km = 300.0;      ///< of continents, before they collide
+  double suturing_mm_yr = 0.0;        ///< slower continents collide after kSuture_km
   double suture_drag = 0.0;           ///< between them, over that below a plate
   double surge_km = 4.5;              ///< most that one collision lifts
   double thickest_km = 75.0;          ///< of continents: thicker roots spread; 0: no limit
@@ -64,6 +65,9 @@ struct SphereSettings {
   bool fill_abyss = false;     ///< sediment piles on all floor below accretion_top_km
   bool rift_largest = false;   ///< only the largest plate rifts, into two, however much is land
   bool by_rivers = false;      ///< rivers carve and deposit, in place of erosion by height
+  /// Share of the planet below the sea, whose level is where that leaves it in each step: the base
+  /// level of erosion by height, to which arcs emerge; 0: the sea stays at elevation 0.
+  double ocean_share = 0.0;
   bool wears_land_alone = false;  ///< erosion by height leaves what lies below the sea as it is
   RiverLaw rivers;                ///< their step and rebound are the model's
   bool no_net_rotation = true;

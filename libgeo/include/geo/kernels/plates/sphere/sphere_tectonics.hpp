@@ -76,7 +76,7 @@ struct SphereTectonics {
   /// Derived from where the last step has moved them.
   SphereMargins margins;
 
-  // Books.
+  // What has happened.
   SphereBudget budget;              ///< of the last step, or of the one that has begun
   bool has_begun = false;           ///< whether the budget of the next step is open
   std::vector<SphereEvent> events;  ///< all that have happened so far
@@ -110,7 +110,8 @@ void finish(SphereTectonics& model);
 ///
 /// Takes the leader's plates over. The crust of both has just been resampled, or made: each
 /// connected piece of the follower's continents and floors comes to the plate that holds most of
-/// it on the leader's samples.
+/// it on the leader's samples, and floor to that which holds it well within its borders. So borders
+/// between floors differ by no more than a spacing of the leader's samples.
 void follow(SphereTectonics& follower, const SphereTectonics& leader);
 /// begin_step() of both. What is done to plates after it is done to the leader alone, what is done
 /// to crust and plumes to both.

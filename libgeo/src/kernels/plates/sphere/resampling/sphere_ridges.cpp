@@ -1,9 +1,11 @@
-#include "sphere_ridges.hpp"
+#include "geo/kernels/plates/sphere/resampling/sphere_ridges.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include "geo/core/array_sizes.hpp"
 
 namespace geo {
 namespace {
@@ -239,6 +241,9 @@ class Ridges {
 }  // namespace
 
 std::vector<RidgePlace> place_ridges(const SphereTectonics& model, const OpenGaps& gaps) {
+  check_sizes("place_ridges", model.state.crust.plate.size(),
+              {{"owner", gaps.owner.size()}, {"continental", gaps.continental.size()}});
+  check_sizes("place_ridges", gaps.places.size(), {{"sides", gaps.sides.size()}});
   return Ridges(model, gaps).place();
 }
 

@@ -4,7 +4,7 @@
 
 #include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/plates/sphere/sphere_boundaries.hpp"
-#include "sphere_steps.hpp"
+#include "kernels/plates/sphere/sphere_steps.hpp"
 
 namespace geo {
 namespace {

@@ -32,16 +32,19 @@ struct RidgePlace {
 };
 
 /// Ridges as plates make them: segments at right angles to the motion, offset along transforms that
-/// follow it (Oldenburg & Brune 1972; Gerya 2010).
+/// follow it [oldenburg1972].
 ///
 /// About the pole of what two plates have moved since the crust was last resampled, a segment is
 /// part of a meridian, a transform part of a parallel. At each distance v from the pole the middle
 /// of the gap has a longitude u(v). The ridge is the piecewise constant longitude that minimises
 /// the sum over segments of L^3/6 + int (u - mean)^2 sin^2 dv (lengths on the sphere; exact, by
-/// dynamic programming: Jackson et al. 2005), L = settings.ridge_segment_km. A straight rift at 45
+/// dynamic programming [jackson2005]), L = settings.ridge_segment_km. A straight rift at 45
 /// degrees to the segments breaks into segments of length L, a less oblique one, tan a < 1,
 /// into longer ones, L tan^(-2/3) a. Offsets that are there stay. Nearer to the pole than L, beside
 /// continents that have just broken, and with L = 0, the ridge runs half way between the plates.
+///
+/// Cost: linear in places, and quadratic in the rows of samples along a ridge. Throws Bug when
+/// arrays do not fit.
 std::vector<RidgePlace> place_ridges(const SphereTectonics& model, const OpenGaps& gaps);
 
 }  // namespace geo

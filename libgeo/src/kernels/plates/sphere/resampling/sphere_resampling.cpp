@@ -2,13 +2,14 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <span>
 
 #include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/crust/ocean_depth.hpp"
-#include "sample_sums.hpp"
-#include "sphere_flood.hpp"
-#include "sphere_steps.hpp"
+#include "kernels/plates/sphere/sample_sums.hpp"
+#include "kernels/plates/sphere/sphere_flood.hpp"
+#include "kernels/plates/sphere/sphere_steps.hpp"
 
 namespace geo {
 namespace {
@@ -218,18 +219,34 @@ void begin_turning_anew(SphereState& state) {
   state.past_myr.clear();
 }
 
-/// The plate that a piece of another one borders most, or -1.
-int bordered_most(const SphereTectonics& model, std::span<const std::int32_t> piece) {
+/// The plate with which a piece of another one comes to rest: of those that it borders along a
+/// tenth of its edge, the one beside which it moves slowest; -1: it borders none.
+int slowest_neighbour(const SphereTectonics& model, std::span<const std::int32_t> piece) {
+  constexpr double kBordered = 0.1;
   const auto& plate = model.state.crust.plate;
   const std::int16_t own = plate[piece.front()];
   std::vector<std::int32_t> border(model.state.plates.size(), 0);
+  std::int32_t edge = 0;
+  Vector3 middle{};
   for (const std::int32_t i : piece) {
+    middle = add(middle, model.mesh->samples().position(i));
     for (const std::int32_t j : model.mesh->neighbours(i)) {
-      if (plate[j] != own) ++border[plate[j]];
+      if (plate[j] == own) continue;
+      ++border[plate[j]];
+      ++edge;
     }
   }
-  const auto best = std::ranges::max_element(border);
-  return *best == 0 ? -1 : static_cast<int>(best - border.begin());
+  int slowest = -1;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t p = 0; p < border.size(); ++p) {
+    if (border[p] == 0 || border[p] < kBordered * edge) continue;
+    const double speed =
+        length(cross(add(model.rotation[p], model.rotation[own], -1.0), normalised(middle)));
+    if (speed >= least) continue;
+    least = speed;
+    slowest = static_cast<int>(p);
+  }
+  return slowest;
 }
 
 /// Connected pieces of plates, and of each plate the number of the largest, or -1.
@@ -253,7 +270,7 @@ Pieces pieces_of_plates(const SphereTectonics& model) {
   return pieces;
 }
 
-/// Detached pieces of plates: small ones join the neighbour they border most, large ones are plates
+/// Detached pieces of plates: small ones join a neighbour, large ones are plates
 /// of their own that go on as they did.
 void tidy_pieces(SphereTectonics& model) {
   auto& plate = model.state.crust.plate;
@@ -274,9 +291,10 @@ void tidy_pieces(SphereTectonics& model) {
                                               Descent::piece, parts_of[own]++)};
       const int fresh = model.state.add_plate(copy);
       for (const std::int32_t i : piece) plate[i] = static_cast<std::int16_t>(fresh);
+      derive_motion(model);
       continue;
     }
-    const int neighbour = bordered_most(model, piece);
+    const int neighbour = slowest_neighbour(model, piece);
     if (neighbour < 0) continue;
     if (keeps) {
       model.state.end_life(model.state.plates[own].id, model.state.plates[neighbour].id);
@@ -294,7 +312,7 @@ void join_small_pieces(SphereTectonics& model) {
     const auto own = model.state.crust.plate[pieces[k].front()];
     if (largest[own] == static_cast<std::int32_t>(k)) continue;
     if (static_cast<double>(pieces[k].size()) > small) continue;
-    const int neighbour = bordered_most(model, pieces[k]);
+    const int neighbour = slowest_neighbour(model, pieces[k]);
     if (neighbour < 0) continue;
     for (const std::int32_t i : pieces[k]) {
       model.state.crust.plate[i] = static_cast<std::int16_t>(neighbour);

@@ -4,8 +4,8 @@
 
 #include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/crust/ocean_depth.hpp"
-#include "sphere_ridges.hpp"
-#include "sphere_steps.hpp"
+#include "geo/kernels/plates/sphere/resampling/sphere_ridges.hpp"
+#include "kernels/plates/sphere/sphere_steps.hpp"
 
 namespace geo {
 namespace {
