@@ -61,6 +61,19 @@ std::vector<float> SeedPlanet::find_straits(const ErosionParameters& p,
   return after;
 }
 
+FrozenDrainage::MovedSea SeedPlanet::find_moved_sea(const ErosionParameters& p,
+                                                    const std::vector<float>& before,
+                                                    double share) const {
+  if (p.steps == 0) return {};
+  FrozenDrainage::MovedSea sea{moved_sea_level_m(p, grid(), before, share), {}};
+  std::vector<float> after = before;
+  keep_sea_share(p, grid(), after, share);
+  for (Index c = 0; c < grid().size(); ++c) {
+    if (after[c] != before[c] - sea.level_m) sea.flats.emplace_back(c, after[c]);
+  }
+  return sea;
+}
+
 void SeedPlanet::hold_frame(const IsostasyParameters& p, const CrustInputs& in) {
   if (held_.frame && held_.divergent_length_km == p.divergent_length_km &&
       held_.transform_length_km == p.transform_length_km) {

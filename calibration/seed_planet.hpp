@@ -44,8 +44,12 @@ struct FrozenDrainage {
   /// moved, and their heights, m.
   using Straits = std::vector<std::pair<Index, float>>;
   Straits straits, late_straits, last_straits;
-  float late_level_m = 0.0F, last_level_m = 0.0F;  ///< of the sea after them
-  std::vector<Drainage> drainage;                  ///< one for each routing of the erosion stage
+  /// The level of the sea after them, and flats at that level that become sea.
+  struct MovedSea {
+    float level_m = 0.0F;
+    Straits flats;
+  } late_sea, last_sea;
+  std::vector<Drainage> drainage;  ///< one for each routing of the erosion stage
   /// Sea level as a mean over cells next to it (by share) or over the sea (by volume), and how it
   /// follows the share or volume that is asked for.
   struct Sea {
@@ -122,6 +126,9 @@ class SeedPlanet {
   /// Cells that straits drown in a surface, to be held, and the surface with them.
   std::vector<float> find_straits(const ErosionParameters& p, const std::vector<float>& before,
                                   FrozenDrainage::Straits& straits) const;
+  /// Where the sea moves to cover its share of a surface.
+  FrozenDrainage::MovedSea find_moved_sea(const ErosionParameters& p,
+                                          const std::vector<float>& before, double share) const;
   template <class V>
   [[nodiscard]] std::vector<V> uplift_of(const Model& model, const ActiveVariables<V>& active,
                                          const Ground<V>& ground) const;
@@ -324,17 +331,16 @@ PlanetSurface<V> SeedPlanet::evaluate(const Model& model, const ActiveVariables<
   inject_noise(p, active, grid, seed_, z);
   warp(p, active, grid, seed_, z);
   landscape.relax();
-  const auto keep_sea_share = [&](float& level_m) {
-    if (routes) {
-      level_m = p.steps > 0 ? moved_sea_level_m(p, grid, as_floats<V>(z), sea_share) : 0.0F;
-    }
-    for (V& height_m : z) height_m -= V(level_m);
+  const auto move_sea = [&](FrozenDrainage::MovedSea& sea) {
+    if (routes) sea = find_moved_sea(p, as_floats<V>(z), sea_share);
+    for (V& height_m : z) height_m -= V(sea.level_m);
+    for (const auto& [cell, height_m] : sea.flats) z[cell] = V(height_m);
   };
-  keep_sea_share(held_.late_level_m);
+  move_sea(held_.late_sea);
   // Where the sea has sunk, straits may have fallen dry.
   if (routes) find_straits(p, as_floats<V>(z), held_.last_straits);
   for (const auto& [cell, height_m] : held_.last_straits) z[cell] = V(height_m);
-  if (!held_.last_straits.empty()) keep_sea_share(held_.last_level_m);
+  if (!held_.last_straits.empty()) move_sea(held_.last_sea);
   sum_up<V>(p, active, landscape, ground.surface);
   return std::move(ground.surface);
 }
