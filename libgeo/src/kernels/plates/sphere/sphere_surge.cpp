@@ -40,8 +40,14 @@ class Surge {
     for (const std::int32_t i : what_.terrane) {
       const std::int32_t above = m_.margins.partner[i];
       if (m_.margins.hidden[i] == 0 || above < 0 || crust_.plate[above] != what_.upper) continue;
-      swallowed_km3_ += m_.sample_km2() * 1e-3 * crust_.thickness_m[i];
+      const double volume_km3 = m_.sample_km2() * 1e-3 * crust_.thickness_m[i];
       crust_.plate[i] = -1;
+      // Where plates are ranked, continents subduct below floor as well.
+      if (crust_.continental[above] == 0) {
+        m_.budget.lost_km3 += volume_km3;
+        continue;
+      }
+      swallowed_km3_ += volume_km3;
       if (source_[above] >= 0) continue;
       source_[above] = above;
       reached_.push_back(above);
