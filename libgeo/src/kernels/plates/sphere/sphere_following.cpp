@@ -174,4 +174,16 @@ void advance_both(SphereTectonics& follower, SphereTectonics& leader) {
   follower.budget.subduction_initiations = leader.budget.subduction_initiations;
 }
 
+void finish_both(SphereTectonics& follower, SphereTectonics& leader) {
+  const bool resamples = leader.state.resampled_myr < leader.state.time_myr;
+  finish(leader);
+  follower.budget = {};
+  follower.budget.time_myr = follower.state.time_myr;
+  if (resamples) {
+    resample(follower, [&](SphereTectonics& resampled) { follow(resampled, leader); });
+  } else {
+    measure_volume(follower);
+  }
+}
+
 }  // namespace geo

@@ -267,6 +267,8 @@ class Drift {
       progress(plates().state.time_myr);
       advance();
     }
+    // So that the first plates are those that the first frame shows.
+    leader_ ? finish_both(crust(), plates()) : finish(crust());
     begin_history(plates());
     if (!leader_) return;
     begin_history(crust());
@@ -296,7 +298,7 @@ class Drift {
   static void begin_history(SphereTectonics& model) {
     SphereState& state = model.state;
     model.events.clear();
-    state.time_myr = 0.0;
+    state.time_myr = state.resampled_myr = 0.0;
     state.steps = 0;
     state.lives.clear();
     for (SpherePlate& plate : state.plates) {

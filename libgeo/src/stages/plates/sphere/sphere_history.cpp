@@ -49,7 +49,16 @@ TextTable SphereHistory::rotations(const SphereState& end) const {
       "rotations",
       {"from_myr", "to_myr", "plate_id", "pole_latitude_deg", "pole_longitude_deg", "rate_deg_myr"},
       {}};
-  for (const Turn& turn : turns_) {
+  std::vector<Turn> turns = turns_;
+  std::vector<std::uint8_t> has_moved(end.lives.size(), 0);
+  for (const Turn& turn : turns_) has_moved[turn.plate] = 1;
+  // Plates that the last step has made are told how they would go on.
+  for (const SpherePlate& plate : end.plates) {
+    if (!plate.alive || plate.carrier >= 0 || plate.id < 0 || has_moved[plate.id] != 0) continue;
+    const Vector3 rotation = add(scaled(plate.axis, plate.speed_rad_myr), plate.yielding);
+    turns.push_back({plate.id, end.time_myr, end.time_myr, grid_->to_axis(rotation)});
+  }
+  for (const Turn& turn : turns) {
     // Once it has collided a plate turns as the one does that it has joined.
     if (turn.from_myr >= end.lives[turn.plate].ended_myr) continue;
     const Vector3& w = turn.rotation_rad_myr;

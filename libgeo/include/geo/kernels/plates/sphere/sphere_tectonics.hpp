@@ -118,6 +118,8 @@ void follow(SphereTectonics& follower, const SphereTectonics& leader);
 void begin_step_of_both(SphereTectonics& follower, SphereTectonics& leader);
 /// advance() of both.
 void advance_both(SphereTectonics& follower, SphereTectonics& leader);
+/// finish() of both.
+void finish_both(SphereTectonics& follower, SphereTectonics& leader);
 
 // What is done to the model from outside, between steps.
 
