@@ -106,6 +106,36 @@ TEST_F(ThickRoot, OfASmallIslandLosesWhatFindsNoRoom) {
               1e-5 * model.budget.continental_km3);
 }
 
+/// A Gaussian belt spreads as one of a plane does: (h - h_c) = h_0 s^2 / (s^2 + 4 D t) e^(-r^2 /
+/// (s^2
+/// + 4 D t)).
+TEST_F(ThickRoot, FlowsToItsSidesAsDiffusionHasIt) {
+  SphereTectonics model = with_continent(3000.0, 0.0);
+  model.settings.thickest_km = 0.0;
+  model.settings.crustal_flow_km2_myr = 2000.0;
+  model.settings.crustal_flow_above_km = 36.0;
+  constexpr double kHigh_m = 20000.0, kWide_km = 500.0, kTime_myr = 60.0;
+  SphereCrust& crust = model.state.crust;
+  const auto far_km = [&](std::int32_t i) {
+    return 6370.0 * angle_between(world_.samples.position(i), {1.0, 0.0, 0.0});
+  };
+  for (std::int32_t i = 0; i < crust.size(); ++i) {
+    if (crust.continental[i] == 0) continue;
+    const double r = far_km(i) / kWide_km;
+    crust.thickness_m[i] = static_cast<float>(kWhole_m + kHigh_m * std::exp(-r * r));
+  }
+  const Sums before = sums(crust);
+  for (int k = 0; k < 30; ++k) advance(model);
+  const double grown = kWide_km * kWide_km + 4.0 * 2000.0 * kTime_myr;
+  for (std::int32_t i = 0; i < crust.size(); ++i) {
+    if (crust.continental[i] == 0 || far_km(i) > 1500.0) continue;
+    const double wanted_m = kWhole_m + kHigh_m * kWide_km * kWide_km / grown *
+                                           std::exp(-std::pow(far_km(i), 2) / grown);
+    ASSERT_NEAR(crust.thickness_m[i], wanted_m, 0.03 * kHigh_m) << far_km(i);
+  }
+  EXPECT_NEAR(sums(crust).thick_m, before.thick_m, 1e-6 * before.thick_m);
+}
+
 TEST_F(ThickRoot, StaysWhereThereIsNoLimit) {
   SphereTectonics model = with_continent(2000.0, 300.0);
   SphereSettings free = settings();

@@ -242,6 +242,13 @@ std::vector<Parameter> sphere_collision_rows(PlatesParameters& p) {
            1.0, "height of a collision's surge per area of the terrane", "cortial2019"),
       real("plates.sphere.surge_km", p.sphere.surge_km, "km", 0.0, 20.0,
            "greatest uplift by one collision", "christensen1995"),
+      real("plates.sphere.crustal_flow_km2_myr", p.sphere.crustal_flow_km2_myr, "km2 Myr-1", 0.0,
+           100000.0,
+           "diffusivity with which the lower crust of belts flows to their sides; 0: none flows "
+           "until crust is too thick",
+           "clark2000"),
+      real("plates.sphere.crustal_flow_above_km", p.sphere.crustal_flow_above_km, "km", 10.0, 200.0,
+           "thickness of crust above which it flows", "clark2000"),
       real("plates.sphere.thickest_km", p.sphere.thickest_km, "km", 0.0, 200.0,
            "thickest continental crust: lower-crustal flow spreads what would be thicker; 0 "
            "sets no limit",

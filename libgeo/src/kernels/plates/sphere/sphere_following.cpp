@@ -161,6 +161,7 @@ void advance_both(SphereTectonics& follower, SphereTectonics& leader) {
   follower.state.plates = leader.step.plates;
   follower.state.pairs = leader.step.pairs;
   derive_followed_plates(follower);
+  flow_lower_crust(follower);
   spread_roots(follower);
   if (leader.budget.resampled) {
     resample(follower, [&](SphereTectonics& resampled) { follow(resampled, leader); });

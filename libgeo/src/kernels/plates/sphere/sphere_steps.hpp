@@ -87,6 +87,8 @@ void raise_crust(SphereTectonics& model);
 void erupt(SphereTectonics& model);
 /// Needs margins. Rivers carve and deposit.
 void run_rivers(SphereTectonics& model);
+/// Needs what is hidden. Lets thick crust flow to its sides for a step.
+void flow_lower_crust(SphereTectonics& model);
 /// Needs what is hidden. Thins roots that are too thick.
 void spread_roots(SphereTectonics& model);
 

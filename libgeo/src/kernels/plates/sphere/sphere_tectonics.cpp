@@ -131,6 +131,7 @@ void advance(SphereTectonics& model) {
   yield_to_links(model, s.by_forces ? balance_forces(model) : drag_below(model));
   end_step(model);
   collide_continents(model);
+  flow_lower_crust(model);
   spread_roots(model);
   rift_by_chance(model);
   initiate_subduction_by_chance(model);
