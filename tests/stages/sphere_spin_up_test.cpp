@@ -82,6 +82,23 @@ TEST(SpinUp, GoesOnFromAnyFrameToTheSameBits) {
   }
 }
 
+TEST(SpinUp, ForgetsThePlatesThatHaveEndedInIt) {
+  PlatesParameters p = with_spin_up();
+  p.sphere.rift_per_myr = 0.1;
+  p.spin_up_myr = 120.0;
+  p.motion_samples = 3000;
+  State state(std::make_shared<Grid>(Grid::sphere(64, 32)));
+  for (const Frame& frame : frames_of(p, state, nullptr)) {
+    for (const char* leading : {"", "leading_"}) {
+      const auto array = [&](const char* name) { return std::string(leading) + name; };
+      const auto& ids = frame.checkpoint.get<std::int16_t>(array("plate_id"));
+      const auto lives = frame.checkpoint.get<double>(array("life_born_myr")).size();
+      ASSERT_FALSE(ids.empty());
+      for (const std::int16_t id : ids) EXPECT_LT(id, static_cast<std::int64_t>(lives));
+    }
+  }
+}
+
 TEST(MotionSamples, OfAFrameMustBeThoseOfTheRunThatGoesOn) {
   PlatesParameters p = with_spin_up();
   p.motion_samples = 3000;

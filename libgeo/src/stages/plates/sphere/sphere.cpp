@@ -302,9 +302,10 @@ class Drift {
     state.steps = 0;
     state.lives.clear();
     for (SpherePlate& plate : state.plates) {
-      if (!plate.alive) continue;
-      plate.id = plate.carrier < 0 ? state.begin_life(PlateLife::Origin::first, -1)
-                                   : static_cast<std::int16_t>(-1);
+      // Numbers of plates that are no more are those of lives that have been forgotten.
+      const bool lives = plate.alive && plate.carrier < 0;
+      plate.id =
+          lives ? state.begin_life(PlateLife::Origin::first, -1) : static_cast<std::int16_t>(-1);
       plate.born_myr = 0.0;
     }
   }
