@@ -18,6 +18,12 @@ void take_plates(SphereTectonics& follower, const SphereTectonics& leader) {
   follower.events = leader.events;
 }
 
+/// Plates turn or move otherwise, their samples are the same.
+void derive_plates_of_same_samples(SphereTectonics& model) {
+  derive_motion(model);
+  derive_ranks(model);
+}
+
 /// A part of a plate goes on as another one for the rest of the step, and lies as the plate does.
 void make_part(SphereTectonics& model, int plate, int part) {
   SphereState& state = model.state;
@@ -150,7 +156,7 @@ void advance_both(SphereTectonics& follower, SphereTectonics& leader) {
   repeat(follower, leader.step.changes, 0, leader.state.plates.size(), leader.state.pairs);
   const std::size_t repeated = leader.step.changes.size();
   take_plates(follower, leader);
-  derive_followed_plates(follower);
+  derive_plates_of_same_samples(follower);
   advance(leader);
   move_plates(follower);
   follower.state.pairs = leader.step.met;
@@ -160,7 +166,7 @@ void advance_both(SphereTectonics& follower, SphereTectonics& leader) {
   repeat(follower, leader.step.changes, repeated, leader.step.plates.size(), leader.step.pairs);
   follower.state.plates = leader.step.plates;
   follower.state.pairs = leader.step.pairs;
-  derive_followed_plates(follower);
+  derive_plates_of_same_samples(follower);
   flow_lower_crust(follower);
   spread_roots(follower);
   if (leader.budget.resampled) {
@@ -169,7 +175,7 @@ void advance_both(SphereTectonics& follower, SphereTectonics& leader) {
     measure_volume(follower);
   }
   take_plates(follower, leader);
-  derive_followed_plates(follower);
+  derive_plates_of_same_samples(follower);
   follower.budget.collisions = leader.budget.collisions;
   follower.budget.rifts = leader.budget.rifts;
   follower.budget.subduction_initiations = leader.budget.subduction_initiations;

@@ -16,15 +16,15 @@ struct SphereSettings {
   double uplift_control_km = 200.0;  ///< where subduction raises most
   double arc_reach_km = 1800.0;      ///< of the uplift where the overriding crust is oceanic
   double elevation_weight = 1.0;     ///< power of the factor h in the uplift
-  /// Advance of an overriding plate towards its trench by which subduction raises it by 1 more,
-  /// over that of a plate at rest as kUpliftAtRest; 0: it counts not.
+  /// v_u, mm/yr: subduction raises an overriding plate that advances on its trench at v by the
+  /// factor 1/3 + v/v_u, from 0 to 5/3 (Heuret & Lallemand 2005); 0: by 1, whatever its motion.
   double advance_mm_yr = 0.0;
   double fold_per_km = 0.002;  ///< beta of the fold direction, per km of relative motion
   double slab_pull = 1e-3;     ///< epsilon, per Myr and 1000 km of trench
   bool by_forces = false;      ///< motion balances forces, in place of that
   PlateForces force;
   double penetration_km = 300.0;        ///< of continents, before they collide
-  double suturing_mm_yr = 0.0;          ///< slower continents collide after kSuture_km
+  double suturing_mm_yr = 0.0;          ///< slower continents collide after 300 km; 0: none do
   double suture_drag = 0.0;             ///< between them, over that below a plate
   double surge_km = 4.5;                ///< most that one collision lifts
   double crustal_flow_km2_myr = 0.0;    ///< D with which thick crust flows to its sides

@@ -217,10 +217,13 @@ class Ridges {
     }
     return rows;
   }
-  /// Longitude of the ridge at each row.
+  /// Longitude of the ridge at each row from the first that the gap reaches to the last.
   [[nodiscard]] std::vector<double> ridge_of(const std::vector<Row>& rows) const {
+    const auto is_reached = [](const Row& row) { return !row.is_empty(); };
+    const auto first = std::ranges::find_if(rows, is_reached);
+    const auto last = std::find_if(rows.rbegin(), rows.rend(), is_reached).base();
     std::vector<Sums> up_to(1);
-    for (const Row& row : rows) {
+    for (const Row& row : std::ranges::subrange(first, last)) {
       Sums next = up_to.back();
       if (!row.is_empty()) {
         const double weight = spacing_rad_ * row.scale * row.scale, u = row.middle();
@@ -228,8 +231,11 @@ class Ridges {
       }
       up_to.push_back(next);
     }
-    return segment_means(up_to,
-                         std::pow(m_.settings.ridge_segment_km / m_.settings.radius_km, 3) / 6.0);
+    std::vector<double> ridge(static_cast<std::size_t>(first - rows.begin()), 0.0);
+    const std::vector<double> means = segment_means(
+        up_to, std::pow(m_.settings.ridge_segment_km / m_.settings.radius_km, 3) / 6.0);
+    ridge.insert(ridge.end(), means.begin(), means.end());
+    return ridge;
   }
 
   const SphereTectonics& m_;
