@@ -48,8 +48,8 @@ struct MovingPlates {
 /// each place where `heat` stands out of its surroundings, and above 38 smaller hot spots, one
 /// every 50 to 130 km of the way that the plate has gone, as far back as 80 Myr, to the edge of the
 /// plate, to a continent, or to floor that was not there yet. Sizes vary from plume to plume and
-/// along a trail; old ones have sunk and lost their tops, by exp(-t / 150 Myr). Cost: linear, and
-/// and the steps of each trail.
+/// along a trail; old ones have sunk and lost their tops, by exp(-t / 150 Myr). Cost: linear in
+/// cells, and the steps of each trail.
 std::vector<Volcano> plume_trails(const Grid& grid, const MovingPlates& plates,
                                   const VolcanoSizes& sizes, std::uint64_t seed);
 
