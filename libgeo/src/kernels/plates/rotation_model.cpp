@@ -129,8 +129,9 @@ class Drift {
     for (auto& [number, plate] : plates_) {
       const double last_myr = last_known_myr(number);
       const double born_myr = own_begin(plate), ended_myr = own_end(plate);
-      const auto add = [&](int fixed, std::vector<FiniteRotation> rotations) {
-        all.push_back({number + first_number, fixed, std::move(rotations)});
+      const auto add = [&, moving = number + first_number](int fixed,
+                                                           std::vector<FiniteRotation> rotations) {
+        all.push_back({moving, fixed, std::move(rotations)});
       };
       if (plate.span.joined >= 0 && last_myr > ended_myr) {
         add(plate.span.joined + first_number, {{ago(last_myr), {}}, {ago(ended_myr), {}}});
