@@ -136,6 +136,10 @@ std::vector<Parameter> sphere_drift_rows(PlatesParameters& p) {
            "abyssal plains", "cortial2019"),
       real("plates.sphere.trench_elevation_km", p.sphere.law.trench_km, "km", -30.0, -0.1,
            "deepest trench", "cortial2019"),
+      real("plates.sphere.slab_trench_m", p.slab_trench_m, "m", 0.0, 15000.0,
+           "depth of a trench below the floor where floor of 100 Myr subducts at 100 mm/yr, in "
+           "frames and in what they hand on; 0: only stage isostasy makes trenches",
+           "hilde1983"),
       real("plates.sphere.summit_elevation_km", p.sphere.law.summit_km, "km", 0.1, 30.0,
            "highest continent", "cortial2019"),
   };
