@@ -349,6 +349,10 @@ std::vector<Parameter> sphere_rifting_rows(PlatesParameters& p) {
            "speed at which fragments leave the middle of their plate", "design"),
       real("plates.sphere.rift_onset_myr", p.sphere.rift_onset_myr, "Myr", 0.0, 1000.0,
            "time in which they reach it; 0: at once", "brune2016"),
+      real("plates.sphere.plume_rift_share", p.sphere.plume_rift_share, "1", 0.0, 1.0,
+           "share of the rifts of plates with a plume below their continents whose arms meet above "
+           "it",
+           "burke1973"),
       real("plates.sphere.rift_warp_km", p.sphere.rift_warp_km, "km", 0.0, 5000.0,
            "how far the borders of fragments are warped", "cortial2019"),
       renamed(real("plates.sphere.subduction_initiation_myr", p.sphere.initiation_per_myr, "Myr-1",
