@@ -69,11 +69,6 @@ nlohmann::json manifest_of(const fs::path& run) {
   return nlohmann::json::parse(in);
 }
 
-std::string text_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 class Reconstruction : public testing::Test {
  protected:
   /// A drift in which plates break, and what GPlates gets of it.

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kReach_km = 450.0;  ///< the forebulge is over
 
-/// Age of the floor that goes down at a boundary; none, 0, where it is a continent.
+/// Age of the floor that subducts at a boundary; none, 0, where it is a continent.
 double age_of_slab_myr(const SphereTectonics& model, const SphereBoundary& at, bool overrides) {
   const SphereCrust& crust = model.state.crust;
   if (!overrides) return crust.continental[at.sample] != 0 ? 0.0 : crust.age_myr[at.sample];
