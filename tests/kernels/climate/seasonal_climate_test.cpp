@@ -60,6 +60,33 @@ TEST(SeasonalClimate, GroundIsWarmerWhileItsSoilIsDry) {
   EXPECT_LT(in_wettest_k, 0.4 * in_driest_k);
 }
 
+/// Latitude about which the rain of a month falls within the tropics.
+double rain_belt_deg(const Continent& continent, const std::vector<float>& rain_mm) {
+  double moment = 0.0, sum = 0.0;
+  for (Index c = 0; c < continent.grid.size(); ++c) {
+    const int row = continent.grid.row(c);
+    if (std::abs(continent.latitude_deg[row]) > 25.0) continue;
+    const double water = continent.grid.area_m2(row) * rain_mm[c];
+    moment += water * continent.latitude_deg[row];
+    sum += water;
+  }
+  return moment / sum;
+}
+
+TEST(SeasonalClimate, RainBeltComesLaterWhereTheTroughLags) {
+  const Continent continent;
+  SeasonalClimate model;
+  model.itcz_lag_months = 0.0;
+  const SeasonalFields prompt = continent.solve(model);
+  model.itcz_lag_months = 1.0;
+  const SeasonalFields late = continent.solve(model);
+  constexpr int kMay = 4, kNovember = 10;
+  EXPECT_LT(rain_belt_deg(continent, late.precipitation_mm[kMay]),
+            rain_belt_deg(continent, prompt.precipitation_mm[kMay]) - 0.2);
+  EXPECT_GT(rain_belt_deg(continent, late.precipitation_mm[kNovember]),
+            rain_belt_deg(continent, prompt.precipitation_mm[kNovember]) + 0.2);
+}
+
 // Without what ascent adds, where and how fast air rises makes no difference.
 TEST(SeasonalClimate, AscentAddsNoMoreThanItsBound) {
   const Continent continent;

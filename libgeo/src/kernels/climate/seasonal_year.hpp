@@ -62,7 +62,7 @@ class SeasonalYear {
                   std::span<float> east, std::span<float> north) const;
   void begin_month(int m, const TemperatureCycle& temperature);
   void clear(AirOfMonth& month) const;
-  void press(AirOfMonth& month, std::span<const double> zonal_c,
+  void press(AirOfMonth& month, std::span<const float> trough_c,
              std::span<const double> annual_mean_c) const;
   void stir(AirOfMonth& month, std::span<const double> zonal_c) const;
   void moisten(AirOfMonth& month) const;

@@ -53,7 +53,7 @@ class SteadyMoisture {
   /// Gauss-Seidel alone: near enough while evaporation from land is still sought.
   void solve();
   /// Newton's method for one season, from the column that it has. All that evaporates rains: the
-  /// sum of |E - P - div| over the cells is at most 1e-7 of the rain. Different seasons may be
+  /// sum of |E - P - div| over the cells is at most `closed` of the rain. Different seasons may be
   /// closed at the same time.
   void close(std::size_t lane, double closed = 1e-7) const;
 

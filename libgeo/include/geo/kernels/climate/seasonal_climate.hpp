@@ -23,7 +23,8 @@ struct SeasonalClimate {
   OceanCurrents currents;
   MoistureBudget moisture;
   SoilMoisture soil;
-  double itcz_share = 0.75;      ///< of the thermal equator's excursion that the cells follow
+  double itcz_share = 1;         ///< of the thermal equator's excursion that the cells follow
+  double itcz_lag_months = 1;    ///< by which the trough follows the warmth of the air
   double itcz_locality = 0;      ///< how far the trough follows its meridian's warmest latitude
   double sensible_w_m2_k = 3.2;  ///< heating of the air over ground warmer than its parallel
   double base_diffusivity_m2_s = 2.9e+06;
@@ -36,14 +37,14 @@ struct SeasonalClimate {
   double cold_air_heat_j_m2_k = 4.27e+05;  ///< of air that evaporates as the sea warms it
   double ascent_time_d = 25;               ///< convergence over this time multiplies rain-out by e
   double descent_time_d = 0.966;           ///< the same of the descent that stationary waves make
-  double ascent_bound = 1.85;              ///< most that ascent adds to the logarithm of rain-out
+  double ascent_bound = 1.81;              ///< most that ascent adds to the logarithm of rain-out
   double ascent_latitude_deg = 40.1;  ///< at which converging winds make half as much rain as where
                                       ///< rotation is weak
   double ascent_smoothing_km = 500;   ///< over which ascent is felt
   double convection_1_k = 0;          ///< by which rain-out grows with relative moist static energy
   double convection_latitude_deg = 26.9;  ///< to which the free atmosphere is level
   double orographic_share = 0.0;  ///< of the mean height by which moist air is lifted over a cell
-  double blocking_height_m = 4.35e+03;  ///< height at which topography halves the moist flow
+  double blocking_height_m = 4.27e+03;  ///< height at which topography halves the moist flow
   double land_transpiration = 1.0;      ///< share of the soil's evaporation that returns to the air
 };
 
