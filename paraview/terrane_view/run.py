@@ -4,8 +4,6 @@ import json
 import re
 from pathlib import Path
 
-PLANET_STAGES = ("plates", "isostasy", "erosion", "climate", "hydrology", "biomes")
-
 
 class RunError(Exception):
     """The folder cannot be shown; the text says why and what helps."""
@@ -19,8 +17,8 @@ class Run:
         if not self.folder.is_dir():
             raise RunError(f"{folder}: no such folder")
         files = {p.stem[3:]: p for p in sorted(self.folder.glob("[0-9][0-9]-*.vti"))}
-        self.stages = {name: files[name] for name in PLANET_STAGES if name in files}
         self.islands = {n: p for n, p in files.items() if re.fullmatch(r"island(-\d+)?", n)}
+        self.stages = {n: p for n, p in files.items() if n not in self.islands}
         frames = self.folder / "plates.pvd"
         self.frames = frames if frames.exists() else None
         if not self.stages:
@@ -48,10 +46,9 @@ class Run:
                 return "" if units == "1" else units
         return ""
 
-    @staticmethod
-    def number(stage):
-        """Number of a stage of the planet, from 1."""
-        return PLANET_STAGES.index(stage) + 1
+    def number(self, stage):
+        """Number of a stage of the planet, with which its file's name begins."""
+        return int(self.stages[stage].name[:2])
 
 
 def run_folder_of(path):

@@ -10,7 +10,7 @@
 #include "cli/program.hpp"
 #include "cli/relief_file.hpp"
 #include "cli/sample_run.hpp"
-#include "io/picture.hpp"
+#include "io/maps/picture.hpp"
 #include "io/temporary_folder.hpp"
 
 namespace geo {

@@ -138,6 +138,64 @@ TEST_F(Scenario, TheIslandCollidesOnAFinerLatticeToo) {
   EXPECT_NEAR(collision->area_km2, 7.9e5, 2e5);
 }
 
+/// Continental crust of the map: that which is joined to a place, and all of it.
+struct Land {
+  double joined_km2 = 0.0, all_km2 = 0.0, joined_km3 = 0.0;
+};
+Land land_about(const fs::path& folder, const Centre& about) {
+  int file = -1;
+  EXPECT_EQ(nc_open((folder / "01-plates.nc").c_str(), NC_NOWRITE, &file), NC_NOERR);
+  const auto fraction = values(file, "continental_fraction");
+  const auto thickness_m = values(file, "crust_thickness");
+  const Grid grid = Grid::sphere(static_cast<int>(values(file, "lon").size()),
+                                 static_cast<int>(values(file, "lat").size()));
+  nc_close(file);
+  Land land;
+  const auto area_km2 = [&](Index c) { return 1e-6 * grid.area_m2(grid.row(c)); };
+  for (Index c = 0; c < grid.size(); ++c) {
+    if (fraction[c] >= 0.5F) land.all_km2 += area_km2(c);
+  }
+  int row = 0, column = 0;
+  while (std::abs(grid.latitude_deg(row) - about.latitude_deg) > 90.0 / grid.ny()) ++row;
+  while (std::abs(grid.longitude_deg(column) - about.longitude_deg) > 180.0 / grid.nx()) ++column;
+  std::vector<Index> reached{grid.cell(column, row)};
+  std::vector<std::uint8_t> seen(grid.size(), 0);
+  seen[reached.front()] = 1;
+  for (std::size_t n = 0; n < reached.size(); ++n) {
+    land.joined_km2 += area_km2(reached[n]);
+    land.joined_km3 += area_km2(reached[n]) * 1e-3 * thickness_m[reached[n]];
+    for (int k = 0; k < kDirections; ++k) {
+      const Index next = grid.neighbour(reached[n], k);
+      if (next == kNoCell || seen[next] != 0 || fraction[next] < 0.5F) continue;
+      seen[next] = 1;
+      reached.push_back(next);
+    }
+  }
+  return land;
+}
+
+TEST_F(Scenario, AnIslandArcRisesAndBecomesPartOfAContinent) {
+  const Centre continent{-15.0, -158.0};
+  run("island-arc-and-continent.toml", {"--set", "plates.sphere.time_myr=34"});
+  const Land before = land_about(out_, continent);
+  // A chain of islands that is not yet joined to the continent.
+  EXPECT_GT(before.all_km2 - before.joined_km2, 3e5);
+  run("island-arc-and-continent.toml", {"--overwrite"});
+  const auto all = happenings(out_);
+  const auto collision = std::find_if(all.begin(), all.end(), [](const Happening& one) {
+    return one.kind == "continental-collision";
+  });
+  ASSERT_NE(collision, all.end());
+  EXPECT_NEAR(collision->time_myr, 48.0, 12.0);
+  // East of the continent, where its coast was.
+  EXPECT_NEAR(collision->place.longitude_deg, -147.0, 12.0);
+  // Their crust is the continent's now: arcs emerge with 25 km. It is stacked rather than laid
+  // alongside, so that the map shows a range and little more land.
+  const Land after = land_about(out_, continent);
+  EXPECT_GT(after.joined_km3 - before.joined_km3, 0.6 * 25.0 * collision->area_km2);
+  EXPECT_GT(after.joined_km2, before.joined_km2);
+}
+
 /// Today's Earth, 80 million years on. Needs the Earth's relief, which Debian installs.
 class FutureEarth : public Scenario {
  protected:
@@ -162,6 +220,10 @@ TEST_F(FutureEarth, AfricaBreaksAndAustraliaMeetsAsia) {
   EXPECT_TRUE(left);
   EXPECT_TRUE(broke);
   EXPECT_TRUE(met);
+  // On the map: 24 mm/yr open 1680 km in 70 Myr along 4000 km of central Africa, and what is now
+  // Queensland is one land with China.
+  EXPECT_GT(young_floor_km2(out_, {11.0, 18.0}, 71.0), 0.5 * 1680.0 * 4000.0);
+  EXPECT_GT(land_about(out_, {-3.0, 153.0}).joined_km2, 4e7);
 }
 
 TEST_F(Scenario, ItsFramesAreWrittenAndGoOn) {

@@ -278,6 +278,9 @@ TEST(TheTableOfStages, IsInOrderAndWiredUp) {
   for (const StageEntry& entry : stage_table()) {
     EXPECT_GT(entry.number, number) << entry.name;
     number = entry.number;
+    // Runs of parts of a planet leave out the last one.
+    const bool is_last = &entry == &stage_table().back();
+    EXPECT_EQ(entry.make()->info().own_grid, is_last) << entry.name;
   }
   const Pipeline pipeline = make_pipeline();
   const std::array<const FieldSpec*, 1> given{&field::elevation};

@@ -26,15 +26,21 @@ const std::vector<Term> kTerms{
      "to subduct; continents are thrust below each other"},
     {"down", R"(\b(plates?|floor|crust|the one|what) (that )?(goes|go) down\b)", "to subduct"},
     {"founder", R"(\bfounder(s|ed|ing)?\b)", "subduction initiation"},
-    {"books", R"(\b(books of|in the books)\b)", "budget, mass balance"},
+    {"book", R"(\bbook(s|ed|ing|keeping)?\b)", "budget, mass balance; counted as"},
     {"front", R"(\b(subduction fronts?|nearest.front|front of a plate)\b)",
      "trench, edge of the overriding plate, deformation front"},
     {"overlay", R"(\b(class \w*|healpix)overlay\b)", "conservative remapping"},
     {"match", R"(rank.?match)", "quantile mapping"},
+    {"beginning", R"(\b(struct|class) beginning\b)", "initial conditions"},
+    {"objective", R"(\bobjective(::|\.)(route|follow)\b)", "evaluate, linearise"},
+    {"lift", R"(\b(struct|class) lift\b)", "seeding of active variables"},
+    {"swell", R"(\b(struct|class) swells?\b)", "names of noise; a swell is of the sea floor"},
+    {"hot", R"(\bhot (foot|feet)\b)", "lower crust"},
     {"longest", R"(longest.?upstream)", "flow length"},
     {"relief", R"(\b(real|given|first) reliefs?\b)", "elevation model (DEM), initial elevation"},
     {"relief", R"(\b(reliefs|earth's( own)? relief|relief's own)\b)",
      "elevation, topography; relief is a range of elevations"},
+    {"relief", R"(\b((every|each) relief|over a relief)\b)", "elevation, topography"},
     {"relief", R"(\bgivenrelief\b|\bread_relief|\bio::relief\b)", "names with elevation or dem"},
     {"relief", R"(\bplanetrelief\b|\bisland_?relief\b|\brelief_?(events|finish)\b|stages/relief)",
      "names with surface, terrain or elevation"},
@@ -142,6 +148,7 @@ TEST(Terms, AreFoundAcrossLinesCommentsAndLiterals) {
   EXPECT_EQ(terms_in("Potential evaporation").size(), 1U);
   EXPECT_EQ(terms_in("RandomStream random(seed, \"plates.foundering\")").size(), 0U);
   EXPECT_EQ(terms_in("the plate was foundering").size(), 1U);
+  EXPECT_EQ(terms_in("counted in the\n/// books, see the notebook").size(), 1U);
 }
 
 TEST(Terms, EachExceptionIsStillNeeded) {

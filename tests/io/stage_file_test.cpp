@@ -13,37 +13,20 @@
 #include <fstream>
 #include <future>
 #include <limits>
-#include <sstream>
 
 #include "geo/core/error.hpp"
 #include "geo/io/files/atomic_file.hpp"
 #include "io/sample_snapshot.hpp"
 #include "io/temporary_folder.hpp"
+#include "support/message_of.hpp"
+#include "support/text_of.hpp"
 
 namespace geo::io {
 namespace {
 
+using test::message_of;
+using test::text_of;
 using testing::HasSubstr;
-
-std::string bytes_of(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
-
-template <class Action>
-std::string message_of(ErrorKind kind, const Action& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), kind) << error.what();
-    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << "one line";
-    return error.what();
-  }
-  ADD_FAILURE() << "nothing was thrown";
-  return {};
-}
 
 std::vector<Grid> all_topologies() {
   return {Grid::sphere(64, 32),
@@ -243,8 +226,8 @@ TEST(StageFile, SameContentGivesTheSameBytes) {
   for (const char* name : {"a.vti", "b.vti"}) {
     write_vti(folder / name, sample_snapshot(Grid::sphere(640, 320)), sample_provenance());
   }
-  EXPECT_TRUE(bytes_of(folder / "a.nc") == bytes_of(folder / "b.nc"));
-  EXPECT_TRUE(bytes_of(folder / "a.vti") == bytes_of(folder / "b.vti"));
+  EXPECT_TRUE(text_of(folder / "a.nc") == text_of(folder / "b.nc"));
+  EXPECT_TRUE(text_of(folder / "a.vti") == text_of(folder / "b.vti"));
 }
 
 /// What a read of every variable leaves in memory that held `before`.
@@ -330,14 +313,14 @@ TEST(StageFile, DiskFailureNamesPathAndReasonAndLeavesNothing) {
 TEST(StageFile, FailedWriteKeepsTheOldFile) {
   const TemporaryFolder folder;
   write_netcdf(folder / "a.nc", sample_snapshot(Grid::sphere(16, 8)), sample_provenance());
-  const std::string before = bytes_of(folder / "a.nc");
+  const std::string before = text_of(folder / "a.nc");
   {
     const FileSizeLimit limit(200'000);
     EXPECT_THROW(
         write_netcdf(folder / "a.nc", sample_snapshot(Grid::sphere(512, 256)), sample_provenance()),
         IoError);
   }
-  EXPECT_TRUE(bytes_of(folder / "a.nc") == before);
+  EXPECT_TRUE(text_of(folder / "a.nc") == before);
 }
 
 TEST(StageFile, MissingFolderIsAnIoError) {
@@ -359,7 +342,7 @@ TEST(StageFile, AbsentFileIsAnIoError) {
 TEST(StageFile, TruncatedFileIsAnInputErrorAtAnyLength) {
   const TemporaryFolder folder;
   write_netcdf(folder / "a.nc", sample_snapshot(Grid::sphere(512, 256)), sample_provenance());
-  const std::string whole = bytes_of(folder / "a.nc");
+  const std::string whole = text_of(folder / "a.nc");
   testing::internal::CaptureStderr();
   for (const double share : {0.0, 0.001, 0.1, 0.5, 0.9, 0.9999}) {
     SCOPED_TRACE(share);
@@ -376,7 +359,7 @@ TEST(StageFile, TruncatedFileIsAnInputErrorAtAnyLength) {
 TEST(StageFile, DamagedValuesAreAnInputError) {
   const TemporaryFolder folder;
   write_netcdf(folder / "a.nc", sample_snapshot(Grid::sphere(512, 256)), sample_provenance());
-  std::string bytes = bytes_of(folder / "a.nc");
+  std::string bytes = text_of(folder / "a.nc");
   // Compressed streams fill most of the file: no stretch of this length escapes them.
   for (std::size_t k = bytes.size() / 2; k < bytes.size() / 2 + 60'000; ++k) bytes[k] = '\0';
   std::ofstream(folder / "bad.nc", std::ios::binary) << bytes;
@@ -410,7 +393,7 @@ TEST(StageFile, OtherUnitsAreAnInputErrorThatNamesTheVariable) {
 TEST(StageFile, CollectionEscapesNamesAndKeepsOrder) {
   const TemporaryFolder folder;
   write_pvd(folder / "planet.pvd", {folder / "01 <a>&\"b\".vti", folder / "02-climate.vti"});
-  const std::string text = bytes_of(folder / "planet.pvd");
+  const std::string text = text_of(folder / "planet.pvd");
   EXPECT_THAT(text, HasSubstr("file=\"01 &lt;a&gt;&amp;&quot;b&quot;.vti\""));
   EXPECT_LT(text.find("01 "), text.find("02-climate"));
 }

@@ -26,11 +26,6 @@ fs::path planet_of(const fs::path& folder, const std::string& preset) {
   return out;
 }
 
-std::string config_of(const fs::path& run) {
-  std::ifstream file(run / "config.toml");
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 double budget_of(const fs::path& run, const std::string& name) {
   std::ifstream file(run / "manifest.json");
   const auto manifest = nlohmann::json::parse(file);
@@ -43,7 +38,7 @@ double budget_of(const fs::path& run, const std::string& name) {
 TEST(PaperPresets, CortialHasTheConstantsOfTableThree) {
   TemporaryFolder folder;
   const fs::path run = planet_of(folder.path(), "cortial");
-  const std::string config = config_of(run);
+  const std::string config = text_of(run / "config.toml");
   // Symbols of the table, in its order: dt, z_r, z_a, z_t, z_c, r_s, r_c, Delta_c, v_0, eps_o,
   // eps_c, eps_t, u_0; then 40 plates of which 0.3 are land (Table 2).
   for (const char* line :
@@ -64,7 +59,7 @@ TEST(PaperPresets, CortialHasTheConstantsOfTableThree) {
 TEST(PaperPresets, DriftworldBeginsWithoutLandAndMergesPlates) {
   TemporaryFolder folder;
   const fs::path run = planet_of(folder.path(), "driftworld");
-  const std::string config = config_of(run);
+  const std::string config = text_of(run / "config.toml");
   for (const char* line :
        {"overlap = \"score\"", "collisions = \"plates\"", "uplift_profile = \"driftworld\"",
         "uplift_sources = \"all\"", "accretion = \"abyss\"", "rifting = \"largest\"",

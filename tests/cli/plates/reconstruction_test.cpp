@@ -69,11 +69,6 @@ nlohmann::json manifest_of(const fs::path& run) {
   return nlohmann::json::parse(in);
 }
 
-std::string text_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 class Reconstruction : public testing::Test {
  protected:
   /// A drift in which plates break, and what GPlates gets of it.
@@ -132,10 +127,11 @@ TEST_F(Reconstruction, CutsOutPlatesThatAppearLater) {
   int later = 0;
   for (const auto& [step_and_plate, rotation] : found) {
     if (step_and_plate.first != kLastStep_myr || known.contains(step_and_plate.second)) continue;
-    const bool is_known = std::any_of(wanted.begin(), wanted.end(), [&](const auto& other) {
-      return other.first.first == kLastStep_myr &&
-             length(add(other.second, rotation, -1.0)) < kDigits_rad_myr;
-    });
+    const bool is_known =
+        std::any_of(wanted.begin(), wanted.end(), [&, turn = rotation](const auto& other) {
+          return other.first.first == kLastStep_myr &&
+                 length(add(other.second, turn, -1.0)) < kDigits_rad_myr;
+        });
     EXPECT_TRUE(is_known) << "plate " << step_and_plate.second;
     ++later;
   }

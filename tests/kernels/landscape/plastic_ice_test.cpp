@@ -203,6 +203,29 @@ TEST(PlasticIce, SeaFloorMakesNoIceOfItsOwn) {
   EXPECT_GT(ice_flux(grid, bed, ground, with_island, snow).calved_m3_yr, 0.0);
 }
 
+TEST(PlasticIce, AGroundedSheetKeepsItsDivideOverABedBelowTheSea) {
+  // A continent whose middle its ice has pressed below the sea: the divide, to which none flows.
+  const Grid grid = Grid::plane(41, 41, 1e4, 1e4);
+  std::vector<float> bed(grid.size());
+  std::vector<IceGround> ground = all_iced(grid);
+  for (Index c = 0; c < grid.size(); ++c) {
+    const int from_edge =
+        std::min({grid.column(c), 40 - grid.column(c), grid.row(c), 40 - grid.row(c)});
+    bed[c] = from_edge > 10 ? -300.0F : 50.0F;
+    if (from_edge == 0) ground[c] = IceGround::away;
+  }
+  const std::vector<float> snow(grid.size(), 0.2F);
+  const IceSurface surface = plastic_ice_surface(grid, kIce_m, bed, ground);
+  const IceFlux flux = ice_flux(grid, bed, ground, surface, snow);
+  double fallen_m3_yr = 0.0;
+  for (Index c = 0; c < grid.size(); ++c) {
+    if (ground[c] == IceGround::away) continue;
+    EXPECT_EQ(flux.share.of(c), 1.0F) << grid.column(c) << " " << grid.row(c);
+    fallen_m3_yr += 0.2F * grid.area_m2(grid.row(c));
+  }
+  EXPECT_NEAR(flux.accumulated_m3_yr, fallen_m3_yr, 1e-9 * fallen_m3_yr);
+}
+
 /// Volume and area of each glacier: ice that leaves by one tongue.
 std::vector<std::pair<double, double>> glaciers_of(const Grid& grid, const IceSurface& surface,
                                                    const IceFlux& flux, std::span<const float> bed,

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <map>
 #include <set>
+#include <span>
 
 #include "geo/core/projection.hpp"
 #include "geo/kernels/remapping/planet_cells.hpp"
@@ -37,39 +39,56 @@ TEST(Island, RiversThatEnterAreThereAndNoWaterIsLost) {
   EXPECT_LT(std::abs(budget.at("water_closing_error")), 1e-6);
 }
 
+/// A planet's river, and an island around a cell that it passes through.
+struct IslandOnRiver {
+  const State& whole;
+  Index river;
+  const State& island;
+  std::span<const Index> cell_of;  ///< of the planet, for each of the island's
+};
+
+/// Calls with islands on the four greatest rivers of planets of some seeds.
+template <class Action>
+void on_great_rivers(std::initializer_list<std::uint64_t> seeds, Action&& action) {
+  for (const std::uint64_t seed : seeds) {
+    const State whole = make_planet(seed);
+    for (const Index river : great_rivers(4, whole)) {
+      const Centre place = place_of(river, whole.grid());
+      SCOPED_TRACE("seed " + std::to_string(seed) + ", river at " + text(place));
+      const State island = make(around(place), whole, seed).island;
+      const PlanetCells cells(whole.grid(), island.grid());
+      action(IslandOnRiver{whole, river, island, cells.cell_of()});
+    }
+  }
+}
+
 // Interpolation dams a valley that is one cell wide: rivers must not leave by the edge that they
 // came in over.
 TEST(Island, RiversCarryWhatTheyCarryOnThePlanet) {
   double carried = 0.0;
   int rivers = 0, poor = 0;
-  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-    const State whole = make_planet(seed);
-    const auto receiver = whole.read(field::flow_receiver);
-    const auto planets = whole.read(field::discharge);
-    for (const Index c : great_rivers(4, whole)) {
-      SCOPED_TRACE("seed " + std::to_string(seed) + ", river at " +
-                   text(place_of(c, whole.grid())));
-      const State island = make(around(place_of(c, whole.grid())), whole, seed).island;
-      const PlanetCells cells(whole.grid(), island.grid());
-      const auto discharge = island.read(field::discharge);
-      const auto carried_in = [&](Index cell) {
-        float most = 0.0F;
-        for (Index k = 0; k < island.grid().size(); ++k) {
-          if (cells.cell_of()[k] == cell) most = std::max(most, discharge[k]);
-        }
-        return most;
-      };
-      const float most = carried_in(c);
-      // Where rivers meet may move by a cell or two, and a brook may join the river beside: of many
-      // rivers one may lose a branch, which meets it in the next cell then.
-      EXPECT_TRUE(most > 0.8 * planets[c] || carried_in(receiver[c]) > 0.95 * planets[receiver[c]])
-          << most << " of " << planets[c];
-      poor += most < 0.9 * planets[c] ? 1 : 0;
-      EXPECT_LT(most, 1.1 * planets[receiver[receiver[c]]]);
-      carried += std::min(1.0, static_cast<double>(most) / planets[c]);
-      ++rivers;
-    }
-  }
+  on_great_rivers({1, 2, 3, 4, 5, 6, 7, 8}, [&](const IslandOnRiver& at) {
+    const auto receiver = at.whole.read(field::flow_receiver);
+    const auto planets = at.whole.read(field::discharge);
+    const auto discharge = at.island.read(field::discharge);
+    const Index c = at.river;
+    const auto carried_in = [&](Index cell) {
+      float most = 0.0F;
+      for (Index k = 0; k < at.island.grid().size(); ++k) {
+        if (at.cell_of[k] == cell) most = std::max(most, discharge[k]);
+      }
+      return most;
+    };
+    const float most = carried_in(c);
+    // Where rivers meet may move by a cell or two, and a brook may join the river beside: of many
+    // rivers one may lose a branch, which meets it in the next cell then.
+    EXPECT_TRUE(most > 0.8 * planets[c] || carried_in(receiver[c]) > 0.95 * planets[receiver[c]])
+        << most << " of " << planets[c];
+    poor += most < 0.9 * planets[c] ? 1 : 0;
+    EXPECT_LT(most, 1.1 * planets[receiver[receiver[c]]]);
+    carried += std::min(1.0, static_cast<double>(most) / planets[c]);
+    ++rivers;
+  });
   EXPECT_GT(carried, 0.97 * rivers);
   EXPECT_LE(poor, rivers / 16);
 }
@@ -90,49 +109,43 @@ bool has_river(const State& whole, const Grid& fine, Index cell) {
 TEST(Island, RiversKeepTheirWaterAllTheWay) {
   double all_there = 0.0, all_kept = 0.0;
   int rivers = 0, poor = 0;
-  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-    const State whole = make_planet(seed);
-    const auto planets = whole.read(field::discharge);
-    const auto receiver = whole.read(field::flow_receiver);
-    for (const Index c : great_rivers(4, whole)) {
-      SCOPED_TRACE("seed " + std::to_string(seed) + ", window at " +
-                   text(place_of(c, whole.grid())));
-      const State island = make(around(place_of(c, whole.grid())), whole, seed).island;
-      const PlanetCells cells(whole.grid(), island.grid());
-      const auto discharge = island.read(field::discharge);
-      const auto z = island.read(field::elevation);
-      const auto lake = island.read(field::lake_id);
-      std::map<Index, double> most, in_rivers;  // a lake shows its outflow everywhere
-      std::set<Index> shore;
-      for (Index k = 0; k < island.grid().size(); ++k) {
-        const Index cell = cells.cell_of()[k];
-        if (z[k] < 0.0F) shore.insert(cell);
-        const double here = discharge[k];
-        most[cell] = std::max(most[cell], here);
-        if (lake[k] == 0) in_rivers[cell] = std::max(in_rivers[cell], here);
-      }
-      double there = 0.0, kept = 0.0, too_much = 0.0;
-      for (const auto& [cell, here] : most) {
-        if (!has_river(whole, island.grid(), cell) || shore.contains(cell)) continue;
-        // A river may cross a corner of the next cell.
-        double beside = planets[receiver[receiver[cell]]];
-        for (int k = 0; k < kDirections; ++k) {
-          const Index next = whole.grid().neighbour(cell, k);
-          if (next != kNoCell) beside = std::max<double>(beside, planets[next]);
-        }
-        const double below = std::max<double>(beside, planets[cell]);
-        there += planets[cell];
-        kept += std::min<double>(here, planets[cell]);
-        too_much += std::max(0.0, in_rivers[cell] - 1.1 * below);
-      }
-      EXPECT_GT(kept, 0.8 * there);
-      ++rivers;
-      poor += kept < 0.9 * there ? 1 : 0;
-      EXPECT_LT(too_much, 0.05 * there);
-      all_there += there;
-      all_kept += kept;
+  on_great_rivers({1, 2, 3, 4, 5, 6}, [&](const IslandOnRiver& at) {
+    const Grid& fine = at.island.grid();
+    const auto planets = at.whole.read(field::discharge);
+    const auto receiver = at.whole.read(field::flow_receiver);
+    const auto discharge = at.island.read(field::discharge);
+    const auto z = at.island.read(field::elevation);
+    const auto lake = at.island.read(field::lake_id);
+    std::map<Index, double> most, in_rivers;  // a lake shows its outflow everywhere
+    std::set<Index> shore;
+    for (Index k = 0; k < fine.size(); ++k) {
+      const Index cell = at.cell_of[k];
+      if (z[k] < 0.0F) shore.insert(cell);
+      const double here = discharge[k];
+      most[cell] = std::max(most[cell], here);
+      if (lake[k] == 0) in_rivers[cell] = std::max(in_rivers[cell], here);
     }
-  }
+    double there = 0.0, kept = 0.0, too_much = 0.0;
+    for (const auto& [cell, here] : most) {
+      if (!has_river(at.whole, fine, cell) || shore.contains(cell)) continue;
+      // A river may cross a corner of the next cell.
+      double beside = planets[receiver[receiver[cell]]];
+      for (int k = 0; k < kDirections; ++k) {
+        const Index next = at.whole.grid().neighbour(cell, k);
+        if (next != kNoCell) beside = std::max<double>(beside, planets[next]);
+      }
+      const double below = std::max<double>(beside, planets[cell]);
+      there += planets[cell];
+      kept += std::min<double>(here, planets[cell]);
+      too_much += std::max(0.0, in_rivers[cell] - 1.1 * below);
+    }
+    EXPECT_GT(kept, 0.8 * there);
+    ++rivers;
+    poor += kept < 0.9 * there ? 1 : 0;
+    EXPECT_LT(too_much, 0.05 * there);
+    all_there += there;
+    all_kept += kept;
+  });
   EXPECT_GT(all_kept, 0.95 * all_there);
   EXPECT_LE(poor, rivers / 8);
 }
@@ -140,22 +153,17 @@ TEST(Island, RiversKeepTheirWaterAllTheWay) {
 // Detail must not dip plains to the level of the sea, nor let rivers leave flats over its edge.
 TEST(Island, PlainsHaveNoLakesThatThePlanetLacks) {
   double land = 0.0, lakes = 0.0;
-  for (const std::uint64_t seed : {3, 6}) {
-    const State whole = make_planet(seed);
-    const auto planets_m = whole.read(field::elevation);
-    const auto planets_lake = whole.read(field::lake_id);
-    for (const Index c : great_rivers(4, whole)) {
-      const State island = make(around(place_of(c, whole.grid())), whole, seed).island;
-      const PlanetCells cells(whole.grid(), island.grid());
-      const auto lake = island.read(field::lake_id);
-      for (Index k = 0; k < island.grid().size(); ++k) {
-        const Index cell = cells.cell_of()[k];
-        if (planets_m[cell] < 20.0F || planets_m[cell] > 200.0F || planets_lake[cell] > 0) continue;
-        land += 1.0;
-        lakes += lake[k] > 0 ? 1.0 : 0.0;
-      }
+  on_great_rivers({3, 6}, [&](const IslandOnRiver& at) {
+    const auto planets_m = at.whole.read(field::elevation);
+    const auto planets_lake = at.whole.read(field::lake_id);
+    const auto lake = at.island.read(field::lake_id);
+    for (Index k = 0; k < at.island.grid().size(); ++k) {
+      const Index cell = at.cell_of[k];
+      if (planets_m[cell] < 20.0F || planets_m[cell] > 200.0F || planets_lake[cell] > 0) continue;
+      land += 1.0;
+      lakes += lake[k] > 0 ? 1.0 : 0.0;
     }
-  }
+  });
   EXPECT_LT(lakes, 0.01 * land);
 }
 

@@ -86,7 +86,7 @@ void put(Parcel& parcel, const Grid& grid);
 Grid take_grid(Parcel& parcel);
 
 // What readers give.
-void put(Parcel& parcel, const Dem& relief);
+void put(Parcel& parcel, const Dem& dem);
 void put(Parcel& parcel, const Snapshot& snapshot);  // without a checkpoint
 void put(Parcel& parcel, const Provenance& provenance);
 void put(Parcel& parcel, const Checkpoint& checkpoint);

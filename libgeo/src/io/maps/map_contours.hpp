@@ -16,7 +16,7 @@ struct ContourLabel {
   std::string text;
 };
 
-/// Draws the contours of the land of a relief (m, a value for each cell), every fifth line heavier.
+/// Draws contours of the elevation of land (m, a value for each cell), every fifth line heavier.
 /// Returns the heights that belong on these, to be drawn once all other lines are.
 std::vector<ContourLabel> draw_contours(MapCanvas& canvas, const MapFrame& frame,
                                         std::span<const float> elevation_m);

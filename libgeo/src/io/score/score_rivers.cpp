@@ -54,11 +54,11 @@ void measure_runoff(const State& state, Figures& figures) {
 /// Mean thickness of sediment on land and at sea, on cells as large as those of the Earth's.
 void measure_sediment_thickness(const State& state, Figures& figures) {
   const CoarseField sediment = coarsen(state, field::sediment_thickness, kCrustStepDeg);
-  const CoarseField relief = coarsen(state, field::elevation, kCrustStepDeg);
-  std::vector<std::uint8_t> mask(relief.values.size());
+  const CoarseField elevation = coarsen(state, field::elevation, kCrustStepDeg);
+  std::vector<std::uint8_t> mask(elevation.values.size());
   for (const bool on_land : {true, false}) {
     for (std::size_t c = 0; c < mask.size(); ++c) {
-      mask[c] = (relief.values[c] >= 0.0F) == on_land ? 1 : 0;
+      mask[c] = (elevation.values[c] >= 0.0F) == on_land ? 1 : 0;
     }
     if (std::find(mask.begin(), mask.end(), 1) == mask.end()) continue;
     figures[on_land ? "sediment_land" : "sediment_sea"] =

@@ -188,7 +188,11 @@ IceFlux ice_flux(const Grid& grid, std::span<const float> bed_m, std::span<const
     const double area_m2 = grid.area_m2(grid.row(cell));
     double& through = flux.through_m3_yr.of(cell);
     const double own = balance_m_yr[cell] * area_m2;
-    if (own > 0.0 && (bed_m[cell] >= 0.0F || through > 0.0)) {
+    // Over a bed below the sea snow falls on ice that is there: on a grounded divide, which none
+    // flows to, as well.
+    const bool is_land = bed_m[cell] >= 0.0F || through > 0.0 ||
+                         (ground[cell] == IceGround::iced && surface.height_m.of(cell) > 0.0F);
+    if (own > 0.0 && is_land) {
       through += own;
       flux.accumulated_m3_yr += own;
     }

@@ -74,6 +74,17 @@ void add_endorheic_bottoms(const PlanetCells& cells, std::span<const Index> rece
   }
 }
 
+/// Some fields, and besides them what stages that run inside write.
+std::vector<const FieldSpec*> with_outputs_of(std::initializer_list<std::unique_ptr<Stage>> inside,
+                                              std::vector<const FieldSpec*> fields) {
+  for (const auto& stage : inside) {
+    for (const FieldSpec* spec : stage->info().writes) {
+      if (!lists(fields, *spec)) fields.push_back(spec);
+    }
+  }
+  return fields;
+}
+
 class IslandStage final : public Stage {
  public:
   explicit IslandStage(IslandParameters parameters) : p_(std::move(parameters)) {}
@@ -250,33 +261,13 @@ class IslandStage final : public Stage {
                 &field::precipitation_seasonality, &field::wind_east, &field::wind_north,
                 &field::distance_to_coast, &field::potential_evapotranspiration},
       .optional = {&field::boundary_type, &field::erodibility, &field::lake_id},
-      .writes = {&field::elevation,
-                 &field::uplift_rate,
-                 &field::erosion_rate,
-                 &field::drainage_area,
-                 &field::inflow_area,
-                 &field::inflow_discharge,
-                 &field::flow_receiver,
-                 &field::flow_direction,
-                 &field::temperature,
-                 &field::temperature_range,
-                 &field::precipitation,
-                 &field::precipitation_seasonality,
-                 &field::wind_east,
-                 &field::wind_north,
-                 &field::distance_to_coast,
-                 &field::potential_evapotranspiration,
-                 &field::slope,
-                 &field::discharge,
-                 &field::river_intensity,
-                 &field::lake_depth,
-                 &field::lake_id,
-                 &field::basin_id,
-                 &field::stream_order,
-                 &field::biome,
-                 &field::koppen_class,
-                 &field::net_primary_productivity,
-                 &field::settlement_suitability},
+      .writes = with_outputs_of(
+          {make_hydrology_stage(), make_biomes_stage()},
+          {&field::elevation, &field::uplift_rate, &field::erosion_rate, &field::drainage_area,
+           &field::inflow_area, &field::inflow_discharge, &field::flow_receiver,
+           &field::flow_direction, &field::temperature, &field::temperature_range,
+           &field::precipitation, &field::precipitation_seasonality, &field::wind_east,
+           &field::wind_north, &field::distance_to_coast, &field::potential_evapotranspiration}),
       .own_grid = true};
   StageInfo guided_ = guided_by_folds(info_);
 };

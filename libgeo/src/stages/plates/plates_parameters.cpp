@@ -136,6 +136,10 @@ std::vector<Parameter> sphere_drift_rows(PlatesParameters& p) {
            "abyssal plains", "cortial2019"),
       real("plates.sphere.trench_elevation_km", p.sphere.law.trench_km, "km", -30.0, -0.1,
            "deepest trench", "cortial2019"),
+      real("plates.sphere.slab_trench_m", p.slab_trench_m, "m", 0.0, 15000.0,
+           "depth of a trench below the floor where floor of 100 Myr subducts at 100 mm/yr, in "
+           "frames and in what they hand on; 0: only stage isostasy makes trenches",
+           "hilde1983"),
       real("plates.sphere.summit_elevation_km", p.sphere.law.summit_km, "km", 0.1, 30.0,
            "highest continent", "cortial2019"),
   };
@@ -345,6 +349,10 @@ std::vector<Parameter> sphere_rifting_rows(PlatesParameters& p) {
            "speed at which fragments leave the middle of their plate", "design"),
       real("plates.sphere.rift_onset_myr", p.sphere.rift_onset_myr, "Myr", 0.0, 1000.0,
            "time in which they reach it; 0: at once", "brune2016"),
+      real("plates.sphere.plume_rift_share", p.sphere.plume_rift_share, "1", 0.0, 1.0,
+           "share of the rifts of plates with a plume below their continents whose arms meet above "
+           "it",
+           "burke1973"),
       real("plates.sphere.rift_warp_km", p.sphere.rift_warp_km, "km", 0.0, 5000.0,
            "how far the borders of fragments are warped", "cortial2019"),
       renamed(real("plates.sphere.subduction_initiation_myr", p.sphere.initiation_per_myr, "Myr-1",

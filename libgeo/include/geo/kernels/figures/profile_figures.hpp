@@ -8,9 +8,10 @@
 
 namespace geo {
 
-/// Rivers laid over a relief: steepest descent, across depressions over their lowest pass, to the
-/// sea. The same on every relief, so that the Earth's and a planet's figures can be compared:
-/// neither what a climate evaporates nor what a planet's own rivers have cut has a say in it.
+/// Rivers laid over elevations alone: steepest descent, across depressions over their lowest pass,
+/// to the sea. The same for any topography, so that the Earth's and a planet's figures can be
+/// compared: neither what a climate evaporates nor what a planet's own rivers have cut has a say in
+/// it.
 struct LaidRivers {
   std::vector<Index> receiver;          ///< itself at sea
   std::vector<double> area_m2;          ///< upstream, the cell included

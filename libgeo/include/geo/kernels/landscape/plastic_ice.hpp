@@ -102,7 +102,8 @@ class IceOutflow {
 
 /// Steady flux of ice down a surface: every cell passes on what comes and what snow adds, less what
 /// melts of it, as far as there is any. Accumulation equals melt and calving to rounding, whatever
-/// the surface. Ice forms on land and where ice comes; cells that are `away` melt what reaches
+/// the surface. Ice forms on land, where ice comes, and, over a bed that its weight has pressed
+/// below the sea, where it already stands above the water; cells that are `away` melt what reaches
 /// them, or let it calve where their bed lies below the sea.
 ///
 /// `balance_m_yr`: m of ice a year, one per cell, read where the ground is not away. Cost: linear.

@@ -29,7 +29,7 @@ struct IsostasyParameters {
   double ocean_depth_m = 3750.0;
   double oceanic_km = 7.0;
   double thickness_noise_km = 4.5;
-  double collision_km = 22.0;
+  double collision_km = 23.0;
   double collision_shortening = 0.12;
   double subduction_shortening = 0.04;
   double front_shortening = 0.55;
@@ -41,11 +41,11 @@ struct IsostasyParameters {
 
   double lithosphere = 1.22;
   double craton_compensation = 0.95;
-  double swell_m = 430.0;
+  double swell_m = 345.0;
   double ocean_swell_m = 430.0;
-  double margin_tilt_m = 660.0;
+  double margin_tilt_m = 880.0;
   double margin_tilt_km = 260.0;
-  double relict_km = 9.2;
+  double relict_km = 5.2;
   double heat_m = 950.0;
   double thermal_coefficient = 0.02;
   double shelf_depth_m = 90.0;
@@ -58,7 +58,7 @@ struct IsostasyParameters {
   double fracture_spacing_km = 90.0;
   double abyssal_hills_m = 0.0;
   double fabric_age_myr = 45.0;
-  double land_roughness_m = 60.0;
+  double land_roughness_m = 48.0;
   double noise_factor = 1.0;
   std::string detail = "noise";
   double detail_longest_km = 150.0;

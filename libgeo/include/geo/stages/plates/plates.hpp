@@ -48,6 +48,7 @@ struct PlatesParameters {
   double time_myr = 250.0;
   double spin_up_myr = 0.0;
   double frames_myr = 0.0;
+  double slab_trench_m = 0.0;
   std::string initial_continents = "dispersed";
   std::string given_motions = "held";
   std::string uplift_profile = "piecewise";

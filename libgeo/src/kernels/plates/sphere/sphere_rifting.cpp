@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 
 #include "geo/core/random.hpp"
@@ -176,6 +177,58 @@ FragmentAt voronoi_fragments(const SphereTectonics& model, int plate,
   };
 }
 
+/// A plume below the continents of a plate: the nearest to their middle, or none.
+const SpherePlume* plume_below(const SphereTectonics& model, int plate) {
+  const auto& cap = model.partition.cap(plate);
+  const Vector3 middle = times(model.frame[plate], cap.centre);
+  const SpherePlume* nearest = nullptr;
+  for (const SpherePlume& plume : model.state.plumes) {
+    const std::int32_t above = model.mesh->samples().nearest(back(model.frame[plate], plume.place));
+    const SphereCrust& crust = model.state.crust;
+    if (crust.plate[above] != plate || crust.continental[above] == 0) continue;
+    if (nearest == nullptr || dot(plume.place, middle) > dot(nearest->place, middle)) {
+      nearest = &plume;
+    }
+  }
+  return nearest;
+}
+
+/// Middles of fragments at even angles about a place, above which the rifts between them meet
+/// (Burke & Dewey 1973): two lie on both sides of one rift, three give a triple junction.
+std::vector<Vector3> middles_about(const Vector3& place, double first_angle, int fragments) {
+  constexpr double kAway_rad = 0.2;
+  const Vector3 any = std::abs(place[2]) < 0.9 ? Vector3{0.0, 0.0, 1.0} : Vector3{1.0, 0.0, 0.0};
+  const Vector3 east = normalised(cross(any, place)), north = cross(place, east);
+  std::vector<Vector3> middles;
+  for (int k = 0; k < fragments; ++k) {
+    const double angle = first_angle + 2.0 * std::numbers::pi * k / fragments;
+    const Vector3 way = add(scaled(east, std::cos(angle)), north, std::sin(angle));
+    middles.push_back(add(scaled(place, std::cos(kAway_rad)), way, std::sin(kAway_rad)));
+  }
+  return middles;
+}
+
+/// Middles of the fragments of a plate: about a plume below its continents, or at places drawn on
+/// the sphere, as soon as enough lie on the plate.
+std::vector<Vector3> middles_of_fragments(const SphereTectonics& model, int plate,
+                                          const RandomStream& random, const PlateChances& now,
+                                          int fragments) {
+  if (random.uniform(now.descent, draw_of(now.rifts, 3)) < model.settings.plume_rift_share) {
+    if (const SpherePlume* plume = plume_below(model, plate)) {
+      const double angle =
+          random.uniform(now.descent, draw_of(now.rifts, 4), 0.0, 2.0 * std::numbers::pi);
+      return middles_about(plume->place, angle, fragments);
+    }
+  }
+  std::vector<Vector3> places;
+  const DrawnPlaces drawn(random, now, now.rifts);
+  for (std::uint64_t k = 0; k < 4000 && std::ssize(places) < fragments; ++k) {
+    const std::int32_t at = model.mesh->samples().nearest(back(model.frame[plate], drawn[k]));
+    if (model.state.crust.plate[at] == plate) places.push_back(drawn[k]);
+  }
+  return places;
+}
+
 }  // namespace
 
 void rift_by_chance(SphereTectonics& model) {
@@ -200,15 +253,7 @@ void rift_by_chance(SphereTectonics& model) {
     chances.rift_hazard = 0.0;
     const double draw = random.uniform(now.descent, draw_of(now.rifts, 1));
     const int fragments = model.settings.rift_largest || draw < 0.6 ? 2 : draw < 0.9 ? 3 : 4;
-    // Places drawn on the sphere until enough lie on the plate.
-    std::vector<Vector3> places;
-    const DrawnPlaces drawn(random, now, now.rifts);
-    for (std::uint64_t k = 0; k < 4000 && std::ssize(places) < fragments; ++k) {
-      const Vector3 at = drawn[k];
-      if (model.state.crust.plate[model.mesh->samples().nearest(back(model.frame[p], at))] == p) {
-        places.push_back(at);
-      }
-    }
+    const std::vector<Vector3> places = middles_of_fragments(model, p, random, now, fragments);
     if (std::ssize(places) < 2) continue;
     rift_plate(model, p, places,
                model.settings.rift_speed_mm_yr *

@@ -186,7 +186,8 @@ SphereState drawn_state(const PlatesParameters& parameters, const SphereMesh& me
   state.plumes = first_plumes(parameters, context.seed);
   if (context.plates.empty() && parameters.initial_elevation == "noise") {
     const double step_myr = settings.law.step_myr;
-    state.time_myr = -step_myr * std::round(parameters.spin_up_myr / step_myr);
+    const double before_myr = step_myr * std::round(parameters.spin_up_myr / step_myr);
+    state.time_myr = before_myr > 0.0 ? -before_myr : 0.0;  // files are named by it: no -0
     state.resampled_myr = state.time_myr;
   }
   if (context.reconstruction) state.reconstruction_ma = context.reconstruction->start_ma;

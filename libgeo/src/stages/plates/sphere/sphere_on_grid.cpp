@@ -70,6 +70,7 @@ SphereOnGrid::SphereOnGrid(const PlatesParameters& parameters, const SphereTecto
       grid_(io.grid()),
       radius_km_(1e-3 * io.grid().figure().radius_m),
       whole_m_(whole_m),
+      cell_km_(1e-3 * io.grid().spacing_north_m(io.grid().ny() / 2)),
       seed_(context.seed) {
   const SphereCrust& crust = model.state.crust;
   boundaries_ = find_sphere_boundaries(mesh_, crust.plate, model.rotation, p_.growth.speed_cm_yr,
@@ -79,7 +80,10 @@ SphereOnGrid::SphereOnGrid(const PlatesParameters& parameters, const SphereTecto
   nearest_boundary_ = nearest_samples(
       mesh_, samples, 3.0 * mesh_.samples().spacing() + p_.boundary_width_km / radius_km_);
 
-  if (p_.model == "sphere") find_polarity();
+  if (p_.model == "sphere") {
+    find_polarity();
+    trenches_.emplace(model, boundaries_, overrides_, p_.slab_trench_m, radius_km_);
+  }
 
   std::vector<std::uint8_t> edge(mesh_.size(), 0);
 #pragma omp parallel for schedule(static)
@@ -164,6 +168,9 @@ void SphereOnGrid::draw_crust(const Cell& at, Index cell, const Vector3& unit,
       fold[c] += weight * crust.fold[i][c];
       ridge[c] += weight * crust.ridge[i][c];
     }
+  }
+  if (trenches_) {
+    elevation += (1.0 - fraction) * trenches_->elevation_m(at.place, cell_km_);
   }
   const bool land = fraction >= 0.5;
   const double own_age = age(at, plate, land);

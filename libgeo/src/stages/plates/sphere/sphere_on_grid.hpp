@@ -1,10 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "geo/kernels/plates/sphere/sphere_boundaries.hpp"
 #include "geo/kernels/plates/sphere/sphere_tectonics.hpp"
 #include "geo/stages/plates/plates.hpp"
+#include "sphere_trenches.hpp"
 #include "stages/plates/drifted_fields.hpp"
 
 namespace geo {
@@ -39,12 +41,13 @@ class SphereOnGrid {
   const SphereTectonics& model_;
   const SphereMesh& mesh_;
   const Grid& grid_;
-  double radius_km_, whole_m_;
+  double radius_km_, whole_m_, cell_km_;
   std::uint64_t seed_;
   std::vector<SphereBoundary> boundaries_;
   std::vector<std::int32_t> nearest_boundary_;  // of each sample, -1 far from any
   std::vector<std::uint8_t> overrides_;         // of each boundary: its plate stays up
   std::vector<std::uint8_t> is_edge_;           // samples beside another plate or crust type
+  std::optional<SphereTrenches> trenches_;
 };
 
 }  // namespace geo

@@ -46,6 +46,7 @@ struct SphereSettings {
   double rift_speed_mm_yr = 30.0;       ///< at which fragments part
   double rift_onset_myr = 0.0;          ///< in which they come to it
   double rift_warp_km = 400.0;          ///< of their borders
+  double plume_rift_share = 0.0;        ///< of the rifts of continents above a plume begin there
   double initiation_per_myr =
       0.01;  ///< rate at which 1000 km of old passive margin begin to subduct
   double initiation_age_myr = 120.0;     ///< from which floor at a passive margin is old

@@ -223,7 +223,7 @@ class Ridges {
     const auto first = std::ranges::find_if(rows, is_reached);
     const auto last = std::find_if(rows.rbegin(), rows.rend(), is_reached).base();
     std::vector<Sums> up_to(1);
-    for (const Row& row : std::ranges::subrange(first, last)) {
+    for (const Row& row : std::span(first, last)) {
       Sums next = up_to.back();
       if (!row.is_empty()) {
         const double weight = spacing_rad_ * row.scale * row.scale, u = row.middle();

@@ -5,48 +5,28 @@
 #include <cmath>
 
 #include "geo/kernels/plates/sphere/sphere_tectonics.hpp"
+#include "kernels/plates/sphere/hemispheres.hpp"
 #include "support/sampled_sphere.hpp"
 
 namespace geo {
 namespace {
 
-using test::kRadius_km;
+using test::hemispheres;
 using test::latitude_deg;
 using test::longitude_deg;
 using test::SampledSphere;
 
-SphereSettings quiet() {
-  SphereSettings settings;
-  settings.rift_per_myr = settings.initiation_per_myr = 0.0;
-  settings.slab_pull = 0.0;
-  settings.no_net_rotation = false;
+/// Quiet plates of which no floor begins to subduct, either.
+SphereSettings settled() {
+  SphereSettings settings = test::quiet();
+  settings.initiation_per_myr = 0.0;
   return settings;
-}
-
-/// Two hemispheres of floor about the axis, at speeds of their own (mm/yr, east positive). They
-/// close at longitude 180 when the western one, which holds the younger floor, goes west.
-SphereState hemispheres(const SampledSphere& world, double west_mm_yr, double east_mm_yr) {
-  SphereState state;
-  state.crust.resize(world.mesh.size());
-  for (const double speed : {west_mm_yr, east_mm_yr}) {
-    SpherePlate plate;
-    plate.axis = {0.0, 0.0, speed < 0.0 ? -1.0 : 1.0};
-    plate.speed_rad_myr = std::abs(speed) / kRadius_km;
-    state.add_plate(plate);
-  }
-  for (std::int32_t i = 0; i < world.mesh.size(); ++i) {
-    state.crust.plate[i] = longitude_deg(world.samples.position(i)) < 0.0 ? 0 : 1;
-    state.crust.thickness_m[i] = 7000.0F;
-    state.crust.elevation_m[i] = -5000.0F;
-    state.crust.age_myr[i] = state.crust.plate[i] == 0 ? 50.0F : 60.0F;
-  }
-  return state;
 }
 
 /// Rise of the overriding plate along the equator in a step, m.
 double rise_m(const SampledSphere& world, double west_mm_yr, double east_mm_yr,
               double advance_mm_yr) {
-  SphereSettings settings = quiet();
+  SphereSettings settings = settled();
   settings.law.damping_mm_yr = 0.0;
   settings.accretion_width_km = 0.0;
   settings.advance_mm_yr = advance_mm_yr;
@@ -74,7 +54,7 @@ TEST(OverridingPlates, RiseAsTheyAdvanceOnTheirTrench) {
 
 TEST(Erosion, GoesDownToTheSeaAsItStands) {
   const SampledSphere world(20000);
-  SphereSettings settings = quiet();
+  SphereSettings settings = settled();
   settings.wears_land_alone = true;
   settings.ocean_share = 0.7;
   SphereState state = hemispheres(world, 0.0, 0.0);
@@ -100,7 +80,7 @@ TEST(Erosion, GoesDownToTheSeaAsItStands) {
 
 /// Collisions of two continents that close at 20 mm/yr for 80 Myr, 1600 km.
 int collisions(const SampledSphere& world, double suturing_mm_yr) {
-  SphereSettings settings = quiet();
+  SphereSettings settings = settled();
   settings.penetration_km = 5000.0;
   settings.suturing_mm_yr = suturing_mm_yr;
   SphereState state = hemispheres(world, -10.0, 10.0);

@@ -8,6 +8,7 @@
 
 #include "geo/kernels/plates/sphere/sphere_start.hpp"
 #include "geo/kernels/plates/sphere/sphere_tectonics.hpp"
+#include "kernels/plates/sphere/hemispheres.hpp"
 #include "support/sampled_sphere.hpp"
 
 namespace geo {
@@ -17,6 +18,7 @@ using test::kKmPerDegree;
 using test::kRadius_km;
 using test::latitude_deg;
 using test::longitude_deg;
+using test::quiet;
 using test::SampledSphere;
 
 /// Plates between meridians, each with its speed eastwards and the age of its floor.
@@ -56,14 +58,6 @@ void add_land(const SampledSphere& world, SphereState& state,
     state.crust.elevation_m[i] = 300.0F;
     state.crust.thickness_m[i] = 36000.0F;
   }
-}
-
-SphereSettings quiet() {
-  SphereSettings settings;
-  settings.rift_per_myr = 0.0;
-  settings.slab_pull = 0.0;
-  settings.no_net_rotation = false;
-  return settings;
 }
 
 /// Samples of a plate that lie below another one.
@@ -122,7 +116,7 @@ TEST(Driftworld, AScoreIsAHundredForEachSampleOfContinentLessOneForEachOfFloor) 
   }
 }
 
-TEST(Driftworld, WhatGoesBelowFloorIsBookedAsLost) {
+TEST(Driftworld, WhatGoesBelowFloorIsCountedAsLost) {
   const SampledSphere world(20000);
   SphereState state = slices(world, kMeeting);
   add_land(world, state, [](double lat, double lon) {

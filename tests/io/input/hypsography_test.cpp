@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "geo/core/error.hpp"
-#include "temporary_folder.hpp"
+#include "io/temporary_folder.hpp"
 
 namespace geo::io {
 namespace {

@@ -1,3 +1,5 @@
+#include "geo/io/input/dem.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <netcdf.h>
@@ -6,19 +8,18 @@
 #include <fstream>
 #include <functional>
 #include <limits>
-#include <sstream>
 
 #include "geo/core/error.hpp"
-#include "geo/io/input/dem.hpp"
 #include "io/temporary_folder.hpp"
+#include "support/text_of.hpp"
 
 namespace geo::io {
 namespace {
 
 using testing::HasSubstr;
 
-/// A small relief file of any shape, described as one describes it to a colleague.
-struct ReliefFile {
+/// A small elevation model of any shape, described as one describes it to a colleague.
+struct DemFile {
   std::vector<double> rows, columns;
   std::string row_name = "lat", column_name = "lon";
   std::string row_units = "degrees_north", column_units = "degrees_east";
@@ -39,7 +40,7 @@ struct ReliefFile {
 
 void good(int status) { ASSERT_EQ(status, NC_NOERR) << nc_strerror(status); }
 
-void ReliefFile::write(const std::filesystem::path& path) const {
+void DemFile::write(const std::filesystem::path& path) const {
   int id = 0, y = 0, x = 0, t = 0, yv = 0, xv = 0, zv = 0;
   good(nc_create(path.c_str(), format | NC_CLOBBER, &id));
   if (time) good(nc_def_dim(id, "time", NC_UNLIMITED, &t));
@@ -92,8 +93,8 @@ std::vector<double> reversed(std::vector<double> values) {
 }
 
 /// 24 x 12 cells of 15 degrees from 180 W.
-ReliefFile planet_file() {
-  ReliefFile file;
+DemFile planet_file() {
+  DemFile file;
   file.rows = steps(-82.5, 15.0, 12);
   file.columns = steps(-172.5, 15.0, 24);
   // Of period 360 in longitude, told apart everywhere, even in sign.
@@ -104,14 +105,14 @@ ReliefFile planet_file() {
   return file;
 }
 
-Dem read(const ReliefFile& file, const std::string& variable = "") {
+Dem read(const DemFile& file, const std::string& variable = "") {
   const TemporaryFolder folder;
   file.write(folder / "relief.nc");
   return read_dem((folder / "relief.nc").string() + (variable.empty() ? "" : ":") + variable,
                   Planet{});
 }
 
-std::string complaint(const ReliefFile& file, const std::string& variable = "") {
+std::string complaint(const DemFile& file, const std::string& variable = "") {
   try {
     read(file, variable);
   } catch (const InputError& error) {
@@ -123,7 +124,7 @@ std::string complaint(const ReliefFile& file, const std::string& variable = "") 
 }
 
 void expect_planet(const Dem& relief, double tolerance_m = 1e-3) {
-  const ReliefFile plain = planet_file();
+  const DemFile plain = planet_file();
   const Grid& grid = relief.grid;
   ASSERT_EQ(grid.topology(), Topology::sphere);
   ASSERT_EQ(grid.nx(), 24);
@@ -138,27 +139,27 @@ void expect_planet(const Dem& relief, double tolerance_m = 1e-3) {
 TEST(Dem, PlainPlanetIsReadAsItIs) { expect_planet(read(planet_file())); }
 
 TEST(Dem, NorthernRowsMayComeFirst) {
-  ReliefFile file = planet_file();
+  DemFile file = planet_file();
   file.rows = reversed(file.rows);
   expect_planet(read(file));
 }
 
 TEST(Dem, LongitudesMayRunFromAnyMeridian) {
   for (const double west : {7.5, 22.5, -352.5, 187.5, -7.5}) {
-    ReliefFile file = planet_file();
+    DemFile file = planet_file();
     file.columns = steps(west, 15.0, 24);
     expect_planet(read(file));
   }
 }
 
 TEST(Dem, LongitudesMayRunWestwards) {
-  ReliefFile file = planet_file();
+  DemFile file = planet_file();
   file.columns = reversed(steps(7.5, 15.0, 24));
   expect_planet(read(file));
 }
 
 TEST(Dem, RepeatedEndColumnIsDropped) {
-  ReliefFile file = planet_file();
+  DemFile file = planet_file();
   file.columns = steps(7.5, 15.0, 25);
   expect_planet(read(file));
   file.columns = reversed(file.columns);
@@ -168,7 +169,7 @@ TEST(Dem, RepeatedEndColumnIsDropped) {
 TEST(Dem, EveryFormatOfNetcdfIsRead) {
   for (const int format :
        {0, NC_64BIT_OFFSET, NC_64BIT_DATA, NC_NETCDF4, NC_NETCDF4 | NC_CLASSIC_MODEL}) {
-    ReliefFile file = planet_file();
+    DemFile file = planet_file();
     file.format = format;
     expect_planet(read(file));
     file.time = true;
@@ -177,7 +178,7 @@ TEST(Dem, EveryFormatOfNetcdfIsRead) {
 }
 
 TEST(Dem, PackedIntegersAreUnpacked) {
-  ReliefFile file = planet_file();
+  DemFile file = planet_file();
   file.type = NC_SHORT;
   file.scale = 0.5;
   file.offset = 100.0;
@@ -186,7 +187,7 @@ TEST(Dem, PackedIntegersAreUnpacked) {
 }
 
 TEST(Dem, UnitsOfLengthAreConverted) {
-  ReliefFile file = planet_file();
+  DemFile file = planet_file();
   const auto metres = file.elevation;
   for (const auto& [units, per_metre] :
        std::vector<std::pair<std::string, double>>{{"km", 1e-3},
@@ -206,7 +207,7 @@ TEST(Dem, UnitsOfLengthAreConverted) {
 
 TEST(Dem, WrongUnitsAreRefused) {
   for (const char* units : {"K", "Pa", "m2", "m-1", "s", "degrees", "nonsense", "1"}) {
-    ReliefFile file = planet_file();
+    DemFile file = planet_file();
     file.units = units;
     const std::string message = complaint(file);
     EXPECT_THAT(message, HasSubstr("variable z"));
@@ -216,7 +217,7 @@ TEST(Dem, WrongUnitsAreRefused) {
 }
 
 TEST(Dem, MissingCellsAreCountedAndTheFirstIsNamed) {
-  ReliefFile file = planet_file();
+  DemFile file = planet_file();
   const auto whole = file.elevation;
   for (const double hole : {std::numeric_limits<double>::quiet_NaN(), -9999.0}) {
     file.fill = -9999.0;
@@ -232,7 +233,7 @@ TEST(Dem, MissingCellsAreCountedAndTheFirstIsNamed) {
 }
 
 TEST(Dem, NodesAtThePolesAreHalfCells) {
-  ReliefFile file = planet_file();
+  DemFile file = planet_file();
   file.rows = steps(-90.0, 15.0, 13);
   file.columns = steps(0.0, 15.0, 24);
   file.elevation = [](double row, double) { return row == 90.0 ? 1300.0 : 0.0; };
@@ -248,7 +249,7 @@ TEST(Dem, NodesAtThePolesAreHalfCells) {
 }
 
 TEST(Dem, OddNumberOfColumnsGetsAGridThatCanCrossThePole) {
-  ReliefFile file = planet_file();
+  DemFile file = planet_file();
   file.columns = steps(0.0, 360.0 / 23, 23);
   const Dem relief = read(file);
   EXPECT_EQ(relief.grid.nx(), 24);
@@ -256,7 +257,7 @@ TEST(Dem, OddNumberOfColumnsGetsAGridThatCanCrossThePole) {
 }
 
 TEST(Dem, RegionBecomesAWindow) {
-  ReliefFile file;
+  DemFile file;
   file.rows = steps(40.25, 0.5, 20);
   file.columns = steps(355.25, 0.5, 30);
   const Dem relief = read(file);
@@ -269,7 +270,7 @@ TEST(Dem, RegionBecomesAWindow) {
 }
 
 TEST(Dem, ProjectedMetresBecomeAPlaneWithItsCentre) {
-  ReliefFile file;
+  DemFile file;
   file.row_name = "y";
   file.column_name = "x";
   file.row_units = file.column_units = "m";
@@ -299,7 +300,7 @@ TEST(Dem, ProjectedMetresBecomeAPlaneWithItsCentre) {
 }
 
 TEST(Dem, VariableIsFoundByStandardNameThenNameThenLoneliness) {
-  ReliefFile file = planet_file();
+  DemFile file = planet_file();
   file.variable = "something";
   EXPECT_EQ(read(file).variable, "something");
   file.second_variable = "other";
@@ -320,7 +321,7 @@ TEST(Dem, AbsentVariableIsNamedWithThoseThatAreThere) {
 }
 
 TEST(Dem, UnevenAxisIsRefused) {
-  ReliefFile file = planet_file();
+  DemFile file = planet_file();
   file.rows[5] += 1.0;
   EXPECT_THAT(complaint(file), HasSubstr("axis lat: steps are uneven at index 5"));
 }
@@ -350,14 +351,14 @@ TEST(Dem, AxisLongerThanAnyGridIsRefused) {
 }
 
 TEST(Dem, AxesWithoutMeaningAreRefused) {
-  ReliefFile file = planet_file();
+  DemFile file = planet_file();
   file.row_name = "j";
   file.row_units = "";
   EXPECT_THAT(complaint(file), HasSubstr("dimension j has no coordinates"));
 }
 
 TEST(Dem, TransposedRasterIsRefused) {
-  ReliefFile file = planet_file();
+  DemFile file = planet_file();
   std::swap(file.rows, file.columns);
   std::swap(file.row_name, file.column_name);
   std::swap(file.row_units, file.column_units);
@@ -365,7 +366,7 @@ TEST(Dem, TransposedRasterIsRefused) {
 }
 
 TEST(Dem, LatitudesBeyondThePolesAreRefused) {
-  ReliefFile file = planet_file();
+  DemFile file = planet_file();
   file.rows = steps(-120.0, 15.0, 17);
   EXPECT_THAT(complaint(file), HasSubstr("beyond the poles"));
 }
@@ -374,17 +375,14 @@ TEST(Dem, TruncatedFilesAreRefusedWhateverTheirFormat) {
   const TemporaryFolder folder;
   for (const int format : {0, NC_64BIT_OFFSET, NC_64BIT_DATA, NC_NETCDF4}) {
     for (const bool time : {false, true}) {
-      ReliefFile file = planet_file();
+      DemFile file = planet_file();
       file.format = format;
       file.time = time;
       file.write(folder / "whole.nc");
-      std::ifstream stream(folder / "whole.nc", std::ios::binary);
-      std::ostringstream bytes;
-      bytes << stream.rdbuf();
+      const std::string whole = test::text_of(folder / "whole.nc");
       for (const std::size_t cut : {4, 300, 1000}) {
         SCOPED_TRACE(std::to_string(format) + " cut by " + std::to_string(cut));
-        std::ofstream(folder / "cut.nc", std::ios::binary)
-            << bytes.str().substr(0, bytes.str().size() - cut);
+        std::ofstream(folder / "cut.nc", std::ios::binary) << whole.substr(0, whole.size() - cut);
         EXPECT_THROW(read_dem((folder / "cut.nc").string(), Planet{}), InputError);
       }
       EXPECT_NO_THROW(read_dem((folder / "whole.nc").string(), Planet{}));
@@ -402,7 +400,7 @@ TEST(Dem, ResamplesToItsOwnGridWithoutChange) {
 }
 
 TEST(Dem, TargetBeyondTheReliefIsRefused) {
-  ReliefFile file;
+  DemFile file;
   file.rows = steps(40.25, 0.5, 20);
   file.columns = steps(-4.75, 0.5, 30);
   const Dem relief = read(file);

@@ -1,38 +1,16 @@
-// Margins, spherical harmonics and hypsometric curves, against exact values.
+// Distances and rates of convergence at the margins of plates, against exact values.
+#include "geo/kernels/plates/growth/convergent_margins.hpp"
+
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <cstdint>
 #include <numbers>
-
-#include "geo/core/field.hpp"
-#include "geo/core/vector3.hpp"
-#include "geo/kernels/landscape/hypsometric_curve.hpp"
-#include "geo/kernels/noise/noise.hpp"
-#include "geo/kernels/numerics/quantiles.hpp"
-#include "geo/kernels/numerics/spherical_filter.hpp"
-#include "geo/kernels/plates/growth/convergent_margins.hpp"
+#include <vector>
 
 namespace geo {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-
-TEST(SphericalFilter, ScalesEachHarmonicByItsGain) {
-  const Grid grid = Grid::sphere(128, 64);
-  std::vector<float> field(grid.size()), expected(grid.size());
-  for (int j = 0; j < grid.ny(); ++j) {
-    const double s = std::sin(grid.latitude_deg(j) * kPi / 180.0), c = std::sqrt(1.0 - s * s);
-    for (int i = 0; i < grid.nx(); ++i) {
-      const double lon = grid.longitude_deg(i) * kPi / 180.0;
-      const double y32 = c * c * s * std::cos(2.0 * lon);              // degree 3
-      const double y10 = s, y77 = std::pow(c, 7) * std::sin(7 * lon);  // degrees 1 and 7
-      field[grid.cell(i, j)] = static_cast<float>(2.0 + y10 + 5.0 * y32 + 3.0 * y77);
-      expected[grid.cell(i, j)] = static_cast<float>(1.0 + 0.5 * y10 + 10.0 * y32);
-    }
-  }
-  filter_degrees(grid, field, std::vector<double>{0.5, 0.5, 9.0, 2.0, 1.0, 1.0, 1.0, 0.0});
-  for (Index cell = 0; cell < grid.size(); ++cell) ASSERT_NEAR(field[cell], expected[cell], 2e-5);
-}
 
 /// A convergent boundary along the equator between an old ocean in the south and a continent.
 struct EquatorialTrench {
@@ -125,39 +103,6 @@ TEST(ConvergentMargins, ContinentsInAnOceanDoNotMakeItsFloorOlder) {
     ASSERT_EQ(margins.kind[cell], Convergence::oceans);
     if (t.type[cell] != 0) continue;  // on the boundary itself
     ASSERT_EQ(margins.across_km[cell] < 0.0F, t.plate[cell] == 1);
-  }
-}
-
-TEST(Hypsometry, PowerLawBringsTheMedianOfLandToItsAim) {
-  const Grid grid = Grid::sphere(256, 128);
-  const Noise noise(5, "heights");
-  std::vector<float> height(grid.size());
-  std::vector<std::uint8_t> land(grid.size());
-  for (Index cell = 0; cell < grid.size(); ++cell) {
-    const auto p = grid.unit_vector(grid.column(cell), grid.row(cell));
-    height[cell] = 9000.0F * noise.fbm(p, 2.0, 6) - 200.0F;
-    land[cell] = height[cell] > 0.0F;
-  }
-  const auto before = height;
-  const double alpha = bend_hypsometry(grid, height, 400.0, 25e3);
-  EXPECT_GT(alpha, 1.0);
-  EXPECT_LE(alpha, 5.0);
-  EXPECT_NEAR(quantile(grid, height, 0.5, land), 400.0, 8.0);
-  for (Index cell = 0; cell < grid.size(); ++cell) {
-    if (land[cell] != 0) {
-      ASSERT_GT(height[cell], 0.0F);
-    } else {
-      ASSERT_EQ(height[cell], before[cell]);
-    }
-  }
-  // Without smoothing it is the formula itself.
-  height = before;
-  const double most = quantile(grid, before, 1.0, land), median = quantile(grid, before, 0.5, land);
-  const double exact = std::log(400.0 / most) / std::log(median / most);
-  EXPECT_NEAR(bend_hypsometry(grid, height, 400.0, 0.0), exact, 1e-3);
-  for (Index cell = 0; cell < grid.size(); ++cell) {
-    if (land[cell] == 0 || before[cell] < 50.0F) continue;
-    ASSERT_NEAR(height[cell], most * std::pow(before[cell] / most, exact), 0.2);
   }
 }
 

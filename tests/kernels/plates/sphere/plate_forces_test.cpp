@@ -9,11 +9,13 @@
 
 #include "geo/kernels/plates/sphere/sphere_start.hpp"
 #include "geo/kernels/plates/sphere/sphere_tectonics.hpp"
+#include "kernels/plates/sphere/hemispheres.hpp"
 #include "support/sampled_sphere.hpp"
 
 namespace geo {
 namespace {
 
+using test::hemispheres;
 using test::SampledSphere;
 
 constexpr double kPi = std::numbers::pi;
@@ -38,26 +40,6 @@ TEST(PlateForces, AreThoseWorkedOutByHand) {
 }
 
 double longitude(const Vector3& at) { return std::atan2(at[1], at[0]); }
-
-/// Two hemispheres of ocean that part at longitude 0 and meet at 180, where the older one, plate 1
-/// in the east, subducts.
-SphereState hemispheres(const SampledSphere& world, double relative_mm_yr) {
-  SphereState state;
-  state.crust.resize(world.mesh.size());
-  for (const double sign : {-1.0, 1.0}) {
-    SpherePlate plate;
-    plate.axis = {0.0, 0.0, sign};
-    plate.speed_rad_myr = 0.5 * relative_mm_yr / 6370.0;
-    state.add_plate(plate);
-  }
-  for (std::int32_t i = 0; i < world.mesh.size(); ++i) {
-    state.crust.plate[i] = longitude(world.samples.position(i)) < 0.0 ? 0 : 1;
-    state.crust.thickness_m[i] = 7000.0F;
-    state.crust.elevation_m[i] = -5000.0F;
-    state.crust.age_myr[i] = state.crust.plate[i] == 0 ? 50.0F : 60.0F;
-  }
-  return state;
-}
 
 SphereSettings by_forces() {
   SphereSettings settings;

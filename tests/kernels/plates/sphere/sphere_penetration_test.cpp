@@ -116,7 +116,7 @@ TEST(SpherePenetration, ObliqueContinentsCollideWhenTheirClosingHasBroughtThemTh
   }
 }
 
-TEST(SpherePenetration, ContinentsThatGoOnMeetingCollideThoughAllIsReadAnewBetween) {
+TEST(SpherePenetration, ContinentsThatGoOnMeetingCollideThoughCrustIsResampledBetween) {
   const SampledSphere world(40000);
   constexpr double kSpeed_mm_yr = 20.0;
   // Resampled every 10 Myr, in which they come 200 km; 300 km are due after 15.

@@ -13,23 +13,14 @@
 #include "geo/io/netcdf/stage_file.hpp"
 #include "io/drawing/png_file.hpp"
 #include "io/temporary_folder.hpp"
+#include "support/message_of.hpp"
+#include "support/text_of.hpp"
 
 namespace geo::io {
 namespace {
 
+using test::message_of;
 using testing::HasSubstr;
-
-template <class Action>
-std::string message_of(ErrorKind kind, const Action& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), kind) << error.what();
-    return error.what();
-  }
-  ADD_FAILURE() << "nothing was thrown";
-  return {};
-}
 
 void write_text(const std::filesystem::path& path, const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;
@@ -163,8 +154,7 @@ TEST(ImageRelief, RefusesInOneLineWhatIsDamagedOrSaysTooLittle) {
   write_grey_png(folder / "b.png", grey, 16, 8);
   EXPECT_THAT(message_of(ErrorKind::input, [&] { read_dem((folder / "b.png").string(), {}); }),
               HasSubstr("--dem-range"));
-  std::ifstream stream(folder / "b.png", std::ios::binary);
-  const std::string whole{std::istreambuf_iterator<char>(stream), {}};
+  const std::string whole = test::text_of(folder / "b.png");
   for (const std::size_t length : {9U, 30U, 45U, 60U}) {
     EXPECT_THAT(refusal(whole.substr(0, length), {"0,1", ""}), HasSubstr("PNG"));
   }

@@ -11,7 +11,7 @@
 
 #include "geo/core/error.hpp"
 #include "geo/io/files/embedded_data.hpp"
-#include "temporary_folder.hpp"
+#include "io/temporary_folder.hpp"
 
 namespace geo::io {
 namespace {

@@ -115,6 +115,44 @@ TEST(SphereRifting, OpensAnywhereOnPlatesOfManySeedsByPlaceAndByLine) {
   EXPECT_EQ(seen, 9);
 }
 
+/// A continent over the eastern hemisphere that breaks by chance in its first step, above a plume
+/// or not: how far its break passes by that plume, in the frame of the planet.
+double break_from_plume_km(const SampledSphere& world, double share, std::uint64_t seed) {
+  const Vector3 plume = normalised(add(on_equator(70.0), Vector3{0.0, 0.0, 1.0}, 0.4));
+  SphereState state = floor_of(world, 2);
+  for (std::int32_t i = 0; i < world.mesh.size(); ++i) {
+    if (state.crust.plate[i] == 1) state.crust.continental[i] = 1;
+  }
+  state.plumes.push_back({.place = plume});
+  SphereSettings settings = still();
+  settings.rift_per_myr = 0.02;
+  settings.plume_rift_share = share;
+  SphereTectonics model(world.mesh, settings, std::move(state), seed);
+  const std::vector<std::int16_t> before = model.state.crust.plate;
+  for (int step = 0; step < 40 && model.budget.rifts == 0; ++step) advance(model);
+  EXPECT_GT(model.budget.rifts, 0);
+  double nearest = 9.0;
+  for (std::int32_t i = 0; i < world.mesh.size(); ++i) {
+    for (const std::int32_t j : world.mesh.neighbours(i)) {
+      if (before[i] != before[j] || model.state.crust.plate[i] == model.state.crust.plate[j]) {
+        continue;
+      }
+      nearest = std::min(nearest, length(add(world.samples.position(i), plume, -1.0)));
+    }
+  }
+  return kRadius_km * nearest;
+}
+
+TEST(SphereRifting, BreaksThatAPlumeLeadsMeetAboveIt) {
+  const SampledSphere world(12000);
+  double by_chance_km = 0.0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    EXPECT_LT(break_from_plume_km(world, 1.0, seed), 1.5 * world.samples.spacing() * kRadius_km);
+    by_chance_km += break_from_plume_km(world, 0.0, seed) / 6.0;
+  }
+  EXPECT_GT(by_chance_km, 500.0);
+}
+
 TEST(SphereRifting, AllFragmentsLeaveEachOther) {
   const SampledSphere world(20000);
   const Vector3 at = on_equator(50.0), north{0.0, 0.0, 1.0};

@@ -10,7 +10,7 @@
 #include <numbers>
 
 #include "geo/core/error.hpp"
-#include "io/picture.hpp"
+#include "io/maps/picture.hpp"
 #include "io/temporary_folder.hpp"
 
 namespace geo::io {
