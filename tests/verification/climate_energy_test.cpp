@@ -3,12 +3,14 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "geo/kernels/climate/energy_balance.hpp"
 #include "geo/kernels/climate/evaporation.hpp"
 #include "geo/kernels/climate/insolation.hpp"
 #include "geo/kernels/climate/ocean_heat.hpp"
+#include "geo/kernels/climate/thermodynamics.hpp"
 #include "geo/kernels/numerics/area_sum.hpp"
 
 namespace geo {
@@ -133,25 +135,61 @@ TEST(EnergyBalance, ConstantAlbedoMatchesLegendreSolution) {
   EXPECT_NEAR(second / -0.47665 * -0.48, -21.5547, 0.03) << "second order in the spacing of 2 deg";
 }
 
+/// What a field has of the first Legendre degree, times an area.
+std::complex<double> first_degree(const Grid& grid, std::span<const std::complex<double>> values) {
+  std::complex<double> sum = 0.0;
+  for (int j = 0; j < grid.ny(); ++j) {
+    sum += grid.area_m2(j) * std::sin(grid.latitude_deg(j) * kRadians) * values[grid.cell(0, j)];
+  }
+  return sum;
+}
+
+/// The same of the annual harmonic of the insolation at 1360 W m-2.
+std::complex<double> first_degree_insolation(const Grid& grid, const Orbit& orbit) {
+  std::vector<std::complex<double>> harmonic(static_cast<std::size_t>(grid.size()));
+  for (int j = 0; j < grid.ny(); ++j) {
+    for (int m = 0; m < kMonths; ++m) {
+      harmonic[grid.cell(0, j)] += 2.0 / kMonths *
+                                   monthly_insolation_w_m2(grid.latitude_deg(j), orbit, 1360.0)[m] *
+                                   std::polar(1.0, -2 * std::numbers::pi * (m + 0.5) / kMonths);
+    }
+  }
+  return first_degree(grid, harmonic);
+}
+
 TEST(EnergyBalance, HarmonicSolvesTheStoringPlanet) {
   // On a uniform planet degree 1 dominates the annual harmonic: T1 = Q1 a / (2 D + B + i omega C).
   const Grid grid = Grid::sphere(90, 90);
   EnergyBalance model = constant_albedo();
   model.land_heat_capacity_w_yr_m2_k = 3.0;
   const auto s = solve(grid, model, 1.0F);
-  std::complex<double> temperature = 0.0, insolation = 0.0;
-  for (int j = 0; j < grid.ny(); ++j) {
-    const double x = std::sin(grid.latitude_deg(j) * kRadians);
-    temperature += grid.area_m2(j) * x * s.harmonic(1)[grid.cell(0, j)];
-    for (int m = 0; m < kMonths; ++m) {
-      insolation += grid.area_m2(j) * x * 2.0 / kMonths *
-                    monthly_insolation_w_m2(grid.latitude_deg(j), kCircle, 1360.0)[m] *
-                    std::polar(1.0, -2 * std::numbers::pi * (m + 0.5) / kMonths);
-    }
-  }
   const std::complex<double> expected =
-      insolation * 0.7 / std::complex<double>(2 * 0.55 + 2.0, 2 * std::numbers::pi * 3.0);
-  EXPECT_NEAR(std::abs(temperature / expected - 1.0), 0.0, 1e-3);
+      first_degree_insolation(grid, kCircle) * 0.7 /
+      std::complex<double>(2 * 0.55 + 2.0, 2 * std::numbers::pi * 3.0);
+  EXPECT_NEAR(std::abs(first_degree(grid, s.harmonic(1)) / expected - 1.0), 0.0, 1e-3);
+}
+
+// The slab of water answers through its exchange g with the air: i omega C becomes
+// i omega C g / (g + i omega C), and of the sun's heat that it takes g / (g + i omega C) comes
+// back. Where the year's sun is the same at all latitudes, so are temperature (14 degC) and g.
+TEST(EnergyBalance, SeaAnswersThroughItsExchangeWithTheAir) {
+  const Grid grid = Grid::sphere(90, 90);
+  EnergyBalance model = constant_albedo();
+  model.orbit = {54.7356, 0.0, 0.0};
+  model.diffusivity_w_m2_k = 5.0;
+  model.ocean_heat_capacity_w_yr_m2_k = 5.0;
+  model.sunlit_air_share = 0.2;
+  for (const double at_15_c : {5.0, 20.0, 1e4}) {
+    model.sea_exchange_w_m2_k = at_15_c;
+    const auto s = solve(grid, model, 0.0F);
+    const double exchange =
+        at_15_c * (1.0 + latent_to_sensible_slope(14.0)) / (1.0 + latent_to_sensible_slope(15.0));
+    const std::complex<double> stored(0.0, 2 * std::numbers::pi * 5.0);
+    const std::complex<double> passed = exchange / (exchange + stored);
+    const std::complex<double> expected = first_degree_insolation(grid, model.orbit) * 0.7 *
+                                          (0.2 + 0.8 * passed) / (2 * 5.0 + 2.0 + stored * passed);
+    EXPECT_NEAR(std::abs(first_degree(grid, s.harmonic(1)) / expected - 1.0), 0.0, 1e-3) << at_15_c;
+  }
 }
 
 TEST(EnergyBalance, HeightsMatterThroughSnowIceAndTheHeatThatTheyHoldBack) {
@@ -320,6 +358,15 @@ TEST(Budyko, SpotValueAndLimits) {
   EXPECT_EQ(budyko_evaporated_share(0.0), 0.0);
   EXPECT_NEAR(budyko_evaporated_share(1e-4), 1e-4, 1e-7) << "wet: all of the energy evaporates";
   EXPECT_NEAR(budyko_evaporated_share(50.0), 1.0, 1e-3) << "dry: all of the rain evaporates";
+}
+
+TEST(Clearness, FallsFromDesertsToRainforests) {
+  EXPECT_NEAR(clearness(0.0, 2000.0), (0.25 + 0.5 * 0.9) / 0.5, 1e-12);
+  EXPECT_NEAR(clearness(1e6, 1500.0), (0.25 + 0.5 * 0.35) / 0.5, 1e-12);
+  EXPECT_EQ(clearness(500.0, 0.0), 1.0);
+  for (double rain = 100.0; rain < 4000.0; rain *= 1.3) {
+    EXPECT_LT(clearness(1.3 * rain, 1500.0), clearness(rain, 1500.0)) << rain;
+  }
 }
 
 TEST(Oudin, FollowsItsFormula) {

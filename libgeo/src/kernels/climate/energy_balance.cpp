@@ -165,12 +165,34 @@ class Surface {
   }
 
   /// Sea ice cuts the air off from the water's heat, but melts.
-  [[nodiscard]] double capacity_w_yr_m2_k(double annual_mean_c, Index cell) const {
-    const double ice = sea_ice(annual_mean_c);
-    const double sea =
-        model_.ocean_heat_capacity_w_yr_m2_k +
-        ice * (model_.ice_heat_capacity_w_yr_m2_k - model_.ocean_heat_capacity_w_yr_m2_k);
-    return land_[cell] * model_.land_heat_capacity_w_yr_m2_k + (1.0 - land_[cell]) * sea;
+  [[nodiscard]] double sea_capacity_w_yr_m2_k(double annual_mean_c) const {
+    return model_.ocean_heat_capacity_w_yr_m2_k +
+           sea_ice(annual_mean_c) *
+               (model_.ice_heat_capacity_w_yr_m2_k - model_.ocean_heat_capacity_w_yr_m2_k);
+  }
+
+  /// Heat and vapour that pass from sea to air, per kelvin.
+  [[nodiscard]] double exchange_w_m2_k(double annual_mean_c) const {
+    const auto moist = [](double temperature_c) {
+      return 1.0 + latent_to_sensible_slope(temperature_c);
+    };
+    return model_.sea_exchange_w_m2_k * moist(annual_mean_c) / moist(15.0);
+  }
+
+  /// How the sea answers one harmonic of the year through its exchange with the air, C dT_s/dt =
+  /// Q_s + g (T - T_s): what takes the place of i omega C in the air's equation, and the share of
+  /// the source that reaches the air.
+  struct Answer {
+    Complex loss_w_m2_k, share;
+  };
+  [[nodiscard]] Answer answer(int k, double annual_mean_c, Index cell) const {
+    const Complex land_loss(0.0, 2.0 * kPi * k * model_.land_heat_capacity_w_yr_m2_k);
+    const Complex sea_loss(0.0, 2.0 * kPi * k * sea_capacity_w_yr_m2_k(annual_mean_c));
+    const double land = land_[cell], exchange = exchange_w_m2_k(annual_mean_c);
+    const Complex passed = exchange / (exchange + sea_loss);
+    return {
+        land * land_loss + (1.0 - land) * sea_loss * passed,
+        land + (1.0 - land) * (model_.sunlit_air_share + (1.0 - model_.sunlit_air_share) * passed)};
   }
 
   [[nodiscard]] double diffusivity_w_m2_k(double annual_mean_c, Index cell) const {
@@ -223,7 +245,6 @@ class PeriodicYear {
         advection_(grid, model.advected_heat_j_m2_k, winds),
         ocean_(size_),
         diffusivity_(size_),
-        capacity_(size_),
         temperature_(size_) {
     ocean_heat(grid, model, retrograde, latitude_deg, land_fraction, ocean_);
     for (std::size_t cell = 0; cell < size_; ++cell) {
@@ -231,6 +252,7 @@ class PeriodicYear {
       temperature_.harmonic(0)[cell] = 27.0 - 40.0 * sine * sine;
     }
     for (auto& source : sources_) source.resize(size_);
+    for (auto& answers : answers_) answers.resize(size_);
   }
 
   /// Snow, ice, winds and moist transport follow the temperature; factors are kept while they still
@@ -261,8 +283,9 @@ class PeriodicYear {
     for (std::size_t cell = 0; cell < size_; ++cell) {
       diffusivity_[cell] =
           surface_.diffusivity_w_m2_k(temperature_.mean_c(cell), static_cast<Index>(cell));
-      capacity_[cell] =
-          surface_.capacity_w_yr_m2_k(temperature_.mean_c(cell), static_cast<Index>(cell));
+      for (int k = 0; k <= kHarmonics; ++k) {
+        answers_[k][cell] = surface_.answer(k, temperature_.mean_c(cell), static_cast<Index>(cell));
+      }
     }
     advection_.average(temperature_, stiffness_w_m2_k());
   }
@@ -290,6 +313,7 @@ class PeriodicYear {
           Complex sum = 0.0;
           for (int m = 0; m < kMonths; ++m) sum += absorbed[m] * std::conj(month_phase(k, m));
           sum *= (k == 0 ? 1.0 : 2.0) / kMonths;
+          sum *= answers_[k][cell].share;
           if (k == 0) sum += ocean_[cell] - model_.outgoing_w_m2;
           sum *= grid_.area_m2(j);
           // Half-way, so that snow, ice and melting settle.
@@ -302,7 +326,7 @@ class PeriodicYear {
   void factor(int k) {
     std::vector<Complex> loss(size_);
     for (std::size_t cell = 0; cell < size_; ++cell) {
-      loss[cell] = Complex(model_.outgoing_slope_w_m2_k, 2.0 * kPi * k * capacity_[cell]) *
+      loss[cell] = (model_.outgoing_slope_w_m2_k + answers_[k][cell].loss_w_m2_k) *
                    grid_.area_m2(grid_.row(static_cast<Index>(cell)));
     }
     const HeatOperator heat(grid_, model_.advected_heat_j_m2_k, advection_.mean_wind_m_s());
@@ -321,7 +345,8 @@ class PeriodicYear {
   std::size_t size_;
   Surface surface_;
   HeatAdvection advection_;
-  std::vector<double> ocean_, diffusivity_, capacity_;
+  std::vector<double> ocean_, diffusivity_;
+  std::array<std::vector<Surface::Answer>, kHarmonics + 1> answers_;
   TemperatureCycle temperature_;
   std::array<HarmonicSolver, kHarmonics + 1> solvers_;
   std::array<std::vector<Complex>, kHarmonics + 1> sources_;

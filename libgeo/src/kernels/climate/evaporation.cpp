@@ -16,4 +16,10 @@ double oudin_evaporation_mm_d(double insolation_w_m2, double temperature_c) {
          100.0;
 }
 
+double clearness(double precipitation_mm, double potential_mm) {
+  if (!(potential_mm > 0.0)) return 1.0;
+  const double sunshine = 0.35 + 0.55 * std::exp(-precipitation_mm / potential_mm);
+  return (0.25 + 0.5 * sunshine) / 0.5;
+}
+
 }  // namespace geo

@@ -42,8 +42,8 @@ double mean_size(const Grid& grid, const Vector& values) {
 
 }  // namespace
 
-void SteadyMoisture::close(std::size_t lane) const {
-  constexpr double kClosed = 1e-7, kLinear = 1e-4, kDropped = 1e-2;
+void SteadyMoisture::close(std::size_t lane, double closed) const {
+  constexpr double kLinear = 1e-4, kDropped = 1e-2;
   constexpr int kMostSteps = 60, kNeighbours = 4;
   const MoistureSeason& season = seasons_[lane];
   const Index size = grid_.size();
@@ -83,7 +83,7 @@ void SteadyMoisture::close(std::size_t lane) const {
                   : 0.0;
       entries.emplace_back(c, c, air.out[lane] + drying + (w < capacity ? open : 0.0));
     }
-    if (mean_size(grid_, excess) <= kClosed * mean_size(grid_, rain)) return;
+    if (mean_size(grid_, excess) <= closed * mean_size(grid_, rain)) return;
     slope.setFromTriplets(entries.begin(), entries.end());
     solver.compute(slope);
     const Vector change = solver.solve(excess);

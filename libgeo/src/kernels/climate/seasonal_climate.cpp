@@ -28,6 +28,9 @@ double weak_rotation(double latitude_deg, double edge_deg) {
   return 1.0 / (1.0 + turning * turning * turning * turning);
 }
 
+/// x near 0, within a bound everywhere.
+double bounded(double x, double bound) { return bound * std::tanh(x / bound); }
+
 }  // namespace
 
 /// Heat that the air gets from rain and from ground that is warmer than its parallel.
@@ -115,7 +118,6 @@ std::vector<float> SeasonalYear::convective_excess_k(const AirOfMonth& month) co
 /// Rising air rains out, and so does air that is lighter than its surroundings; sinking air keeps
 /// its water.
 void SeasonalYear::activate(AirOfMonth& month) const {
-  constexpr double kMost = 2.0;
   std::vector<float> rising = convergence(grid_, month.wind_east, month.wind_north);
   for (std::size_t cell = 0; cell < size_; ++cell) {
     const double deep = weak_rotation(latitude_deg_[grid_.row(static_cast<Index>(cell))],
@@ -129,7 +131,7 @@ void SeasonalYear::activate(AirOfMonth& month) const {
   for (std::size_t cell = 0; cell < size_; ++cell) {
     const double lighter = model_.convection_1_k * excess_k[cell];
     month.activity[cell] = static_cast<float>(
-        ascent_[cell] * std::exp(std::clamp(rising[cell] + lighter, -kMost, kMost)));
+        ascent_[cell] * std::exp(bounded(rising[cell] + lighter, model_.ascent_bound)));
     month.eddies[cell] = ascent_[cell] * month.own_eddies[cell];
   }
 }
@@ -161,14 +163,14 @@ void SeasonalYear::exchange() {
   errors.rethrow();
 }
 
-void SeasonalYear::rain(bool closed) {
+void SeasonalYear::rain(double closed_to) {
   constexpr int kTogether = SteadyMoisture::kSeasons;
   ParallelErrors errors;
 #pragma omp parallel for schedule(dynamic, 1)
   for (int m = 0; m < kMonths; ++m) {
     errors.guard([&] {
       AirOfMonth& month = months_[m];
-      if (closed) budgets_[m / kTogether]->close(m % kTogether);
+      if (closed_to > 0.0) budgets_[m / kTogether]->close(m % kTogether, closed_to);
       for (std::size_t cell = 0; cell < size_; ++cell) {
         month.rain_mm_d[cell] =
             rain_mm_d(model_.moisture, month.column_mm[cell], month.saturated_mm[cell],
@@ -198,8 +200,10 @@ void SeasonalYear::evaporate_cell(std::size_t cell) {
   const auto evaporation_mm =
       soil_evaporation_mm(model_.soil, temperature_c, rain_mm, potential_mm);
   for (int m = 0; m < kMonths; ++m) {
-    months_[m].land_evaporation_mm_d[cell] = static_cast<float>(
-        model_.land_transpiration * land_[cell] * evaporation_mm[m] / kDaysPerMonth);
+    months_[m].soil_evaporation_mm_d[cell] =
+        static_cast<float>(land_[cell] * evaporation_mm[m] / kDaysPerMonth);
+    months_[m].land_evaporation_mm_d[cell] =
+        static_cast<float>(model_.land_transpiration) * months_[m].soil_evaporation_mm_d[cell];
   }
 }
 
@@ -238,36 +242,25 @@ AirWater SeasonalYear::water() const {
               [](const AirOfMonth& month, Index cell) { return month.rain_mm_d[cell]; })};
 }
 
-/// Share of the sun's heat on land that dry ground does not use up by evaporation: 1 where it never
-/// rains, 0 where four fifths of the potential evapotranspiration or more rain.
-std::vector<float> SeasonalYear::dryness() const {
+/// Share of the sun's heat on land that dry ground does not use up by evaporation: 1 where soil
+/// gives nothing, 0 where it gives four fifths of the potential evapotranspiration or more.
+double SeasonalYear::dryness(const AirOfMonth& month, std::size_t cell) const {
   constexpr double kMoist = 0.8;
-  std::vector<float> dry(size_, 0.0F);
-  for (std::size_t cell = 0; cell < size_; ++cell) {
-    double rain = 0.0, potential = 0.0;
-    for (const AirOfMonth& month : months_) {
-      rain += month.rain_mm_d[cell];
-      potential += month.potential_evapotranspiration_mm_d[cell];
-    }
-    if (potential > 0.0) {
-      dry[cell] = static_cast<float>(land_[cell] * std::max(0.0, 1.0 - rain / potential / kMoist));
-    }
-  }
-  return dry;
+  const double potential = land_[cell] * month.potential_evapotranspiration_mm_d[cell];
+  if (!(potential > 0.0)) return 0.0;
+  return land_[cell] * std::max(0.0, 1.0 - month.soil_evaporation_mm_d[cell] / potential / kMoist);
 }
 
 SeasonalFields SeasonalYear::fields() const {
   SeasonalFields fields;
-  const std::vector<float> dry = dryness();
   fields.water = water();
-  fields.humidity.resize(size_);
   for (int m = 0; m < kMonths; ++m) {
     const AirOfMonth& month = months_[m];
     fields.temperature_c[m] = month.temperature_c;
     for (std::size_t cell = 0; cell < size_; ++cell) {
       const double sun_w_m2 = month.sun_w_m2[grid_.row(static_cast<Index>(cell))];
       fields.temperature_c[m][cell] +=
-          static_cast<float>(dry[cell] * model_.energy.dry_warming_k_m2_w *
+          static_cast<float>(dryness(month, cell) * model_.energy.dry_warming_k_m2_w *
                              (sun_w_m2 - model_.energy.dry_warming_from_w_m2));
     }
     fields.wind_east[m] = month.wind_east;
@@ -275,8 +268,6 @@ SeasonalFields SeasonalYear::fields() const {
     fields.precipitation_mm[m].resize(size_);
     for (std::size_t cell = 0; cell < size_; ++cell) {
       fields.precipitation_mm[m][cell] = static_cast<float>(kDaysPerMonth * month.rain_mm_d[cell]);
-      fields.humidity[cell] +=
-          static_cast<float>(month.column_mm[cell] / month.saturated_mm[cell] / kMonths);
     }
   }
   return fields;
@@ -292,12 +283,13 @@ SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& m
               {{"land_fraction", land_fraction.size()}, {"height_m", height_m.size()}});
   SeasonalYear year(grid, model, latitude_deg, land_fraction, height_m);
   year.warm();
-  constexpr int kRounds = 7, kLevelRounds = 3, kClosedRounds = 2;
+  constexpr int kRounds = 7, kLevelRounds = 3;
+  constexpr double kNearlyClosed = 1e-4, kClosed = 1e-7;
   for (int round = 0; round < kRounds; ++round) {
     if (round == kLevelRounds && ascent) year.lift(ascent);
     year.blow();
     year.exchange();
-    year.rain(/*closed=*/round + kClosedRounds >= kRounds);
+    year.rain(round + 1 == kRounds ? kClosed : round + 2 == kRounds ? kNearlyClosed : 0.0);
     if (round + 1 < kRounds) year.evaporate();
   }
   return year.fields();

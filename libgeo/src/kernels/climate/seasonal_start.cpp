@@ -79,7 +79,14 @@ void SeasonalYear::begin_month(int m, const TemperatureCycle& temperature) {
   }
   const std::vector<double> zonal_c = row_means<float>(grid_, month.temperature_c);
   month.zonal_wind_m_s = thermal_wind_m_s(grid_, model_.circulation, latitude_deg_, zonal_c);
-  press(month, zonal_c, row_means<double>(grid_, annual_c));
+  std::vector<float> trough_c(size_);  // as warm as some time ago
+  for (std::size_t cell = 0; cell < size_; ++cell) {
+    const double before_c = temperature.month_c(cell, (m + kMonths - 1) % kMonths);
+    trough_c[cell] =
+        static_cast<float>(month.temperature_c[cell] +
+                           model_.itcz_lag_months * (before_c - month.temperature_c[cell]));
+  }
+  press(month, trough_c, row_means<double>(grid_, annual_c));
   stir(month, zonal_c);
   moisten(month);
 }
@@ -89,8 +96,9 @@ void SeasonalYear::clear(AirOfMonth& month) const {
        {&month.temperature_c, &month.pressure_hpa, &month.wind_east, &month.wind_north,
         &month.descent_1_s, &month.open_flow, &month.diffusivity, &month.own_eddies, &month.eddies,
         &month.activity, &month.saturated_mm, &month.open_water_1_d, &month.gust_m_s,
-        &month.potential_evapotranspiration_mm_d, &month.land_evaporation_mm_d,
-        &month.cold_air_evaporation_mm_d, &month.given_evaporation_mm_d, &month.heating_w_m2}) {
+        &month.potential_evapotranspiration_mm_d, &month.soil_evaporation_mm_d,
+        &month.land_evaporation_mm_d, &month.cold_air_evaporation_mm_d,
+        &month.given_evaporation_mm_d, &month.heating_w_m2}) {
     values->assign(size_, 0.0F);
   }
   month.column_mm.resize(size_);
@@ -98,10 +106,10 @@ void SeasonalYear::clear(AirOfMonth& month) const {
 }
 
 /// Pressure of the three cells about the trough, and of heat lows and cold highs.
-void SeasonalYear::press(AirOfMonth& month, std::span<const double> zonal_c,
+void SeasonalYear::press(AirOfMonth& month, std::span<const float> trough_c,
                          std::span<const double> annual_mean_c) const {
   const std::vector<double> trough_deg = trough_latitudes_deg(
-      grid_, latitude_deg_, month.temperature_c, zonal_c, model_.itcz_locality);
+      grid_, latitude_deg_, trough_c, row_means<float>(grid_, trough_c), model_.itcz_locality);
   for (std::size_t cell = 0; cell < size_; ++cell) {
     const Index here = static_cast<Index>(cell);
     const int row = grid_.row(here);

@@ -21,7 +21,8 @@ struct AirOfMonth {
   std::vector<float> open_flow;  ///< share of the flow that topography lets pass
   std::vector<float> diffusivity, own_eddies, eddies, activity, saturated_mm, open_water_1_d;
   std::vector<float> gust_m_s;  ///< of eddies
-  std::vector<float> potential_evapotranspiration_mm_d, land_evaporation_mm_d;
+  std::vector<float> potential_evapotranspiration_mm_d, soil_evaporation_mm_d,
+      land_evaporation_mm_d;
   std::vector<float> cold_air_evaporation_mm_d;  ///< from water under air that comes from the cold
   std::vector<float> given_evaporation_mm_d;     ///< both, whatever the column holds
   std::vector<float> heating_w_m2;
@@ -50,7 +51,7 @@ class SeasonalYear {
   void warm();
   void blow();
   void exchange();
-  void rain(bool closed);
+  void rain(double closed_to);
   void evaporate();
   void lift(const TerrainAscent& ascent);
   [[nodiscard]] SeasonalFields fields() const;
@@ -61,7 +62,7 @@ class SeasonalYear {
                   std::span<float> east, std::span<float> north) const;
   void begin_month(int m, const TemperatureCycle& temperature);
   void clear(AirOfMonth& month) const;
-  void press(AirOfMonth& month, std::span<const double> zonal_c,
+  void press(AirOfMonth& month, std::span<const float> trough_c,
              std::span<const double> annual_mean_c) const;
   void stir(AirOfMonth& month, std::span<const double> zonal_c) const;
   void moisten(AirOfMonth& month) const;
@@ -71,7 +72,7 @@ class SeasonalYear {
   [[nodiscard]] std::vector<float> convective_excess_k(const AirOfMonth& month) const;
   void evaporate_cell(std::size_t cell);
   [[nodiscard]] AirWater water() const;
-  [[nodiscard]] std::vector<float> dryness() const;
+  [[nodiscard]] double dryness(const AirOfMonth& month, std::size_t cell) const;
   template <class Do>
   void for_months(const Do& act) {
     ParallelErrors errors;

@@ -8,7 +8,7 @@ std::array<double, kMonths> soil_evaporation_mm(const SoilMoisture& model,
                                                 const std::array<double, kMonths>& temperature_c,
                                                 const std::array<double, kMonths>& precipitation_mm,
                                                 const std::array<double, kMonths>& potential_mm) {
-  constexpr int kYears = 4;
+  constexpr int kYears = 6;
   constexpr double kAllSnow_c = -1.0, kAllRain_c = 3.0, kMostSnow_mm = 1000.0;
   std::array<double, kMonths> evaporation{};
   // From dry ground on: no year gives back more than it got.

@@ -163,9 +163,10 @@ class Network {
             std::max(0, south - margin), std::min(fine_.ny() - 1, north + margin)};
   }
   /// Cost of a metre at a cell: low ground is easy, no ground is quite even, and the edge, which is
-  /// nothing on the ground, does not lead rivers along it.
+  /// nothing on the ground, does not lead rivers along it, nor along a line at a distance from it.
   [[nodiscard]] double resistance(Index c, const End& from, const End& to) const {
-    constexpr double kDigging_m = 20.0, kHollow_m = 100.0, kWinding = 1.6, kStrip = 6.0;
+    constexpr double kDigging_m = 20.0, kHollow_m = 100.0, kWinding = 1.6, kStrip = 6.0,
+                     kUneven = 0.5;
     const double di = fine_.column(to.cell) - fine_.column(from.cell);
     const double dj = fine_.row(to.cell) - fine_.row(from.cell);
     const double along = (fine_.column(c) - fine_.column(from.cell)) * di +
@@ -173,8 +174,9 @@ class Network {
     const double share = std::clamp(along / std::max(1.0, di * di + dj * dj), 0.0, 1.0);
     const double level_m = std::lerp(from.level_m, to.level_m, share);
     const double low_m = level_m - std::min(0.5 * level_m, kHollow_m);
+    const double strip = strip_ * (1.0 + kUneven * noise_[c]);
     const double in_strip =
-        std::max(0.0, 1.0 - static_cast<double>(cells_to_edge(fine_, c)) / strip_);
+        std::max(0.0, 1.0 - static_cast<double>(cells_to_edge(fine_, c)) / std::max(1.0, strip));
     return std::exp(kWinding * noise_[c]) * (1.0 + kStrip * in_strip * in_strip) *
            (1.0 + std::max(0.0, z_[c] - low_m) / kDigging_m);
   }

@@ -130,13 +130,6 @@ Currents wind_driven_currents(const ClimateFrame& frame, const ClimateParameters
   return currents;
 }
 
-/// How much more sun than on average reaches the ground under a column of this humidity
-/// (Angstrom-Prescott, sunshine falling with humidity).
-float clearness(float humidity) {
-  const float sunshine = std::clamp(1.1F - humidity, 0.1F, 0.9F);
-  return (0.25F + 0.5F * sunshine) / 0.5F;
-}
-
 /// What the months make of one row: evaporation (Oudin et al. 2005), the range of temperature, how
 /// far rain keeps to the summer of the hemisphere, and classes after Köppen and Geiger.
 class SeasonsOfRows {
@@ -146,9 +139,10 @@ class SeasonsOfRows {
   [[nodiscard]] std::size_t scratch_size() const { return rows_.scratch_size(); }
 
   /// `months` holds twice twelve rows.
-  void row(int j, std::span<const float> elevation, std::span<const float> humidity,
-           const ClimateOutputs& out, std::span<float> months, std::span<float> scratch) const {
-    const std::size_t nx = humidity.size(), begin = static_cast<std::size_t>(j) * nx;
+  void row(int j, std::span<const float> elevation, const ClimateOutputs& out,
+           std::span<float> months, std::span<float> scratch) const {
+    const auto nx = static_cast<std::size_t>(frame_.on_planet().fine().nx());
+    const std::size_t begin = static_cast<std::size_t>(j) * nx;
     const auto row_of = [&](std::span<float> field) { return field.subspan(begin, nx); };
     const auto temperature = row_of(out.temperature), rain = row_of(out.precipitation);
     const auto month_c = [&](int m) { return months.subspan(m * nx, nx); };
@@ -184,7 +178,7 @@ class SeasonsOfRows {
       }
       range[i] = warmest - coldest;
       seasonality[i] = std::clamp(seasonality[i], -1.0F, 1.0F);
-      evaporation[i] *= clearness(humidity[i]);
+      evaporation[i] *= static_cast<float>(clearness(rain[i], evaporation[i]));
     }
     for (std::size_t i = 0; i < nx; ++i) {
       out.koppen[begin + i] = 0;
@@ -223,7 +217,6 @@ class FineClimate::Rows {
             shape_of_year(frame.shared_planet(), fields, mean_c_, rain_mm_yr_))),
         mean_of_(frame.on_planet(), mean_c_),
         rain_of_(frame.on_planet(), on_level_ground(rain_mm_yr_, planet_ascent)),
-        humidity_of_(frame.on_planet(), fields.humidity),
         east_of_(frame.on_planet(), annual_mean(year_->wind_east),
                  Interpolator::Kind::vector_component),
         north_of_(frame.on_planet(), annual_mean(year_->wind_north),
@@ -241,22 +234,21 @@ class FineClimate::Rows {
 
   /// What one thread works in.
   struct Work {
-    std::vector<float> scratch, over_topography, humidity, months;
+    std::vector<float> scratch, over_topography, months;
   };
   [[nodiscard]] Work work() const {
     const auto nx = static_cast<std::size_t>(grid().nx());
     return {std::vector<float>(std::max(seasons_.scratch_size(), topography_of_.scratch_size())),
-            std::vector<float>(nx), std::vector<float>(nx), std::vector<float>(2 * kMonths * nx)};
+            std::vector<float>(nx), std::vector<float>(2 * kMonths * nx)};
   }
 
   /// All outputs of a row; how many of its cells were held at an end of the temperatures' range.
   std::int64_t row(int j, std::span<const float> elevation, const ClimateOutputs& out,
                    Work& work) const {
     topography_of_.row(j, work.over_topography, work.scratch);
-    humidity_of_.row(j, work.humidity, work.scratch);
     const std::int64_t held = closed_formulas() ? closed_row(j, elevation, out, work)
                                                 : balanced_row(j, elevation, out, work);
-    seasons_.row(j, elevation, work.humidity, out, work.months, work.scratch);
+    seasons_.row(j, elevation, out, work.months, work.scratch);
     sea_row(j, elevation, out, work);
     return held;
   }
@@ -339,7 +331,7 @@ class FineClimate::Rows {
   TemperatureLimits limits_;
   std::vector<float> mean_c_, rain_mm_yr_;  ///< of coarse cells, filled with the year
   std::shared_ptr<Climatology> year_;
-  Interpolator mean_of_, rain_of_, humidity_of_, east_of_, north_of_, topography_of_;
+  Interpolator mean_of_, rain_of_, east_of_, north_of_, topography_of_;
   Currents currents_;
   Interpolator current_east_of_, current_north_of_;
   SeasonsOfRows seasons_;

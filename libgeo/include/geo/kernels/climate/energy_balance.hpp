@@ -18,33 +18,35 @@ struct EnergyBalance {
   Orbit orbit;
   double outgoing_w_m2 = 193;              ///< A at 0 degC
   double outgoing_slope_w_m2_k = 2.4;      ///< B
-  double diffusivity_w_m2_k = 0.609;       ///< D at 15 degC, on the unit sphere
-  double moist_transport = 1.09;           ///< share of latent heat in D's change with temperature
+  double diffusivity_w_m2_k = 0.61;        ///< D at 15 degC, on the unit sphere
+  double moist_transport = 1.22;           ///< share of latent heat in D's change with temperature
   double advected_heat_j_m2_k = 6.82e+06;  ///< of the air that winds move
-  double coalbedo = 0.667;                 ///< mean absorbed share without snow and ice
-  double coalbedo_p2 = -0.12;              ///< its second Legendre coefficient in latitude
-  double snow_coalbedo = 0.57;             ///< of snow that melts in summer
+  double coalbedo = 0.663;                 ///< mean absorbed share without snow and ice
+  double coalbedo_p2 = -0.115;             ///< its second Legendre coefficient in latitude
+  double snow_coalbedo = 0.65;             ///< of snow that melts in summer
   double ice_coalbedo = 0.3;               ///< of land whose snow stays
-  double sea_ice_coalbedo = 0.55;          ///< of sea ice, broken and wet in summer
-  double snow_temperature_c = -6;          ///< monthly mean at which half the land is under snow
-  double ice_temperature_c = -9;           ///< annual mean at which half the sea is ice
+  double sea_ice_coalbedo = 0.601;         ///< of sea ice, broken and wet in summer
+  double snow_temperature_c = 0;           ///< monthly mean at which half the land is under snow
+  double ice_temperature_c = -8.72;        ///< annual mean at which half the sea is ice
   double ice_width_k = 2.45;               ///< width of both transitions; 0: no ice and snow at all
-  double land_heat_capacity_w_yr_m2_k = 0.05;
-  double ocean_heat_capacity_w_yr_m2_k = 5.05;
-  double ice_heat_capacity_w_yr_m2_k = 1.54;  ///< of sea ice that does not melt
-  double melt_w_m2_k = 2;        ///< heat that melting sea ice takes for each kelvin above -1 degC
-  double gyre_heat_w_m2 = 26.5;  ///< heat that gyres release along a western coast of an ocean
+  double land_heat_capacity_w_yr_m2_k = 0.21;
+  double ocean_heat_capacity_w_yr_m2_k = 4.87;
+  double sea_exchange_w_m2_k = 21.3;  ///< heat and vapour from sea to air, per kelvin, at 15 degC
+  double sunlit_air_share = 0.251;    ///< of the absorbed sunlight that air over the sea absorbs
+  double ice_heat_capacity_w_yr_m2_k = 0.926;  ///< of sea ice that does not melt
+  double melt_w_m2_k = 6.63;     ///< heat that melting sea ice takes for each kelvin above -1 degC
+  double gyre_heat_w_m2 = 14.5;  ///< heat that gyres release along a western coast of an ocean
   double gyre_reach_km = 1.6e+03;  ///< e-folding distance of a coast's influence
-  double subpolar_heat_w_m2 = 47;  ///< heat that subpolar gyres release along an eastern coast
+  double subpolar_heat_w_m2 = 53;  ///< heat that subpolar gyres release along an eastern coast
   double subpolar_reach_km = 2.43e+03;
-  double blocking_height_m = 1.49e+03;  ///< of topography that halves the heat passing over
+  double blocking_height_m = 1.73e+03;  ///< of topography that halves the heat passing over
   double lapse_k_m = 0.0054;
   double heat_wind_share = 0.223;  ///< of the zonal wind in mid-troposphere that carries heat
   double heat_wave_share = 0;      ///< of the winds about warm and cold ground that carries it
   double upwelling_w_m2 = 149;     ///< heat that water welling up along the equator takes
   double upwelling_reach_km = 2.78e+03;  ///< to the west of a coast, over which that falls by e
-  double dry_warming_k_m2_w = 0.0355;  ///< by which dry ground is warmer for each W m-2 of sunlight
-  double dry_warming_from_w_m2 = 232;  ///< above this
+  double dry_warming_k_m2_w = 0.027;   ///< by which dry ground is warmer for each W m-2 of sunlight
+  double dry_warming_from_w_m2 = 193;  ///< above this
 };
 
 /// Share of the heat carried over level ground that passes over a cell of a mean height:
@@ -82,9 +84,13 @@ using HeatWinds =
     std::function<void(std::span<const float> month_c, std::span<const double> annual_mean_c,
                        std::span<float> east, std::span<float> north)>;
 
-/// Solves, on a sphere or torus,
-///   C dT/dt + F u . grad T = Q (1 - albedo) - (A + B T) + ocean + div(D grad T)
-/// for the periodic year, by harmonics: for each a sparse linear system with the annual and zonal
+/// Solves, on a sphere or torus, for the periodic year
+///   C dT/dt + F u . grad T = Q (1 - albedo) - (A + B T) + ocean + div(D grad T).
+/// C is that of land. Over the sea g (T_s - T) takes the place of C dT/dt, and s Q that of Q:
+///   C_s dT_s/dt = (1 - s) Q (1 - albedo) - g (T_s - T),
+/// T_s the temperature of the mixed layer, s the share of sunlight that the air absorbs, g the
+/// exchange of heat and vapour, which grows with the annual mean of T (Haney 1971). T_s is
+/// eliminated. By harmonics: for each a sparse linear system with the annual and zonal
 /// mean of u, in whose source all else is found by iteration: the albedo of the months' snow and
 /// ice, the heat that sea ice takes as it melts in summer and gives as it freezes in winter, and
 /// what the winds of each month carry besides, which sums to zero over the planet. F is the

@@ -11,10 +11,10 @@ namespace geo {
 
 /// Constants of the moisture budget.
 struct MoistureBudget {
-  double rain_time_d = 0.876;          ///< rain-out time of a saturated column
+  double rain_time_d = 0.754;          ///< rain-out time of a saturated column
   std::int64_t humidity_exponent = 2;  ///< how sharply rain follows the column's relative humidity
-  double evaporation_velocity_1_d = 0.31;  ///< v under 8 m s-1 where energy does not limit it
-  double evaporating_share = 0.552;        ///< of the annual insolation, at most
+  double evaporation_velocity_1_d = 0.332;  ///< v under 8 m s-1 where energy does not limit it
+  double evaporating_share = 0.579;         ///< of the annual insolation, at most
   int sweeps = 44;
 };
 
@@ -53,9 +53,9 @@ class SteadyMoisture {
   /// Gauss-Seidel alone: near enough while evaporation from land is still sought.
   void solve();
   /// Newton's method for one season, from the column that it has. All that evaporates rains: the
-  /// sum of |E - P - div| over the cells is at most 1e-7 of the rain. Different seasons may be
+  /// sum of |E - P - div| over the cells is at most `closed` of the rain. Different seasons may be
   /// closed at the same time.
-  void close(std::size_t lane) const;
+  void close(std::size_t lane, double closed = 1e-7) const;
 
  private:
   /// A value of each season.

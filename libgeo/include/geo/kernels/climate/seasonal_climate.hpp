@@ -23,26 +23,28 @@ struct SeasonalClimate {
   OceanCurrents currents;
   MoistureBudget moisture;
   SoilMoisture soil;
-  double itcz_share = 0.885;      ///< of the thermal equator's excursion that the cells follow
-  double itcz_locality = 0;       ///< how far the trough follows its meridian's warmest latitude
-  double sensible_w_m2_k = 2.41;  ///< heating of the air over ground warmer than its parallel
-  double base_diffusivity_m2_s = 3.91e+06;
+  double itcz_share = 1;         ///< of the thermal equator's excursion that the cells follow
+  double itcz_lag_months = 1;    ///< by which the trough follows the warmth of the air
+  double itcz_locality = 0;      ///< how far the trough follows its meridian's warmest latitude
+  double sensible_w_m2_k = 3.2;  ///< heating of the air over ground warmer than its parallel
+  double base_diffusivity_m2_s = 2.9e+06;
   double eddy_diffusivity_m2_s = 2e+05;  ///< at the reference temperature gradient
-  double eddy_rain = 0.161;  ///< rain-out by eddies there, whether the mean air rises or sinks
+  double eddy_rain = 0.15;  ///< rain-out by eddies there, whether the mean air rises or sinks
   double eddy_gradient_k_1000km = 3.87;  ///< the reference gradient
-  double eddy_exponent = 1.94;           ///< by which their strength grows with the gradient
-  double eddy_locality = 0.134;  ///< how far eddies follow the local gradient, not the parallel's
-  double gust_m_s = 4.58;        ///< of eddies' winds over the sea at the reference gradient
-  double cold_air_heat_j_m2_k = 3.7e+05;  ///< of air that evaporates as the sea warms it
-  double ascent_time_d = 19.9;            ///< convergence over this time multiplies rain-out by e
-  double descent_time_d = 0.842;          ///< the same of the descent that stationary waves make
-  double ascent_latitude_deg = 61.8;  ///< at which converging winds make half as much rain as where
+  double eddy_exponent = 1.97;           ///< by which their strength grows with the gradient
+  double eddy_locality = 0;  ///< how far eddies follow the local gradient, not the parallel's
+  double gust_m_s = 4.58;    ///< of eddies' winds over the sea at the reference gradient
+  double cold_air_heat_j_m2_k = 4.27e+05;  ///< of air that evaporates as the sea warms it
+  double ascent_time_d = 25;               ///< convergence over this time multiplies rain-out by e
+  double descent_time_d = 0.966;           ///< the same of the descent that stationary waves make
+  double ascent_bound = 1.81;              ///< most that ascent adds to the logarithm of rain-out
+  double ascent_latitude_deg = 40.1;  ///< at which converging winds make half as much rain as where
                                       ///< rotation is weak
-  double ascent_smoothing_km = 590;   ///< over which ascent is felt
+  double ascent_smoothing_km = 500;   ///< over which ascent is felt
   double convection_1_k = 0;          ///< by which rain-out grows with relative moist static energy
   double convection_latitude_deg = 26.9;  ///< to which the free atmosphere is level
   double orographic_share = 0.0;  ///< of the mean height by which moist air is lifted over a cell
-  double blocking_height_m = 4.25e+03;  ///< height at which topography halves the moist flow
+  double blocking_height_m = 4.27e+03;  ///< height at which topography halves the moist flow
   double land_transpiration = 1.0;      ///< share of the soil's evaporation that returns to the air
 };
 
@@ -59,7 +61,6 @@ struct SeasonalFields {
   Monthly temperature_c;     ///< at sea level
   Monthly precipitation_mm;  ///< per month
   Monthly wind_east, wind_north;
-  std::vector<float> humidity;  ///< annual mean relative humidity of the column
   AirWater water;
 };
 

@@ -17,7 +17,7 @@ struct WaveMode {
 /// Constants of the response of an atmosphere to stationary heating and mountains.
 struct StationaryWave {
   /// What heating sets up: the first baroclinic mode, whose winds turn with height.
-  WaveMode internal{49.3, 0.995, 18.8, 0};
+  WaveMode internal{50.2, 0.965, 20.4, 0};
   double heating_m4_s3_w = 5e-05;  ///< fall of the lower geopotential by 1 W m-2
   /// What mountains set up: the external mode, nearly the same at all heights.
   WaveMode external{200.0, 15.0, 20.0, 1.5};

@@ -1,0 +1,112 @@
+#include "geo/kernels/climate/seasonal_climate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace geo {
+namespace {
+
+/// A low continent from 60 S to 70 N, 120 degrees wide, on a planet of sea.
+struct Continent {
+  Continent() : land(size()), height_m(size(), 0.0F) {
+    for (int j = 0; j < grid.ny(); ++j) latitude_deg.push_back(grid.latitude_deg(j));
+    for (Index c = 0; c < grid.size(); ++c) {
+      const double latitude = latitude_deg[grid.row(c)];
+      const bool inside =
+          latitude > -60.0 && latitude < 70.0 && grid.column(c) >= kWest && grid.column(c) < kEast;
+      land[c] = inside ? 1.0F : 0.0F;
+      if (inside) height_m[c] = 200.0F;
+    }
+  }
+  [[nodiscard]] SeasonalFields solve(const SeasonalClimate& model) const {
+    return solve_seasonal_climate(grid, model, latitude_deg, land, height_m);
+  }
+  [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(grid.size()); }
+
+  static constexpr int kWest = 24, kEast = 48;
+  Grid grid = Grid::sphere(72, 36);
+  std::vector<double> latitude_deg;
+  std::vector<float> land, height_m;
+};
+
+// Soil that has dried out no longer cools the ground: the tropics are hottest before the rains.
+TEST(SeasonalClimate, GroundIsWarmerWhileItsSoilIsDry) {
+  const Continent continent;
+  const SeasonalClimate model;
+  SeasonalClimate without = model;
+  without.energy.dry_warming_k_m2_w = 0.0;
+  const SeasonalFields with = continent.solve(model), plain = continent.solve(without);
+  double in_wettest_k = 0.0, in_driest_k = 0.0;
+  for (Index c = 0; c < continent.grid.size(); ++c) {
+    const double latitude = continent.latitude_deg[continent.grid.row(c)];
+    if (continent.land[c] < 1.0F || std::abs(latitude) > 20.0) continue;
+    int wettest = 0, driest = 0;
+    for (int m = 1; m < kMonths; ++m) {
+      if (with.precipitation_mm[m][c] > with.precipitation_mm[wettest][c]) wettest = m;
+      if (with.precipitation_mm[m][c] < with.precipitation_mm[driest][c]) driest = m;
+    }
+    if (with.precipitation_mm[wettest][c] < 150.0F || with.precipitation_mm[driest][c] > 20.0F)
+      continue;
+    const auto warming_k = [&](int m) {
+      return with.temperature_c[m][c] - plain.temperature_c[m][c];
+    };
+    in_wettest_k += warming_k(wettest);
+    in_driest_k += warming_k(driest);
+  }
+  EXPECT_GT(in_driest_k, 0.0);
+  EXPECT_LT(in_wettest_k, 0.4 * in_driest_k);
+}
+
+/// Latitude about which the rain of a month falls within the tropics.
+double rain_belt_deg(const Continent& continent, const std::vector<float>& rain_mm) {
+  double moment = 0.0, sum = 0.0;
+  for (Index c = 0; c < continent.grid.size(); ++c) {
+    const int row = continent.grid.row(c);
+    if (std::abs(continent.latitude_deg[row]) > 25.0) continue;
+    const double water = continent.grid.area_m2(row) * rain_mm[c];
+    moment += water * continent.latitude_deg[row];
+    sum += water;
+  }
+  return moment / sum;
+}
+
+TEST(SeasonalClimate, RainBeltComesLaterWhereTheTroughLags) {
+  const Continent continent;
+  SeasonalClimate model;
+  model.itcz_lag_months = 0.0;
+  const SeasonalFields prompt = continent.solve(model);
+  model.itcz_lag_months = 1.0;
+  const SeasonalFields late = continent.solve(model);
+  constexpr int kMay = 4, kNovember = 10;
+  EXPECT_LT(rain_belt_deg(continent, late.precipitation_mm[kMay]),
+            rain_belt_deg(continent, prompt.precipitation_mm[kMay]) - 0.2);
+  EXPECT_GT(rain_belt_deg(continent, late.precipitation_mm[kNovember]),
+            rain_belt_deg(continent, prompt.precipitation_mm[kNovember]) + 0.2);
+}
+
+// Without what ascent adds, where and how fast air rises makes no difference.
+TEST(SeasonalClimate, AscentAddsNoMoreThanItsBound) {
+  const Continent continent;
+  const auto rain_mm = [&](double time_d, double bound) {
+    SeasonalClimate model;
+    model.ascent_time_d = time_d;
+    model.ascent_bound = bound;
+    return continent.solve(model).precipitation_mm[6];
+  };
+  const auto weak = rain_mm(2.0, 1e-9), strong = rain_mm(20.0, 1e-9);
+  const auto weak_bounded = rain_mm(2.0, 2.0), strong_bounded = rain_mm(20.0, 2.0);
+  double difference_mm = 0.0, bounded_mm = 0.0;
+  for (std::size_t c = 0; c < continent.size(); ++c) {
+    EXPECT_NEAR(strong[c], weak[c], 1e-4F * weak[c]) << c;
+    difference_mm = std::max<double>(difference_mm, std::abs(strong[c] - weak[c]));
+    bounded_mm = std::max<double>(bounded_mm, std::abs(strong_bounded[c] - weak_bounded[c]));
+  }
+  EXPECT_GT(bounded_mm, 50.0);
+  EXPECT_GT(bounded_mm, 100.0 * difference_mm);
+}
+
+}  // namespace
+}  // namespace geo
