@@ -43,16 +43,18 @@ constexpr std::size_t kLargeBlock = kMebibyte / 4;
 constexpr std::size_t kPage = std::size_t(64) << 10;
 constexpr std::size_t kLargePage = 2 * kMebibyte;
 
+constexpr double kProgram_bytes = 150e6;  // with its libraries and small blocks
+
 /// Blocks that have memory of their own take so much of a cap: two fifths of what the program and
 /// its small blocks leave.
 double own_memory_bytes(double cap_bytes) {
-  constexpr double kProgram_bytes = 150e6, kShare = 0.4;
+  constexpr double kShare = 0.4;
   return kShare * std::max(0.0, cap_bytes - kProgram_bytes);
 }
 
 /// Kept clear below the cap for what is touched until the next look.
 double least_clear_bytes(double cap_bytes) {
-  return std::clamp(cap_bytes / 6.0, 48.0 * kMebibyte, 1024.0 * kMebibyte);
+  return std::clamp(cap_bytes / 4.0, 48.0 * kMebibyte, 1024.0 * kMebibyte);
 }
 
 std::size_t pages_of(std::size_t bytes) { return (bytes + kPage - 1) / kPage; }
@@ -286,7 +288,7 @@ class MemoryPager {
     const std::unique_lock lock(dropping_, std::try_to_lock);
     if (!lock) return;
     // On a busy machine this thread comes late: the later it came, the more is kept clear.
-    const std::size_t late = std::min(2 * (taken - std::min(taken, high_.load())), cap_ / 4);
+    const std::size_t late = std::min(2 * (taken - std::min(taken, high_.load())), cap_ / 5 * 2);
     if (late > cap_ - high_) keep_clear(late);
     while (taken_bytes() > low_) {
       if (drop_one_free(regions().scratch, Trace::disk)) continue;
@@ -477,8 +479,7 @@ double peak_resident_bytes() {
 }
 
 MemoryUnderCap memory_under_cap(double cap_bytes, double uncapped_bytes) {
-  constexpr double kSmall_bytes = 100e6;  // program, libraries and small blocks
-  const double large = std::max(0.0, uncapped_bytes - kSmall_bytes);
+  const double large = std::max(0.0, uncapped_bytes - kProgram_bytes);
   const double waiting = std::max(0.0, large - own_memory_bytes(cap_bytes));
   return {std::min(uncapped_bytes, cap_bytes - least_clear_bytes(cap_bytes)), waiting};
 }
