@@ -25,6 +25,7 @@
 #include "geo/io/run/manifest.hpp"
 #include "log.hpp"
 #include "memory.hpp"
+#include "memory_cap.hpp"
 #include "signals.hpp"
 #include "waiting.hpp"
 
@@ -164,6 +165,10 @@ int main(int argc, char** argv) {
     terrane::log_error(system_message(error));
     return static_cast<int>(geo::ErrorKind::io);
   } catch (const std::bad_alloc&) {
+    if (terrane::scratch_is_full()) {
+      terrane::log_error(terrane::scratch_error());
+      return static_cast<int>(geo::ErrorKind::io);
+    }
     terrane::log_error(terrane::want_of_memory());
     return static_cast<int>(geo::ErrorKind::configuration);
   } catch (...) {

@@ -22,6 +22,7 @@
 #include "geo/core/error.hpp"
 #include "geo/core/parallel_errors.hpp"
 #include "log.hpp"
+#include "memory_cap.hpp"
 
 namespace terrane {
 namespace {
@@ -63,8 +64,9 @@ void say_want(std::array<char, kSize>& text, std::size_t wanted) {
                 more < 10.0 ? 3 : 0, more, use);
 }
 
-/// Ends the program here and now, with one line. Other threads that run out wait for that.
-[[noreturn]] void end_with(const char* message) {
+}  // namespace
+
+void end_at_once(const char* message, int code) {
   static std::atomic_flag said = ATOMIC_FLAG_INIT;
   if (said.test_and_set()) {
     while (true) ::pause();
@@ -81,13 +83,16 @@ void say_want(std::array<char, kSize>& text, std::size_t wanted) {
     const auto size = std::min(line.size() - 1, static_cast<std::size_t>(length));
     [[maybe_unused]] const ssize_t told = ::write(STDERR_FILENO, line.data(), size);
   }
-  ::_exit(static_cast<int>(geo::ErrorKind::configuration));
+  ::_exit(code);
 }
 
+namespace {
+
 [[noreturn]] void end_for_want_of(std::size_t wanted) {
+  if (scratch_is_full()) end_at_once(scratch_error(), static_cast<int>(geo::ErrorKind::io));
   std::array<char, 256> text{};
   say_want(text, wanted);
-  end_with(text.data());
+  end_at_once(text.data(), static_cast<int>(geo::ErrorKind::configuration));
 }
 
 /// Pages below the stack that main stands on are asked for while there are some: a stack that
@@ -109,15 +114,27 @@ void prepare_memory() {
 
 void give_back_memory() { malloc_trim(0); }
 
-double memory_of_machine_bytes() {
-  const double machine =
+double available_memory_bytes() {
+  double least =
       static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-  // What a container or a job of a cluster may take.
-  double least = machine;
-  for (const char* path :
-       {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"}) {
+  std::ifstream machine("/proc/meminfo");
+  for (std::string word; machine >> word;) {
+    double kibibytes = 0.0;
+    if (word == "MemAvailable:" && machine >> kibibytes) least = std::min(least, 1024 * kibibytes);
+  }
+  const auto limit_by = [&](const std::string& path) {
     double limit = 0.0;
     if (std::ifstream(path) >> limit && limit > 0.0) least = std::min(least, limit);
+  };
+  limit_by("/sys/fs/cgroup/memory/memory.limit_in_bytes");
+  // "0::/a/b": the group, within those that it is in.
+  std::ifstream groups("/proc/self/cgroup");
+  for (std::string line; std::getline(groups, line);) {
+    if (!line.starts_with("0::/")) continue;
+    for (std::string group = line.substr(3);; group.erase(group.find_last_of('/'))) {
+      limit_by("/sys/fs/cgroup" + group + "/memory.max");
+      if (group.empty()) break;
+    }
   }
   return least;
 }
@@ -208,7 +225,7 @@ extern "C" int pthread_create(pthread_t* thread, const pthread_attr_t* attribute
                 "could not begin a thread (%s): its stack wants %.0f MB of memory; --threads 1 "
                 "needs fewer",
                 std::strerror(refused), static_cast<double>(stack) / 1e6);
-  terrane::end_with(text.data());
+  terrane::end_at_once(text.data(), static_cast<int>(geo::ErrorKind::configuration));
 }
 
 #endif
@@ -216,7 +233,8 @@ extern "C" int pthread_create(pthread_t* thread, const pthread_attr_t* attribute
 /// What every container of the program allocates with. The array forms come here too.
 void* operator new(std::size_t size) {
   while (true) {
-    if (void* block = allocate(size == 0 ? 1 : size)) {
+    if (void* block = terrane::capped_block(size)) return block;
+    if (void* block = terrane::lacks_scratch(size) ? nullptr : allocate(size == 0 ? 1 : size)) {
       terrane::prefer_large_pages(block, size);
       return block;
     }
@@ -229,5 +247,7 @@ void* operator new(std::size_t size) {
     throw std::bad_alloc();
   }
 }
-void operator delete(void* block) noexcept { std::free(block); }
-void operator delete(void* block, std::size_t) noexcept { std::free(block); }
+void operator delete(void* block) noexcept {
+  if (!terrane::free_capped_block(block)) std::free(block);
+}
+void operator delete(void* block, std::size_t) noexcept { ::operator delete(block); }

@@ -18,10 +18,15 @@ void prepare_memory();
 /// next have other sizes, and would else come to lie behind the gaps that those of the last left.
 void give_back_memory();
 
-/// Memory that there is for this process: the machine's, or less where its group is kept to that.
-double memory_of_machine_bytes();
+/// Memory that a run may take now: what the machine has to spare, or less where the group of this
+/// process (a container, a job of a cluster) is kept to that.
+double available_memory_bytes();
 
 /// What `main` says of std::bad_alloc, which knows no size.
 std::string want_of_memory();
+
+/// Ends the program here and now, with one line of error. Other threads that want the same wait
+/// for that. Allocates nothing.
+[[noreturn]] void end_at_once(const char* message, int code);
 
 }  // namespace terrane

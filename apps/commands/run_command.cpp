@@ -12,6 +12,7 @@
 #include "apps/configuration.hpp"
 #include "apps/log.hpp"
 #include "apps/memory.hpp"
+#include "apps/memory_cap.hpp"
 #include "apps/progress.hpp"
 #include "apps/signals.hpp"
 #include "apps/thread_count.hpp"
@@ -27,7 +28,7 @@ namespace fs = std::filesystem;
 /// The command line of `run` as it was typed.
 struct RunOptions {
   ConfigurationSources sources;
-  std::string folder = "out", from, to, threads;
+  std::string folder = "out", from, to, threads, memory, scratch;
   bool resume = false, allow_other_build = false, overwrite = false, dry_run = false;
   bool quiet = false, log_json = false, json_progress = false, no_vtk = false, no_maps = false;
 };
@@ -48,12 +49,24 @@ bool configure(Configuration& configuration, const RunOptions& options) {
   return takes_kept;
 }
 
+/// Where the scratch file of `--memory` lies.
+const std::string& scratch_folder(const RunOptions& options) {
+  return options.scratch.empty() ? options.folder : options.scratch;
+}
+
 void print_prediction(const geo::io::RunSession& session, const RunOptions& options, int threads) {
   const auto prediction = session.prediction(geo::io::measure_machine(threads));
   const auto& grid = session.grid();
   fmt::print("grid    {} x {}, {} cells\n", grid.nx(), grid.ny(), grid.size());
   fmt::print("stages  {}\n", fmt::join(session.stages_to_run(), " "));
-  fmt::print("memory  about {}\n", shown_bytes(prediction.memory_bytes));
+  if (options.memory.empty()) {
+    fmt::print("memory  about {}\n", shown_bytes(prediction.memory_bytes));
+  } else {
+    const auto taken = memory_under_cap(parse_memory_size(options.memory), prediction.memory_bytes);
+    fmt::print("memory  about {}\n", shown_bytes(taken.resident_bytes));
+    fmt::print("scratch about {} in {}\n", shown_bytes(taken.scratch_bytes),
+               scratch_folder(options));
+  }
   fmt::print("time    about {} on {} thread{}\n", shown_seconds(prediction.seconds), threads,
              threads == 1 ? "" : "s");
   fmt::print("files   about {} in {}\n", shown_bytes(prediction.disk_bytes), options.folder);
@@ -74,20 +87,32 @@ int columns_within(const geo::io::RunSession& session, double bytes) {
 
 /// A run that the machine cannot hold would end somewhere in its middle, or hold up everybody else.
 void refuse_beyond_memory(const geo::io::RunSession& session) {
-  const double wanted = session.prediction({}).memory_bytes, there = memory_of_machine_bytes();
+  const double wanted = session.prediction({}).memory_bytes, there = available_memory_bytes();
   if (wanted <= there) return;
-  const int columns = columns_within(session, there);
+  // What others take changes from one moment to the next.
+  constexpr double kOurs = 0.75, kGibibyte = 0x1p30;
+  const int columns = columns_within(session, kOurs * there);
   const std::string fewer =
       columns > 0 ? fmt::format("fewer cells, such as --grid {}x{}", columns, columns / 2)
                   : "an island of fewer cells, island.nx times island.ny";
   throw geo::ConfigurationError(fmt::format(
-      "a run on {} x {} cells wants about {} of memory, and there are {}: must be {}",
-      session.grid().nx(), session.grid().ny(), shown_bytes(wanted), shown_bytes(there), fewer));
+      "a run on {} x {} cells wants about {} of memory, and there are {} (--memory {:.0f}GiB would "
+      "keep it within less): must be {}",
+      session.grid().nx(), session.grid().ny(), shown_bytes(wanted), shown_bytes(there),
+      std::max(1.0, std::floor(kOurs * there / kGibibyte)), fewer));
 }
 
 void run(const RunOptions& options) {
   set_log_style({.json = options.log_json || options.json_progress, .quiet = options.quiet});
   const int threads = use_threads(options.threads);
+  std::unique_ptr<MemoryCap> cap;
+  if (options.memory.empty() && !options.scratch.empty()) {
+    throw geo::ConfigurationError("--scratch needs --memory, whose scratch file lies there");
+  }
+  if (!options.memory.empty()) {
+    const double bytes = parse_memory_size(options.memory);
+    if (!options.dry_run) cap = std::make_unique<MemoryCap>(bytes, scratch_folder(options));
+  }
   Configuration configuration;
   const bool folders_configuration = configure(configuration, options);
   geo::io::RunSession session(configuration.run(), configuration.stage_numbers(),
@@ -101,7 +126,7 @@ void run(const RunOptions& options) {
                                .threads = threads});
   session.prepare();
   if (options.dry_run) print_prediction(session, options, threads);
-  refuse_beyond_memory(session);
+  if (options.memory.empty()) refuse_beyond_memory(session);
   if (options.dry_run) return;
 
   Progress progress(options.json_progress               ? ProgressStyle::json
@@ -134,6 +159,10 @@ void run(const RunOptions& options) {
                      fmt::format("interrupted; terrane run --resume -o {} goes on after the last "
                                  "complete stage",
                                  options.folder));
+  }
+  if (cap) {
+    log_info(fmt::format("at most {} of memory, {} in the scratch file",
+                         shown_bytes(peak_resident_bytes()), shown_bytes(cap->scratch_bytes())));
   }
   log_info(fmt::format("the files are in {}", options.folder));
 }
@@ -203,6 +232,15 @@ void add_stage_options(CLI::App& command, RunOptions& o) {
 void add_manner_options(CLI::App& command, RunOptions& o) {
   command.add_option("--threads", o.threads, "Threads (default: as many as there are cores)")
       ->type_name("N");
+  command
+      .add_option("--memory", o.memory,
+                  "Keep the run within so much memory, such as 16GiB or 500MB: what does not fit "
+                  "waits in a scratch file; same bits")
+      ->type_name("SIZE");
+  command
+      .add_option("--scratch", o.scratch,
+                  "With --memory: folder of the scratch file (default: that of the run)")
+      ->type_name("DIR");
   command.add_flag("--no-vtk", o.no_vtk, "Write no files for ParaView");
   command.add_flag("--no-maps", o.no_maps, "Draw no maps and no report");
   command.add_flag("--dry-run", o.dry_run,

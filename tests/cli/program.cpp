@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <grp.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -95,6 +96,7 @@ void Running::note(int status, const rusage& used) {
     return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
   };
   processor_s_ = seconds(used.ru_utime) + seconds(used.ru_stime);
+  peak_bytes_ = 1024.0 * static_cast<double>(used.ru_maxrss);
   code_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
@@ -117,7 +119,7 @@ Outcome Running::finish() {
   int status = 0;
   rusage used{};
   if (!ended_ && ::wait4(process_, &status, 0, &used) == process_) note(status, used);
-  return {code_, text_of(folder_ / "out"), text_of(folder_ / "err"), processor_s_};
+  return {code_, text_of(folder_ / "out"), text_of(folder_ / "err"), processor_s_, peak_bytes_};
 }
 
 std::string Running::err_so_far() const { return text_of(folder_ / "err"); }
@@ -126,6 +128,22 @@ long Running::address_space_bytes() const {
   long pages = 0;
   std::ifstream("/proc/" + std::to_string(process_) + "/statm") >> pages;
   return pages * ::sysconf(_SC_PAGESIZE);
+}
+
+double Running::bytes_of_deleted_files_in(const std::filesystem::path& folder) const {
+  double bytes = 0.0;
+  std::error_code error;
+  for (const auto& entry :
+       std::filesystem::directory_iterator("/proc/" + std::to_string(process_) + "/fd", error)) {
+    const std::string file = std::filesystem::read_symlink(entry.path(), error).string();
+    struct stat about {};
+    if (!file.starts_with(folder.string()) || !file.ends_with("(deleted)")) continue;
+    constexpr double kBlock_bytes = 512.0;
+    if (::stat(entry.path().c_str(), &about) == 0) {
+      bytes += kBlock_bytes * static_cast<double>(about.st_blocks);
+    }
+  }
+  return bytes;
 }
 
 std::string Running::environment() const {

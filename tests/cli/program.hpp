@@ -16,6 +16,7 @@ struct Outcome {
   int code = -1;  ///< exit code, or 128 + signal as a shell shows it
   std::string out, err;
   double processor_s = 0.0;  ///< of all its threads, however busy the machine is
+  double peak_bytes = 0.0;   ///< the most memory that it had resident
 };
 
 /// How `terrane` is called: arguments and circumstances.
@@ -46,6 +47,8 @@ class Running {
   [[nodiscard]] std::string err_so_far() const;
   /// The address space that it takes now; 0 when it has ended.
   [[nodiscard]] long address_space_bytes() const;
+  /// What it has of files in that folder that no longer have a name there, on the disk.
+  [[nodiscard]] double bytes_of_deleted_files_in(const std::filesystem::path& folder) const;
   /// Its environment as the system shows it, entries parted by zero bytes.
   [[nodiscard]] std::string environment() const;
 
@@ -56,7 +59,7 @@ class Running {
   pid_t process_ = -1;
   bool ended_ = false;
   int code_ = -1;
-  double processor_s_ = 0.0;
+  double processor_s_ = 0.0, peak_bytes_ = 0.0;
 };
 
 /// Runs `terrane` to its end.

@@ -75,6 +75,7 @@ struct StageCost {
   double per_cell_ns = 500.0;  ///< time for each cell of its grid
   double fixed_s = 0.0;        ///< time whatever the grid
   double cell_bytes = 150.0;   ///< memory per cell at its peak, all fields included
+  double fixed_bytes = 0.0;    ///< memory whatever the grid
 };
 
 /// What a run gives a stage besides fields: the planet, the seed, and ways to be heard.

@@ -10,12 +10,13 @@
 namespace geo::io {
 namespace {
 
-constexpr double kBaseMemory_bytes = 120e6;  // program and libraries
-constexpr double kWriting_ns = 15.0;         // per value: what is not written beside the stages
-constexpr double kLastWriting_ns = 55.0;     // of the last stage: nothing is beside it
-constexpr double kCompression = 0.55;        // NetCDF values after deflate
-constexpr double kVtkCompression = 0.51;     // the same without shuffling, in VTK files
-constexpr double kMaps_s = 1.3;              // all maps at their default width, one thread
+constexpr double kBaseMemory_bytes = 75e6;     // program and libraries
+constexpr double kBesideIsland_bytes = 110.0;  // per cell of a planet while an island is made
+constexpr double kWriting_ns = 15.0;           // per value: what is not written beside the stages
+constexpr double kLastWriting_ns = 55.0;       // of the last stage: nothing is beside it
+constexpr double kCompression = 0.55;          // NetCDF values after deflate
+constexpr double kVtkCompression = 0.51;       // the same without shuffling, in VTK files
+constexpr double kMaps_s = 1.3;                // all maps at their default width, one thread
 constexpr double kMaps_bytes = 12e6;
 constexpr double kMapWidth_px = 1800.0;
 constexpr double kPictures_bytes = 60e6;         // memory of all maps at that width, drawn at once
@@ -63,7 +64,9 @@ Prediction predict(const Pipeline& pipeline, int first, int last, double cells,
     const StageCost cost = pipeline.stages()[at]->cost(configuration);
     const double own_cells =
         info.own_grid ? cells_of_own_grid(*pipeline.stages()[at]).value_or(cells) : cells;
-    sum.memory_bytes = std::max(sum.memory_bytes, cost.cell_bytes * own_cells);
+    const double beside_bytes = info.own_grid ? kBesideIsland_bytes * cells : 0.0;
+    sum.memory_bytes =
+        std::max(sum.memory_bytes, cost.fixed_bytes + cost.cell_bytes * own_cells + beside_bytes);
     double bytes = 0.0;
     for (const FieldSpec* spec : info.writes) bytes += value_bytes(*spec);
     const double writing_ns =

@@ -93,7 +93,7 @@ class IslandStage final : public Stage {
   }
   [[nodiscard]] std::vector<Parameter> parameters() override { return p_.declarations(); }
   [[nodiscard]] StageCost cost(std::span<const Parameter> /*configuration*/) const override {
-    return {.per_cell_ns = 2500.0, .cell_bytes = 400.0};
+    return {.per_cell_ns = 2500.0, .cell_bytes = 400.0, .fixed_bytes = 35e6};
   }
 
   void run(StageIo& io, Context& context) const override {

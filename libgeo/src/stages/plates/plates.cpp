@@ -30,6 +30,7 @@ class PlatesStage final : public Stage {
     constexpr double kMesh_s = 0.45;     // plates that grow, on a mesh of their own
     constexpr double kDrift_ns = 190.0;  // per sample and million years
     constexpr double kRaster_s = 3.0;
+    constexpr double kSample_bytes = 285.0;
     const std::string& model = parameters_.model;
     const double drift_s =
         1e-9 * kDrift_ns * static_cast<double>(parameters_.samples) * parameters_.time_myr;
@@ -38,7 +39,9 @@ class PlatesStage final : public Stage {
                        : model == "raster" ? kRaster_s
                        : model == "growth" ? kMesh_s
                                            : 0.0,
-            .cell_bytes = 60.0};
+            .cell_bytes = 55.0,
+            .fixed_bytes =
+                model == "sphere" ? kSample_bytes * static_cast<double>(parameters_.samples) : 0.0};
   }
 
   void run(StageIo& io, Context& context) const override {

@@ -145,6 +145,7 @@ TEST(Memory, BeyondTheMachinesIsRefusedBeforeTheRunBegins) {
   const auto lines = lines_of(outcome.err);
   ASSERT_EQ(lines.size(), 1U) << outcome.err;
   EXPECT_THAT(lines.front(), HasSubstr("a run on 32768 x 16384 cells wants about"));
+  EXPECT_THAT(lines.front(), HasSubstr("(--memory "));
   const auto at = lines.front().find("--grid ");
   ASSERT_NE(at, std::string::npos) << lines.front();
   EXPECT_EQ(run(lines.front().substr(at + 7)).code, 0) << "what it says would do does";

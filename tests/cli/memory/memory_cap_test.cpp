@@ -1,0 +1,180 @@
+// terrane run --memory: the same planet in less memory, what does not fit in a scratch file.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <fstream>
+
+#include "cli/program.hpp"
+#include "cli/sample_run.hpp"
+#include "io/temporary_folder.hpp"
+
+namespace geo {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+constexpr double kCap_bytes = 200e6;
+
+/// Takes 350 MB of memory and 2 s of processor time.
+std::vector<std::string> large_run(const fs::path& folder,
+                                   const std::vector<std::string>& more = {}) {
+  std::vector<std::string> arguments{"run",  "--preset", "hypsography", "--grid",    "2048x1024",
+                                     "--to", "isostasy", "--no-vtk",    "--no-maps", "--threads",
+                                     "2",    "-o",       folder};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+void expect_refusal(const Outcome& outcome, int code, const std::string& what) {
+  EXPECT_EQ(outcome.code, code) << outcome.err;
+  const auto lines = lines_of(outcome.err);
+  ASSERT_EQ(lines.size(), 1U) << outcome.err;
+  EXPECT_THAT(lines.front(), StartsWith("terrane: error: "));
+  EXPECT_THAT(lines.front(), HasSubstr(what));
+}
+
+TEST(MemoryCap, IsKeptAndChangesNoBit) {
+#ifdef TERRANE_SANITIZED
+  GTEST_SKIP() << "a sanitizer has memory of its own";
+#endif
+  const TemporaryFolder folder;
+  const Outcome plain = terrane(large_run(folder / "plain"));
+  ASSERT_EQ(plain.code, 0) << plain.err;
+  ASSERT_GT(plain.peak_bytes, 1.5 * kCap_bytes) << "nothing to be kept";
+  const Outcome capped = terrane(large_run(folder / "capped", {"--memory", "200MB"}));
+  ASSERT_EQ(capped.code, 0) << capped.err;
+  EXPECT_LT(capped.peak_bytes, kCap_bytes);
+  EXPECT_THAT(capped.err, HasSubstr(" in the scratch file"));
+  EXPECT_EQ(digests_of(folder / "capped"), digests_of(folder / "plain"));
+}
+
+TEST(MemoryCap, GoesOnWithAndWithoutFromWhatTheOtherLeft) {
+  const TemporaryFolder folder;
+  const auto run = [&](const fs::path& into, const std::string& last,
+                       const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"run",
+                                       "--preset",
+                                       "preview",
+                                       "--grid",
+                                       "256x128",
+                                       "--to",
+                                       last,
+                                       "--no-vtk",
+                                       "--no-maps",
+                                       "--set",
+                                       "erosion.steps=3",
+                                       "--set",
+                                       "climate.resolution_deg=10",
+                                       "--threads",
+                                       "2",
+                                       "--quiet",
+                                       "-o",
+                                       into};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = terrane(arguments);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+  };
+  run(folder / "plain", "biomes", {});
+  run(folder / "capped", "erosion", {"--memory", "200MB"});
+  run(folder / "capped", "climate", {"--resume"});
+  run(folder / "capped", "biomes", {"--resume", "--memory", "210MB"});
+  EXPECT_EQ(digests_of(folder / "capped"), digests_of(folder / "plain"));
+}
+
+TEST(MemoryCap, LeavesNothingInTheScratchFolderWhenKilled) {
+  const TemporaryFolder folder;
+  fs::create_directories(folder / "scratch");
+  Running running(Call{.arguments = large_run(
+                           folder / "out", {"--memory", "200MB", "--scratch", folder / "scratch"}),
+                       .environment = {},
+                       .working_folder = {}});
+  constexpr double kMuch_bytes = 50e6;
+  ASSERT_TRUE(running.until([&] {
+    return running.bytes_of_deleted_files_in(folder / "scratch") > kMuch_bytes;
+  })) << "it was not used";
+  EXPECT_TRUE(fs::is_empty(folder / "scratch"));
+  running.send(SIGKILL);
+  running.finish();
+  EXPECT_TRUE(fs::is_empty(folder / "scratch"));
+}
+
+TEST(MemoryCap, WithAFullDiskForTheScratchFileIsToldInOneLine) {
+  const TemporaryFolder folder;
+  const Outcome outcome =
+      terrane(Call{.arguments = large_run(folder / "out", {"--memory", "200MB", "--quiet"}),
+                   .environment = {},
+                   .working_folder = {},
+                   .file_size_limit_bytes = 40'000'000});
+  expect_refusal(outcome, 4,
+                 "the disk is too full for the scratch file of --memory; --scratch DIR");
+}
+
+TEST(MemoryCap, WithoutAPlaceForTheScratchFileIsToldInOneLine) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "file") << "no folder";
+  const Outcome outcome = terrane(
+      large_run(folder / "out", {"--memory", "200MB", "--scratch", (folder / "file").string()}));
+  expect_refusal(outcome, 4, "no scratch file for --memory");
+  expect_refusal(terrane(large_run(folder / "out", {"--scratch", folder / "scratch"})), 2,
+                 "--scratch needs --memory");
+}
+
+TEST(MemoryCap, OfNoSizeOrTooSmallIsRefused) {
+  const TemporaryFolder folder;
+  for (const char* size :
+       {"much", "16", "16G", "-1GB", "1e3GB", "nanGB", "1.2.3GB", "16 GiB", "16GiBs", "GiB"}) {
+    SCOPED_TRACE(size);
+    const std::string option = std::string("--memory=") + size;
+    expect_refusal(terrane(large_run(folder / "out", {option})), 2,
+                   "must be a size such as 16GiB or 500MB");
+  }
+  for (const char* size : {"199MB", "0B", "190MiB", "2000TiB"}) {
+    SCOPED_TRACE(size);
+    expect_refusal(terrane(large_run(folder / "out", {"--memory", size})), 2, "must be from 200MB");
+  }
+  EXPECT_FALSE(fs::exists(folder / "out"));
+}
+
+/// "memory  about 321 MB" of a dry run.
+double predicted_bytes(const std::string& out) {
+  const auto at = out.find("memory  about ");
+  if (at == std::string::npos) return 0.0;
+  constexpr std::size_t kWords = 14;
+  return 1e6 * std::stod(out.substr(at + kWords));
+}
+
+TEST(Memory, IsPredictedWithin15PerCentWithACapAndWithout) {
+#ifdef TERRANE_SANITIZED
+  GTEST_SKIP() << "a sanitizer has memory of its own";
+#endif
+  const TemporaryFolder folder;
+  for (const char* cap : {"", "250MB"}) {
+    SCOPED_TRACE(cap);
+    std::vector<std::string> run{"run",  "--preset", "earth",       "--grid",    "2048x1024",
+                                 "--to", "isostasy", "--no-vtk",    "--no-maps", "--threads",
+                                 "2",    "--quiet",  "--overwrite", "-o",        folder / "out"};
+    if (*cap != '\0') run.insert(run.end(), {"--memory", cap});
+    const Outcome done = terrane(run);
+    ASSERT_EQ(done.code, 0) << done.err;
+    run.emplace_back("--dry-run");
+    const double predicted = predicted_bytes(terrane(run).out);
+    EXPECT_NEAR(done.peak_bytes / predicted, 1.0, 0.15) << predicted;
+  }
+}
+
+TEST(MemoryCap, ForAGridThatNoMachineHoldsIsPredicted) {
+  const TemporaryFolder folder;
+  const Outcome outcome =
+      terrane({"run", "--grid", "32768x16384", "--to", "erosion", "--no-vtk", "--no-maps",
+               "--dry-run", "--memory", "2GiB", "-o", folder / "out"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("memory  about 1.9 GB\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("\nscratch about "));
+  EXPECT_FALSE(fs::exists(folder / "out"));
+}
+
+}  // namespace
+}  // namespace geo
