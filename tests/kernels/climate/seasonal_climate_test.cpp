@@ -76,9 +76,9 @@ double rain_belt_deg(const Continent& continent, const std::vector<float>& rain_
 TEST(SeasonalClimate, RainBeltComesLaterWhereTheTroughLags) {
   const Continent continent;
   SeasonalClimate model;
-  model.itcz_lag_months = 0.0;
+  model.itcz_lag_month = 0.0;
   const SeasonalFields prompt = continent.solve(model);
-  model.itcz_lag_months = 1.0;
+  model.itcz_lag_month = 1.0;
   const SeasonalFields late = continent.solve(model);
   constexpr int kMay = 4, kNovember = 10;
   EXPECT_LT(rain_belt_deg(continent, late.precipitation_mm[kMay]),

@@ -99,6 +99,19 @@ TEST(RotationsOfADrift, PlateHasItsOwnRotationsOverItsLifeAndIsFixedToOthersBesi
   EXPECT_FALSE(model.at(103, 1.0));
 }
 
+TEST(RotationsOfADrift, APlateOfTheLastMomentIsFixedToItsParent) {
+  // Told how it would go on, for no time yet.
+  ADrift drift;
+  drift.spans.push_back({.plate = 4, .parent = 0, .born_myr = 10.0});
+  drift.turns.push_back(
+      {.plate = 4, .from_myr = 10.0, .to_myr = 10.0, .rotation_rad_myr = {0.0, 0.0, 0.1}});
+  const RotationModel model = rotations_of_drift(drift.turns, drift.spans, 0.0, 10.0, 100);
+  const Vector3 at = normalised({1.0, 2.0, 0.5});
+  for (const double ago : {0.0, 3.0, 10.0}) {
+    EXPECT_LT(far_apart(moved(model.at(104, ago), at), moved(model.at(100, ago), at)), kRoundOff);
+  }
+}
+
 TEST(RotationsOfADrift, CrossoversGiveTheSameRotationInTheAbsoluteFrame) {
   const ADrift drift;
   const RotationModel model = rotations_of_drift(drift.turns, drift.spans, 0.0, 10.0, 100);

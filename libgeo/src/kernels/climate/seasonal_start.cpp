@@ -84,7 +84,7 @@ void SeasonalYear::begin_month(int m, const TemperatureCycle& temperature) {
     const double before_c = temperature.month_c(cell, (m + kMonths - 1) % kMonths);
     trough_c[cell] =
         static_cast<float>(month.temperature_c[cell] +
-                           model_.itcz_lag_months * (before_c - month.temperature_c[cell]));
+                           model_.itcz_lag_month * (before_c - month.temperature_c[cell]));
   }
   press(month, trough_c, row_means<double>(grid_, annual_c));
   stir(month, zonal_c);

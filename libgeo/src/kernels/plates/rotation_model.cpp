@@ -184,6 +184,8 @@ class Drift {
     std::vector<FiniteRotation> found{{ago(ended_myr), rotation}};
     for (auto turn = plate.turns.rbegin(); turn != plate.turns.rend(); ++turn) {
       if (turn->to_myr > ended_myr + kSameTime_myr) continue;
+      // A plate that the last step has made is told how it would go on: for no time yet.
+      if (turn->from_myr >= turn->to_myr) continue;
       const Vector3 whole = scaled(turn->rotation_rad_myr, turn->from_myr - turn->to_myr);
       rotation = Quaternion::about(whole).after(rotation);
       found.push_back({ago(turn->from_myr), rotation});

@@ -134,7 +134,7 @@ std::vector<Parameter> wind_rows(ClimateParameters& p) {
            "exponent by which the cells' displacement with the thermal equator falls off towards "
            "the poles",
            "peixoto1992"),
-      real("climate.itcz_lag_months", seasonal.itcz_lag_months, "month", 0.0, 1.0,
+      real("climate.itcz_lag_month", seasonal.itcz_lag_month, "month", 0.0, 1.0,
            "time, in twelfths of a year, by which the trough follows the temperature of the air, "
            "as the sea does",
            "peixoto1992"),
