@@ -62,6 +62,34 @@ void on_great_rivers(std::initializer_list<std::uint64_t> seeds, Action&& action
   }
 }
 
+/// What the planet's lakes about an island lose to the air, m3/s: where the island's own are
+/// smaller, its rivers carry that on.
+double lost_in_lakes_m3_s(const IslandOnRiver& at) {
+  const auto lake = at.whole.read(field::lake_id);
+  const auto receiver = at.whole.read(field::flow_receiver);
+  const auto discharge = at.whole.read(field::discharge);
+  std::set<std::int32_t> lakes;
+  for (const Index cell : at.cell_of) {
+    if (lake[cell] > 0) lakes.insert(lake[cell]);
+  }
+  double lost = 0.0;
+  for (const std::int32_t one : lakes) {
+    double in = 0.0, out = 0.0;
+    std::set<Index> sills;  // what comes in there counts as the lake's outflow, too
+    for (Index c = 0; c < at.whole.grid().size(); ++c) {
+      if (lake[c] != one) continue;
+      out = discharge[c];
+      if (lake[receiver[c]] != one) sills.insert(receiver[c]);
+    }
+    for (Index c = 0; c < at.whole.grid().size(); ++c) {
+      if (lake[c] == one || receiver[c] == c) continue;
+      if (lake[receiver[c]] == one || sills.contains(receiver[c])) in += discharge[c];
+    }
+    lost += std::max(0.0, in - out);
+  }
+  return lost;
+}
+
 // Interpolation dams a valley that is one cell wide: rivers must not leave by the edge that they
 // came in over.
 TEST(Island, RiversCarryWhatTheyCarryOnThePlanet) {
@@ -85,7 +113,7 @@ TEST(Island, RiversCarryWhatTheyCarryOnThePlanet) {
     EXPECT_TRUE(most > 0.8 * planets[c] || carried_in(receiver[c]) > 0.95 * planets[receiver[c]])
         << most << " of " << planets[c];
     poor += most < 0.9 * planets[c] ? 1 : 0;
-    EXPECT_LT(most, 1.1 * planets[receiver[receiver[c]]]);
+    EXPECT_LT(most, 1.1 * planets[receiver[receiver[c]]] + lost_in_lakes_m3_s(at));
     carried += std::min(1.0, static_cast<double>(most) / planets[c]);
     ++rivers;
   });
@@ -125,6 +153,7 @@ TEST(Island, RiversKeepTheirWaterAllTheWay) {
       most[cell] = std::max(most[cell], here);
       if (lake[k] == 0) in_rivers[cell] = std::max(in_rivers[cell], here);
     }
+    const double lost_m3_s = lost_in_lakes_m3_s(at);
     double there = 0.0, kept = 0.0, too_much = 0.0;
     for (const auto& [cell, here] : most) {
       if (!has_river(at.whole, fine, cell) || shore.contains(cell)) continue;
@@ -137,7 +166,7 @@ TEST(Island, RiversKeepTheirWaterAllTheWay) {
       const double below = std::max<double>(beside, planets[cell]);
       there += planets[cell];
       kept += std::min<double>(here, planets[cell]);
-      too_much += std::max(0.0, in_rivers[cell] - 1.1 * below);
+      too_much += std::max(0.0, in_rivers[cell] - 1.1 * below - lost_m3_s);
     }
     EXPECT_GT(kept, 0.8 * there);
     ++rivers;

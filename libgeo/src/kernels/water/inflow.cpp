@@ -23,27 +23,56 @@ Index lowest_land(const Stretch& stretch, std::span<const float> z,
   return lowest;
 }
 
-/// Discharge out of planet cells, also on lakes.
+/// Discharge out of planet cells, also on lakes. A lake shows on all its cells what leaves it, of
+/// rivers that come in at its very sill as well: each of its cells passes on the rivers that have
+/// come in above it, less what the lake loses of them.
 class Discharge {
  public:
   Discharge(const PlanetCells& cells, const PlanetWater& water) : water_(water) {
     if (water.lake_id.empty()) return;
-    const auto first = static_cast<std::size_t>(cells.first_row()) * cells.planet().nx();
-    for (std::size_t c = first; c < first + cells.size(); ++c) {
-      if (water.lake_id[c] <= 0) continue;
-      double& most = largest_m2_[water.lake_id[c]];
-      most = std::max(most, water.drainage_area_m2[c]);
+    const auto begin = static_cast<Index>(cells.first_row()) * cells.planet().nx();
+    const Index end = begin + static_cast<Index>(cells.size());
+    std::map<Index, std::int32_t> lake_of_sill;
+    for (Index c = begin; c < end; ++c) {
+      const std::int32_t from = lake_of(c), to = lake_of(water.receiver[c]);
+      if (from > 0) lakes_[from].leaves_m3_s = water.discharge_m3_s[c];
+      if (from > 0 && to != from) lake_of_sill[water.receiver[c]] = from;
+      if (to > 0 && to != from) pass_on(to, water.receiver[c], water.discharge_m3_s[c]);
+    }
+    for (Index c = begin; c < end; ++c) {
+      const auto sill = lake_of_sill.find(water.receiver[c]);
+      if (sill == lake_of_sill.end() || lake_of(c) == sill->second) continue;
+      lakes_[sill->second].comes_in_at_sill_m3_s += water.discharge_m3_s[c];
     }
   }
   [[nodiscard]] double operator()(Index cell) const {
-    const double q = water_.discharge_m3_s[cell];
-    if (water_.lake_id.empty() || water_.lake_id[cell] <= 0) return q;
-    return q * water_.drainage_area_m2[cell] / largest_m2_.at(water_.lake_id[cell]);
+    if (lake_of(cell) <= 0) return water_.discharge_m3_s[cell];
+    const auto passes = passes_m3_s_.find(cell);
+    if (passes == passes_m3_s_.end()) return 0.0;
+    const Balance& lake = lakes_.at(lake_of(cell));
+    const double own = std::max(0.0, lake.leaves_m3_s - lake.comes_in_at_sill_m3_s);
+    return passes->second * std::min(1.0, own / lake.comes_in_m3_s);
   }
 
  private:
+  struct Balance {
+    double comes_in_m3_s = 0.0, comes_in_at_sill_m3_s = 0.0, leaves_m3_s = 0.0;
+  };
+  [[nodiscard]] std::int32_t lake_of(Index cell) const {
+    return water_.lake_id.empty() ? 0 : water_.lake_id[cell];
+  }
+  /// A river that comes into a lake at a cell, on its way to the sill.
+  void pass_on(std::int32_t lake, Index at, double river_m3_s) {
+    lakes_[lake].comes_in_m3_s += river_m3_s;
+    for (; lake_of(at) == lake; at = water_.receiver[at]) {
+      passes_m3_s_[at] += river_m3_s;
+      if (water_.receiver[at] == at) break;
+    }
+  }
+
   const PlanetWater& water_;
-  std::map<std::int32_t, double> largest_m2_;
+  std::map<std::int32_t, Balance> lakes_;
+  std::map<Index, double> passes_m3_s_;
 };
 
 /// How much of each covered cell of the planet lies within the plane.

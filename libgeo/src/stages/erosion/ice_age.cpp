@@ -60,11 +60,14 @@ std::vector<double> IceAge::work(const LandClimate& climate, double years_yr,
 }
 
 void IceAge::settle_today(const LandClimate& climate, std::span<const float> elevation_m) {
-  constexpr int kRounds = 3;
+  constexpr int kRounds = 3, kTurns = 2;
   const Age today{0.0, 0.0, kRounds};
   settle(climate, today, elevation_m);
-  weigh(elevation_m);
-  settle(climate, today, elevation_m);
+  // The ground sinks under the ice, and the ice changes with the ground.
+  for (int turn = 0; turn < kTurns; ++turn) {
+    weigh(elevation_m);
+    settle(climate, today, elevation_m);
+  }
   thickness_m_.assign(elevation_m.size(), 0.0F);
 #pragma omp parallel for schedule(static)
   for (Index c = 0; c < grid_.size(); ++c) {

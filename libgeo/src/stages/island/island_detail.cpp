@@ -68,6 +68,21 @@ void take_exemplars(const PlanetCells& cells, const PlanetTerrain& planet,
   });
 }
 
+/// Width of the strip along the edge in which detail fades, per cell: behind one of even width
+/// rivers would run straight along its foot.
+std::vector<float> strip_widths_m(const PlanetCells& cells, std::uint64_t seed) {
+  constexpr double kWavelength = 3.0, kGain = 0.5;  // of the mean width
+  constexpr int kOctaves = 3;
+  constexpr float kDeviation = 0.4F, kNarrowest = 0.4F, kWidest = 1.8F;
+  const double mean_m = seam_m(cells);
+  std::vector<float> width_m(cells.fine().size());
+  unit_detail(cells.fine(), {kWavelength * mean_m, kOctaves, kGain}, seed, "island.strip", width_m);
+  for (float& width : width_m) {
+    width = static_cast<float>(mean_m) * std::clamp(1.0F + kDeviation * width, kNarrowest, kWidest);
+  }
+  return width_m;
+}
+
 }  // namespace
 
 void add_rough_detail(const PlanetCells& cells, const PlanetTerrain& planet,
@@ -94,9 +109,9 @@ void add_rough_detail(const PlanetCells& cells, const PlanetTerrain& planet,
   });
   const std::vector<float> mean = cells.means(detail, {}, 0.0F);
   const std::vector<float> dry = all_round(cells, planet.elevation_m, /*land=*/true);
+  const std::vector<float> strip_m = strip_widths_m(cells, seed);
   on_cells(fine, [&](int i, int j, Index c) {
-    const double mean_m = cells.interpolate(mean, i, j),
-                 ramp = edge_ramp(fine, i, j, seam_m(cells));
+    const double mean_m = cells.interpolate(mean, i, j), ramp = edge_ramp(fine, i, j, strip_m[c]);
     // The edge keeps the planet's heights: hollows close behind it would have no way out.
     const double detail_m = std::max(near_edge[c] - ramp * mean_m, ramp * (detail[c] - mean_m));
     z[c] = static_cast<float>(

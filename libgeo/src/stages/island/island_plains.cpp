@@ -58,10 +58,11 @@ void grade_plains(const Grid& fine, double seam_m, std::span<const std::uint8_t>
     const Index c = *at, to = graph.receiver[c];
     if (dips[c] == 0 && hollow[c] == 0) continue;
     z[c] = std::max(z[c], 0.0F);
-    if (to == c || (hollow[c] == 0 && dips[to] == 0)) continue;
+    if (to == c) continue;
     const ReceiverDistance distance(fine, fine.row(c));
     const double slope = kSlope * std::sqrt(kArea_m2 / area_m2[c]);
-    const auto graded = static_cast<float>(z[to] + slope * distance(c, fine.column(c), to));
+    const auto graded =
+        static_cast<float>(std::max(z[to], 0.0F) + slope * distance(c, fine.column(c), to));
     z[c] = std::max(z[c], graded);
   }
 }

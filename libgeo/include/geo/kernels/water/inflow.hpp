@@ -48,8 +48,9 @@ struct Crossings {
 /// inward and is not below the planet's, from which it can get to the river of that cell. So rivers
 /// keep their area and discharge, and no ground counts twice. No edge cell that water comes
 /// in over is to be an outlet; where water leaves, none enters. On a lake, whose cells all carry
-/// the discharge of the whole, discharge goes by the share of the drainage area. Outputs: one value
-/// per fine cell, 0 elsewhere; `elevation_m` of the fine cells: in and out.
+/// the discharge of the whole, a cell passes on the rivers that have come in above it, less the
+/// lake's loss.
+/// Outputs: one value per fine cell, 0 elsewhere; `elevation_m` of the fine cells: in and out.
 /// Throws Bug where `water` does not have a value for each cell of the planet.
 Crossings find_inflow(const PlanetCells& cells, const PlanetWater& water,
                       std::span<float> elevation_m, std::span<double> inflow_area_m2,
