@@ -43,7 +43,7 @@ struct IsostasyParameters {
   double craton_compensation = 0.95;
   double swell_m = 345.0;
   double ocean_swell_m = 430.0;
-  double margin_tilt_m = 840.0;
+  double margin_tilt_m = 838.0;
   double margin_tilt_km = 260.0;
   double relict_km = 5.2;
   double heat_m = 950.0;
