@@ -82,9 +82,8 @@ void SeasonalYear::begin_month(int m, const TemperatureCycle& temperature) {
   std::vector<float> trough_c(size_);  // as warm as some time ago
   for (std::size_t cell = 0; cell < size_; ++cell) {
     const double before_c = temperature.month_c(cell, (m + kMonths - 1) % kMonths);
-    trough_c[cell] =
-        static_cast<float>(month.temperature_c[cell] +
-                           model_.itcz_lag_month * (before_c - month.temperature_c[cell]));
+    trough_c[cell] = static_cast<float>(
+        month.temperature_c[cell] + model_.itcz_lag_month * (before_c - month.temperature_c[cell]));
   }
   press(month, trough_c, row_means<double>(grid_, annual_c));
   stir(month, zonal_c);
