@@ -1,5 +1,7 @@
 #include "calibration/seed_planet.hpp"
 
+#include <algorithm>
+
 #include "geo/core/stage.hpp"
 #include "geo/stages/isostasy/sea_level.hpp"
 #include "geo/stages/plates/plates.hpp"
@@ -13,6 +15,17 @@ Planet planet_of(std::span<const Parameter> configuration) {
     parameter.set(find_parameter(configuration, parameter.name)->value());
   }
   return planet;
+}
+
+/// A run takes the height of a cell for the level of the sea, and that cell is land. In double
+/// precision the same cell may stand below what its height is rounded to; so its own height it is.
+double level_of_cell_m(double level_m, std::span<const float> rounded_m,
+                       std::span<const double> elevation_m) {
+  double lowest_m = level_m;
+  for (std::size_t c = 0; c < rounded_m.size(); ++c) {
+    if (rounded_m[c] == level_m) lowest_m = std::min(lowest_m, elevation_m[c]);
+  }
+  return lowest_m;
 }
 
 State plates_of(std::span<const Parameter> configuration, std::uint64_t seed, int nx, int ny) {
@@ -90,7 +103,7 @@ void SeedPlanet::find_sea(const Model& model, std::span<const double> elevation_
   const Grid& grid = this->grid();
   sea = {.at_shore = sea.at_shore};
   const std::vector<float> values(elevation_m.begin(), elevation_m.end());
-  sea.level_m = sea_level_m(grid, values, model.planet);
+  sea.level_m = level_of_cell_m(sea_level_m(grid, values, model.planet), values, elevation_m);
   if (model.planet.sea_level == "volume") {
     sea.wet.resize(values.size());
     for (std::size_t c = 0; c < values.size(); ++c) sea.wet[c] = elevation_m[c] < sea.level_m;
