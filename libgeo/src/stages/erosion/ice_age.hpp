@@ -30,8 +30,8 @@ class IceAge {
   /// Ice on the land of today, once its surface is finished.
   void settle_today(const LandClimate& climate, std::span<const float> elevation_m);
 
-  /// Of today, m; mean of the cell.
-  [[nodiscard]] std::span<const float> thickness_m() const { return thickness_m_; }
+  /// Of today, m; mean of the cell. With it all that is left of the ice goes.
+  [[nodiscard]] std::vector<float> take_thickness_m();
   /// By how much its weight holds down the land beneath and beside it, m; the surface of the ice,
   /// and land without it, stay above the sea.
   [[nodiscard]] std::span<const float> sunk_m() const { return sunk_m_; }

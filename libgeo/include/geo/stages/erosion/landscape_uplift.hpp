@@ -30,8 +30,8 @@ void Landscape<V>::raise() {
 template <class V>
 void Landscape<V>::record_raising() {
   if constexpr (kRecords) {
-    if (raised_m_.empty()) return;
-    on_land([&](Index cell) { raised_m_[cell] += z_[cell] - before_[cell]; });
+    if (records_.raised_m.empty()) return;
+    on_land([&](Index cell) { records_.raised_m[cell] += z_[cell] - before_[cell]; });
   }
 }
 
@@ -50,7 +50,7 @@ void Landscape<V>::thicken(const Number& dt) {
   if constexpr (kRecords) {
 #pragma omp parallel for schedule(static)
     for (Index cell = 0; cell < grid_.size(); ++cell) {
-      crust_change_m_[cell] += Number(thickening_m_yr_[cell]) * dt;
+      records_.crust_change_m[cell] += Number(thickening_m_yr_[cell]) * dt;
     }
   }
 }
