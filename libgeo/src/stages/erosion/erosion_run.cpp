@@ -117,6 +117,7 @@ void ErosionRun::wear() {
              turn_climate(step);
              return struck;
            },
+       .coast = [&](std::int64_t) { return move_coast(); },
        .ice = [&](std::int64_t step) { return ice_of(step); },
        .after =
            [&](std::int64_t step) {
@@ -141,6 +142,16 @@ const Drainage& ErosionRun::route() {
 bool ErosionRun::strike(std::int64_t step) {
   if (context_.events.empty()) return false;
   return reshape([&] { return events_.strike(step, elevation_m_); });
+}
+
+/// Floor of the sea that belts have lifted out of it is land, and what it cuts off is landlocked.
+bool ErosionRun::move_coast() {
+  if (!grows_) return false;
+  std::vector<std::uint8_t> outlets = find_outlets(grid_, elevation_m_);
+  if (outlets == landscape_.outlets()) return false;
+  landscape_.set_outlets(std::move(outlets));
+  landscape_.set_landlocked(landlocked_cells(p_, grid_, elevation_m_));
+  return true;
 }
 
 void ErosionRun::turn_climate(std::int64_t step) {
@@ -290,8 +301,8 @@ void ErosionRun::report() const {
   budget["rock_stored_m3"] = stored;
   budget["rock_rounded_m3"] = rock.rounded;
   if (growth_of_belts_myr<float>(p_, {}) > 0.0) {
-    const double grown = area_sum<double>(landscape_.grid(),
-                                          [&](Index c) { return landscape_.records().crust_change_m[c]; });
+    const double grown = area_sum<double>(
+        landscape_.grid(), [&](Index c) { return landscape_.records().crust_change_m[c]; });
     budget["crust_shortened_m3"] = rock.shortened;
     budget["crust_stored_m3"] = grown;
     budget["crust_closing_error"] =

@@ -32,6 +32,7 @@ class ErosionRun {
   const Drainage& route();
   bool strike(std::int64_t step);
   [[nodiscard]] IceWork ice_of(std::int64_t step);
+  bool move_coast();
   void turn_climate(std::int64_t step);
   template <class Change>
   bool reshape(Change&& change);

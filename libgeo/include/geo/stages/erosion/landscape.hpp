@@ -114,6 +114,9 @@ class Landscape {
   /// Lets it do so.
   void breach(const Drainage& drainage);
 
+  /// Uplift of one step. Floor of the sea may come up out of it: the coast is then to be told anew.
+  void raise();
+  /// What works on the surface in a step once it has been raised.
   /// `builds_deltas`: the step ends at a time when the sea has stood still for a while. `ice`, if
   /// any, works after the rivers; where it lets the sea in, the coast moves. `done`: see there.
   void step(const Drainage& drainage, bool builds_deltas = false, const IceWork& ice = {},
@@ -236,7 +239,6 @@ class Landscape {
   [[nodiscard]] Number volume_since_before() const {
     return area_sum<Number>(grid_, [&](Index c) { return Number(z_[c]) - Number(before_[c]); });
   }
-  void raise();
   void record_raising();
   /// Crust grows also where the sea stands on it.
   void thicken(const Number& dt);
@@ -306,7 +308,6 @@ void Landscape<V>::step(const Drainage& drainage, bool builds_deltas, const IceW
                         const DrainageDone& done) {
   builds_deltas_ = builds_deltas;
   release(records_.sediment.carried_m3_yr);
-  raise();
   before_.assign(z_.begin(), z_.end());
   const std::span<const double> area_m2(drainage.area_m2);
   if (deposits()) {

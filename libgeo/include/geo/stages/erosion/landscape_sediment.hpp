@@ -112,7 +112,8 @@ void Landscape<V>::build_at_mouths(const std::vector<std::uint8_t>& sea,
     std::vector<double> left_m3(grid_.size());
     for (Index cell = 0; cell < grid_.size(); ++cell) left_m3[cell] = brought_m3(cell);
     for (const auto& [cell, mouth] : build_deltas(grid_, {}, sea, z_, left_m3, laid_m)) {
-      if (mouth != kNoCell) records_.sediment.carried_m3_yr[mouth] += records_.sediment.carried_m3_yr[cell];
+      if (mouth != kNoCell)
+        records_.sediment.carried_m3_yr[mouth] += records_.sediment.carried_m3_yr[cell];
     }
     for (Index cell = 0; cell < grid_.size(); ++cell) {
       volume_m3[cell] -= brought_m3(cell) - left_m3[cell];
