@@ -150,10 +150,10 @@ void Landscape<V>::record_layers() {
 template <class V>
 void Landscape<V>::record_carried(const std::vector<Number>& volume_m3) {
   if constexpr (kRecords) {
-    records_.sediment.carried_m3_yr.resize(grid_.size());
+    records_.sediment.carried_m3_yr.resize(grid_.size(), 0.0F);
 #pragma omp parallel for schedule(static)
     for (Index cell = 0; cell < grid_.size(); ++cell) {
-      records_.sediment.carried_m3_yr[cell] =
+      records_.sediment.carried_m3_yr[cell] +=
           static_cast<float>(std::max(0.0, volume_m3[cell]) / p_.time_step_yr);
     }
   }
