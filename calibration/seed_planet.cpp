@@ -17,6 +17,8 @@ Planet planet_of(std::span<const Parameter> configuration) {
   return planet;
 }
 
+constexpr double kHalfWidth = 0.0025;  // share of the area on either side of the shore
+
 /// A run takes the height of a cell for the level of the sea, and that cell is land. In double
 /// precision the same cell may stand below what its height is rounded to; so its own height it is.
 double level_of_cell_m(double level_m, std::span<const float> rounded_m,
@@ -86,7 +88,12 @@ FrozenDrainage::MovedSea SeedPlanet::find_moved_sea(const ErosionParameters& p,
                                                     const std::vector<float>& before,
                                                     double share) const {
   if (p.steps == 0) return {};
-  FrozenDrainage::MovedSea sea{moved_sea_level_m(p, grid(), before, share), {}};
+  FrozenDrainage::MovedSea sea{.level_m = moved_sea_level_m(p, grid(), before, share)};
+  if (sea.level_m == 0.0F) return sea;
+  const std::vector<double> heights_m(before.begin(), before.end());
+  sea.ranking.emplace(grid(), heights_m);
+  sea.window = sea.ranking->window(share, kHalfWidth);
+  sea.mean_m = sea.ranking->mean(sea.window, std::span<const double>(heights_m));
   std::vector<float> after = before;
   keep_sea_share(p, grid(), after, share);
   for (Index c = 0; c < grid().size(); ++c) {
@@ -107,7 +114,6 @@ void SeedPlanet::hold_frame(const IsostasyParameters& p, const CrustInputs& in) 
 
 void SeedPlanet::find_sea(const Model& model, std::span<const double> elevation_m,
                           FrozenDrainage::Sea& sea) const {
-  constexpr double kHalfWidth = 0.0025;  // share of the area on either side of the shore
   const Grid& grid = this->grid();
   sea = {.at_shore = sea.at_shore};
   const std::vector<float> values(elevation_m.begin(), elevation_m.end());

@@ -44,10 +44,14 @@ struct FrozenDrainage {
   /// moved, and their heights, m.
   using Straits = std::vector<std::pair<Index, float>>;
   Straits straits, late_straits, last_straits;
-  /// The level of the sea after them, and flats at that level that become sea.
+  /// The level of the sea after them, which follows the mean of the cells next to it, and flats at
+  /// that level that become sea.
   struct MovedSea {
     float level_m = 0.0F;
-    Straits flats;
+    Straits flats{};
+    std::optional<Ranking> ranking{};
+    Ranking::Window window{};
+    double mean_m = 0.0;
   } late_sea, last_sea;
   /// Where belts have lifted floor out of the sea: told apart anew before each step.
   struct Coast {
@@ -356,7 +360,11 @@ PlanetSurface<V> SeedPlanet::evaluate(const Model& model, const ActiveVariables<
   landscape.relax();
   const auto move_sea = [&](FrozenDrainage::MovedSea& sea) {
     if (routes) sea = find_moved_sea(p, as_floats<V>(z), sea_share);
-    for (V& height_m : z) height_m -= V(sea.level_m);
+    V level_m(sea.level_m);
+    if (sea.ranking) {
+      level_m += V(sea.ranking->mean(sea.window, std::span<const V>(z)) - sea.mean_m);
+    }
+    for (V& height_m : z) height_m -= level_m;
     for (const auto& [cell, height_m] : sea.flats) z[cell] = V(height_m);
   };
   move_sea(held_.late_sea);

@@ -95,7 +95,7 @@ TEST(Twin, StandardErrorsCoverTheTruthUnderNoise) {
   Twin twin({1});
   // A few here; TERRANE_TWIN_RUNS=50 for the whole experiment.
   const char* const asked = std::getenv("TERRANE_TWIN_RUNS");
-  const int runs = asked != nullptr ? std::atoi(asked) : 8;
+  const int runs = asked != nullptr ? std::atoi(asked) : 24;
   const RandomStream random(5, "test.noise");
   int covered = 0;
   for (int run = 0; run < runs; ++run) {
