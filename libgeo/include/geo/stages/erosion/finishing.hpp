@@ -61,7 +61,7 @@ class WarpingRow {
   void draw_rate() {
     // The noise is read at places that scale with radius / wavelength, the finest octave at four
     // times that.
-    constexpr double kMove = 0.04;  // of a wave of the finest octave
+    constexpr double kMove = 0.03;  // of a wave of the finest octave
     const double step_km = kMove / (4.0 * radius_km_) * wavelength_km_ * wavelength_km_;
     rate_.assign(bend_.size(), 0.0F);
     for (const auto& [part, weight] : {std::pair{1.0, -1.0 / 3.0}, std::pair{0.5, 4.0 / 3.0}}) {
