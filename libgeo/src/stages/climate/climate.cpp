@@ -149,6 +149,9 @@ class ClimateStage final : public Stage {
     const auto size = static_cast<std::size_t>(frame.planet().size());
     std::vector<float> land(size), height_m(size);
     frame.planet_topography(elevation, land, height_m);
+    const auto ice_m = io.read_optional(field::ice_thickness);
+    std::vector<float> glaciers;
+    if (!ice_m.empty()) glaciers = frame.planet_glaciers(ice_m, land);
     const auto model = on_planet(p_.seasonal, context.planet, p_.blueprint.greenhouse_k);
     const auto topography_size = static_cast<std::size_t>(frame.topography().size());
     std::vector<float> topography_land(topography_size), topography_height(topography_size),
@@ -165,8 +168,9 @@ class ClimateStage final : public Stage {
         return planet_ascent;
       };
     }
-    const SeasonalFields fields = solve_seasonal_climate(
-        frame.planet(), model, frame.planet_latitudes_deg(), land, height_m, ascent_of);
+    const SeasonalFields fields =
+        solve_seasonal_climate(frame.planet(), model, frame.planet_latitudes_deg(), land, height_m,
+                               ascent_of, glaciers);
     context.advance(0.5);
     const DimmedSun dimmed =
         dim_the_sun(model.energy, closed_formulas ? &p_.blueprint : nullptr, context);
@@ -216,7 +220,7 @@ class ClimateStage final : public Stage {
   StageInfo info_{"climate",
                   "temperature, winds and rain from insolation, topography and the sea",
                   {&field::elevation},
-                  {},
+                  {&field::ice_thickness},
                   {&field::temperature, &field::temperature_range, &field::precipitation,
                    &field::precipitation_seasonality, &field::wind_east, &field::wind_north,
                    &field::distance_to_coast, &field::potential_evapotranspiration,

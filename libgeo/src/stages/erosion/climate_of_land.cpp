@@ -33,13 +33,16 @@ bool has_climate(const Grid& grid, const Context& context) {
 }
 
 LandClimate climate_of_land(const Grid& grid, std::span<const float> elevation_m,
-                            Context& context) {
+                            std::span<const float> ice_m, Context& context) {
   const int nx = std::min(grid.nx(), kMostColumns);
   const int ny = std::min(grid.ny(), kMostColumns / 2);
   State scratch(std::make_shared<const Grid>(Grid::sphere(nx, ny, grid.figure())));
   const Raster fine = raster_of(grid), coarse = raster_of(scratch.grid());
   const std::span<float> height_m = scratch.update(field::elevation);
   resample_raster(fine, elevation_m, coarse, height_m, grid.figure());
+  if (!ice_m.empty()) {
+    resample_raster(fine, ice_m, coarse, scratch.update(field::ice_thickness), grid.figure());
+  }
 
   const auto stage = climate_stage_of(context.configuration);
   Context inner;

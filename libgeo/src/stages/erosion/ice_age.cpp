@@ -20,6 +20,7 @@ constexpr double kDrier_1_K = 0.05;
 constexpr double kMostMelt_m_yr = 12.0;  ///< of water: where no tongue gets through
 constexpr float kThinnest_m = 1.0F, kAshore_m = 1.0F;
 constexpr float kLeastShare = 0.02F;
+constexpr int kGrowing = 3, kMelting = 2;  ///< rounds of surface, balance and flux
 
 }  // namespace
 
@@ -39,7 +40,6 @@ double IceAge::years_of_step(double before_today_yr) const {
 
 std::vector<double> IceAge::work(const LandClimate& climate, double years_yr,
                                  std::span<float> elevation_m) {
-  constexpr int kGrowing = 3, kMelting = 2;
   const double cycle_yr = p_.glacial_time_yr / static_cast<double>(p_.glacial_cycles);
   const int cycles = std::max(1, static_cast<int>(std::lround(years_yr / cycle_yr)));
   std::vector<double> let_out_m3(elevation_m.size(), 0.0);
@@ -59,14 +59,29 @@ std::vector<double> IceAge::work(const LandClimate& climate, double years_yr,
   return let_out_m3;
 }
 
+void IceAge::settle_glacial(const LandClimate& climate, std::span<const float> elevation_m) {
+  settle_on_ground(climate, {p_.glacial_cooling_k, /*grounding_m=*/0.0, kGrowing}, elevation_m);
+}
+
 void IceAge::settle_today(const LandClimate& climate, std::span<const float> elevation_m) {
-  constexpr int kRounds = 3, kTurns = 2;
-  const Age today{0.0, 0.0, kRounds};
-  settle(climate, today, elevation_m);
-  // The ground sinks under the ice, and the ice changes with the ground.
+  settle_on_ground(climate, {0.0, 0.0, kGrowing, /*knows_ice=*/true}, elevation_m);
+}
+
+std::vector<float> IceAge::surface_m(std::span<const float> elevation_m) const {
+  std::vector<float> surface(elevation_m.begin(), elevation_m.end());
+#pragma omp parallel for schedule(static)
+  for (std::size_t c = 0; c < surface.size(); ++c) surface[c] += thickness_m_[c] - sunk_m_[c];
+  return surface;
+}
+
+/// The ground sinks under the ice, and the ice changes with the ground.
+void IceAge::settle_on_ground(const LandClimate& climate, const Age& age,
+                              std::span<const float> elevation_m) {
+  constexpr int kTurns = 2;
+  settle(climate, age, elevation_m);
   for (int turn = 0; turn < kTurns; ++turn) {
     weigh(elevation_m);
-    settle(climate, today, elevation_m);
+    settle(climate, age, elevation_m);
   }
   thickness_m_.assign(elevation_m.size(), 0.0F);
 #pragma omp parallel for schedule(static)
@@ -193,7 +208,8 @@ void IceAge::balance(const Cold& cold, const Age& age, std::span<const float> el
     const double cooling = cooling_of_row[grid_.row(c)];
     const double ground = std::max(0.0F, elevation_m[c]), surface = surface_.height_m.of(c);
     const double mean_c = cold.sea_level_temperature_c[n] - cooling - kLapse_K_m * surface;
-    const double colder_k = cooling + kLapse_K_m * std::max(0.0, surface - ground);
+    const double higher_m = age.knows_ice ? 0.0 : std::max(0.0, surface - ground);
+    const double colder_k = cooling + kLapse_K_m * higher_m;
     const double rain = cold.precipitation_mm_yr[n] * std::exp(-kDrier_1_K * colder_k);
     balance_m_yr[c] = static_cast<float>(snow_balance_m_yr(snow_, mean_c, cold.range_k[n], rain));
   }

@@ -79,11 +79,13 @@ using TerrainAscent = std::function<std::vector<float>(std::span<const float> wi
 /// are iterated together. What `ascent` (empty: level ground) lets rain out over one cell the air
 /// lacks over the next; rain and evaporation of the whole surface agree every month. Months run in
 /// parallel; the same bits for any number of threads. `latitude_deg`: one value per row, from south
-/// to north; the others one per cell; Bug otherwise.
+/// to north; the others one per cell, `glacier_fraction` (of the cell's land that ice covers) or
+/// none; Bug otherwise.
 SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& model,
                                       std::span<const double> latitude_deg,
                                       std::span<const float> land_fraction,
                                       std::span<const float> height_m,
-                                      const TerrainAscent& ascent = {});
+                                      const TerrainAscent& ascent = {},
+                                      std::span<const float> glacier_fraction = {});
 
 }  // namespace geo
