@@ -88,6 +88,20 @@ TEST(Ice, OfColdTimesWorksWhereThatOfTodayDoesNotReach) {
   EXPECT_EQ(none.count("ice_m3"), 0U);
 }
 
+double covered(const State& state) {
+  const auto ice = state.read(field::ice_thickness);
+  return land_mean(state, 40, 90, [&](Index c) { return ice[c] >= 10.0F ? 1.0 : 0.0; });
+}
+
+// Where the same sun allows ice and none, the last cold time decides.
+TEST(Ice, OfTodayIsWhatColdTimesHaveLeft) {
+  Budget cold, warm;
+  EXPECT_GT(covered(freeze_planet(cold, kHighGround)),
+            covered(freeze_planet(
+                warm, {{"erosion.ice.abrasion", "1e-8"}, {"erosion.ice.glacial_share", "0"}})) +
+                0.02);
+}
+
 // Without rivers and creep, which wear ground that is free of ice and so change the difference.
 TEST(Ice, HoldsTheGroundDownAsFarAsMantleFloatsIt) {
   const std::map<std::string, std::string> unworn{{"erosion.ice.abrasion", "0"},

@@ -153,17 +153,20 @@ class Surface {
     const double glacier = glacier_.empty() ? 0.0 : glacier_[cell];
     const double icy = unless_it_stays(model_.glacier_coalbedo);
     const double treeless = frozen_share(warmest_c, model_.tree_temperature_c, model_.ice_width_k);
-    const double snowy =
-        unless_it_stays(model_.snow_coalbedo +
-                        treeless * (model_.open_snow_coalbedo - model_.snow_coalbedo));
+    const double snowy = unless_it_stays(std::min(
+        bare,
+        model_.snow_coalbedo + treeless * (model_.open_snow_coalbedo - model_.snow_coalbedo)));
     const double sea_ice_here = sea_ice(temperature.mean_c(cell));
-    const double sea = bare + sea_ice_here * (model_.sea_ice_coalbedo - bare);
+    const double sea = bare + sea_ice_here * (std::min(bare, model_.sea_ice_coalbedo) - bare);
+    Months frozen{};
     for (int m = 0; m < kMonths; ++m) {
+      frozen[m] = frozen_share(ground_c[m], 0.0, model_.ice_width_k);
       const double snow =
           std::max(stays, frozen_share(ground_c[m], model_.snow_temperature_c, model_.ice_width_k));
       const double ground = (1.0 - glacier) * (bare + snow * (snowy - bare)) + glacier * icy;
       absorbed[m] = insolation_[row][m] * (land * ground + (1.0 - land) * sea);
     }
+    freeze(land * (1.0 - glacier), frozen, absorbed);
     melt_and_freeze((1.0 - land) * sea_ice_here, air_c, absorbed);
     melt_and_freeze(land * glacier, ground_c, absorbed);
     return absorbed;
@@ -209,6 +212,16 @@ class Surface {
   }
 
  private:
+  /// Ground, a share of the cell, gives heat as its water freezes in autumn, and takes it in
+  /// spring.
+  void freeze(double ground, const Months& frozen, Months& absorbed_w_m2) const {
+    for (int m = 0; m < kMonths; ++m) {
+      const double growth_1_yr =
+          0.5 * kMonths * (frozen[(m + 1) % kMonths] - frozen[(m + kMonths - 1) % kMonths]);
+      absorbed_w_m2[m] += ground * model_.freezing_heat_w_yr_m2 * growth_1_yr;
+    }
+  }
+
   /// What ice, a share of the cell, takes as it melts in summer it gives as it freezes in winter,
   /// most in the coldest months.
   void melt_and_freeze(double ice, const Months& temperature_c, Months& absorbed_w_m2) const {

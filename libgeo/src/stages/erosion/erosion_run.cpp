@@ -11,6 +11,7 @@
 #include "geo/stages/erosion/ground.hpp"
 #include "geo/stages/erosion/seas.hpp"
 #include "geo/stages/erosion/wear_down.hpp"
+#include "icy_climate.hpp"
 
 namespace geo {
 namespace {
@@ -142,7 +143,7 @@ bool ErosionRun::strike(std::int64_t step) {
 
 void ErosionRun::turn_climate(std::int64_t step) {
   if (!follows_rain_ || !is_turn_of_climate(p_, step)) return;
-  climate_ = climate_of_land(grid_, elevation_m_, {}, context_);
+  climate_ = climate_of_land(grid_, elevation_m_, context_);
 }
 
 IceWork ErosionRun::ice_of(std::int64_t step) {
@@ -173,22 +174,12 @@ void ErosionRun::finish() {
     if (reshape([&] { return join_seas(p_, grid_, elevation_m_); })) keep_share();
   }
   strike(p_.steps);
-  if (ice_) settle_ice();
   climate_.reset();  // files have the area
-  cut_last_sills();
-}
-
-/// Ice makes a climate that it lives on in: today's is what the last cold time has left in its own.
-void ErosionRun::settle_ice() {
-  constexpr int kTurns = 2;
-  ice_->settle_glacial(*climate_, elevation_m_);
-  for (int turn = 0; turn < kTurns; ++turn) {
-    climate_.reset();
-    climate_ =
-        climate_of_land(grid_, ice_->surface_m(elevation_m_), ice_->thickness_m(), context_);
-    ice_->settle_today(*climate_, elevation_m_);
+  if (ice_) {
+    ice_->settle_today(icy_climate(p_, grid_, elevation_m_, context_), elevation_m_);
+    landscape_.sink(ice_->sunk_m());
   }
-  landscape_.sink(ice_->sunk_m());
+  cut_last_sills();
 }
 
 void ErosionRun::cut_last_sills() {

@@ -33,7 +33,6 @@ class ErosionRun {
   bool strike(std::int64_t step);
   [[nodiscard]] IceWork ice_of(std::int64_t step);
   void turn_climate(std::int64_t step);
-  void settle_ice();
   template <class Change>
   bool reshape(Change&& change);
   void cut_last_sills();

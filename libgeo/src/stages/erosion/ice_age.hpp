@@ -27,14 +27,15 @@ class IceAge {
   /// Lets the ice of `years_yr` work on a surface; see IceWork.
   [[nodiscard]] std::vector<double> work(const LandClimate& climate, double years_yr,
                                          std::span<float> elevation_m);
-  /// Ice on the finished land in the last cold time. The climate is that of the ground.
-  void settle_glacial(const LandClimate& climate, std::span<const float> elevation_m);
-  /// What of the ice before lives on today. The climate is that of `surface_m`, with that ice.
+  /// Lets the ice grow or shrink for some rounds in a climate, or in one that is `warmer_k` warmer.
+  void follow(const LandClimate& climate, double warmer_k, int rounds,
+              std::span<const float> elevation_m);
+  /// Ice on the land of today, once its surface is finished: what lives on of that in the climate.
   void settle_today(const LandClimate& climate, std::span<const float> elevation_m);
 
-  /// Of the time settled last, m; mean of the cell.
+  /// Of the time settled last, m; mean of the cell. Empty before.
   [[nodiscard]] std::span<const float> thickness_m() const { return thickness_m_; }
-  /// Of that ice and of the ground that its weight holds down.
+  /// Of that ice and of the ground that it holds down.
   [[nodiscard]] std::vector<float> surface_m(std::span<const float> elevation_m) const;
   /// By how much its weight holds down the land beneath and beside it, m; the surface of the ice,
   /// and land without it, stay above the sea.
@@ -48,20 +49,20 @@ class IceAge {
     double cooling_k;
     double grounding_m;  ///< deepest sea that ice stands in
     int rounds;
-    bool knows_ice = false;  ///< whether the climate is that of the ice's surface
   };
   /// The climate of the cells that ice may come to, which are few.
   struct Cold {
     std::vector<Index> cells;  ///< ascending
-    std::vector<float> sea_level_temperature_c, range_k, precipitation_mm_yr;
+    std::vector<float> sea_level_temperature_c, range_k, precipitation_mm_yr, summer_rain;
+    bool knows_ice = false;  ///< whether they are of the surface of the ice, not of the ground
   };
   void settle(const LandClimate& climate, const Age& age, std::span<const float> elevation_m);
-  void settle_on_ground(const LandClimate& climate, const Age& age,
-                        std::span<const float> elevation_m);
   void sort_ground(const LandClimate& climate, const Age& age, std::span<const float> elevation_m);
   [[nodiscard]] Cold cold_cells(const LandClimate& climate) const;
   void balance(const Cold& cold, const Age& age, std::span<const float> elevation_m,
                std::span<float> balance_m_yr) const;
+  void lay(const LandClimate& climate);
+  void measure(std::span<const float> elevation_m);
   void melt_away();
   void weigh(std::span<const float> elevation_m);
   [[nodiscard]] double cooling_k(const Age& age, int row) const;
