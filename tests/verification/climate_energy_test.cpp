@@ -298,9 +298,11 @@ TEST(EnergyBalance, SnowAndIceNeverDarkenWhatTheyLieOn) {
 TEST(EnergyBalance, OpenSnowDelaysSpringWhereSummersAreTooColdForTrees) {
   const PolarContinent planet;
   EnergyBalance model;
+  model.freezing_heat_w_yr_m2 = 0.0;
   model.open_snow_coalbedo = 0.4;
+  model.tree_temperature_c = 60.0;  // trees nowhere
   const auto bright = planet.year(model, false);
-  model.tree_temperature_c = -40.0;  // trees everywhere
+  model.tree_temperature_c = -60.0;  // trees everywhere
   const auto wooded = planet.year(model, false);
   constexpr int kMay = 4;
   EXPECT_LT(bright.month_c(planet.inland(), kMay), wooded.month_c(planet.inland(), kMay) - 2.0);
@@ -313,6 +315,7 @@ TEST(EnergyBalance, FreezingGroundDelaysTheSeasons) {
   model.ice_width_k = 2.0;
   model.snow_coalbedo = model.open_snow_coalbedo = model.ice_coalbedo = model.coalbedo;
   model.sea_ice_coalbedo = model.coalbedo;
+  model.freezing_heat_w_yr_m2 = 0.0;
   const auto dry = planet.year(model, false);
   model.freezing_heat_w_yr_m2 = 2.0;
   const auto wet = planet.year(model, false);
