@@ -48,7 +48,7 @@ std::vector<Parameter> energy_rows(ClimateParameters& p) {
       real("climate.coalbedo_p2", e.coalbedo_p2, "1", -0.3, 0.3,
            "its second Legendre coefficient in latitude", "north1981"),
       real("climate.snow_coalbedo", e.snow_coalbedo, "1", 0.0, 1.0,
-           "absorbed share of sunlight over snow beneath trees", "betts2000"),
+           "absorbed share of sunlight over snow beneath trees", "betts1997"),
       real("climate.open_snow_coalbedo", e.open_snow_coalbedo, "1", 0.0, 1.0,
            "absorbed share of sunlight over snow that melts in summers too cold for trees",
            "bonan1992"),

@@ -32,9 +32,8 @@ struct EnergyBalance {
   double snow_temperature_c = -2.3;        ///< monthly mean at which half the land is under snow
   double ice_temperature_c = -9;           ///< annual mean at which half the sea is ice
   double ice_width_k = 2.45;               ///< width of both transitions; 0: no ice and snow at all
-  double land_heat_capacity_w_yr_m2_k = 0.203;
-  double freezing_heat_w_yr_m2 =
-      3.06;  ///< that water in the ground and snow on it give as they freeze
+  double land_heat_capacity_w_yr_m2_k = 0.21;
+  double freezing_heat_w_yr_m2 = 3.06;  ///< that the ground's water and snow give as they freeze
   double ocean_heat_capacity_w_yr_m2_k = 5.3;
   double sea_exchange_w_m2_k = 17.3;  ///< heat and vapour from sea to air, per kelvin, at 15 degC
   double sunlit_air_share = 0.251;    ///< of the absorbed sunlight that air over the sea absorbs
@@ -97,8 +96,8 @@ using HeatWinds =
 /// exchange of heat and vapour, which grows with the annual mean of T (Haney 1971). T_s is
 /// eliminated. By harmonics: for each a sparse linear system with the annual and zonal
 /// mean of u, in whose source all else is found by iteration: the albedo of the months' snow and
-/// ice, the heat that ice at sea and on land takes as it melts in summer and gives as it freezes in
-/// winter, and what the winds of each month carry besides, which sums to zero over the planet. F is
+/// ice, which is never below that of what they lie on, the heat that ice at sea and on land takes
+/// as it melts in summer and gives as it freezes in winter, that of the ground's water likewise, and what the winds of each month carry besides, which sums to zero over the planet. F is
 /// the advected heat; without `winds` nothing is carried. Throws Bug if a solver does not converge.
 /// Threads: one for each harmonic; the same bits for any number of them.
 ///
