@@ -24,8 +24,8 @@
 #include "geo/io/input/reading_aside.hpp"
 #include "geo/io/run/manifest.hpp"
 #include "log.hpp"
-#include "memory.hpp"
-#include "memory_cap.hpp"
+#include "memory/memory.hpp"
+#include "memory/memory_cap.hpp"
 #include "signals.hpp"
 #include "waiting.hpp"
 

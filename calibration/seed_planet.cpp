@@ -74,6 +74,14 @@ std::vector<float> SeedPlanet::find_straits(const ErosionParameters& p,
   return after;
 }
 
+FrozenDrainage::Coast SeedPlanet::find_coast(const ErosionParameters& p,
+                                             const std::vector<float>& elevation_m,
+                                             const std::vector<std::uint8_t>& before) const {
+  std::vector<std::uint8_t> outlets = find_outlets(grid(), elevation_m);
+  if (outlets == before) return {};
+  return {true, std::move(outlets), landlocked_cells(p, grid(), elevation_m)};
+}
+
 FrozenDrainage::MovedSea SeedPlanet::find_moved_sea(const ErosionParameters& p,
                                                     const std::vector<float>& before,
                                                     double share) const {

@@ -49,6 +49,12 @@ struct FrozenDrainage {
     float level_m = 0.0F;
     Straits flats;
   } late_sea, last_sea;
+  /// Where belts have lifted floor out of the sea: told apart anew before each step.
+  struct Coast {
+    bool has_moved = false;
+    std::vector<std::uint8_t> outlets, landlocked;
+  };
+  std::vector<Coast> coasts;
   std::vector<Drainage> drainage;  ///< one for each routing of the erosion stage
   /// Sea level as a mean over cells next to it (by share) or over the sea (by volume), and how it
   /// follows the share or volume that is asked for.
@@ -126,15 +132,20 @@ class SeedPlanet {
   /// Cells that straits drown in a surface, to be held, and the surface with them.
   std::vector<float> find_straits(const ErosionParameters& p, const std::vector<float>& before,
                                   FrozenDrainage::Straits& straits) const;
+  /// Land and sea of a surface, where that is not as it was.
+  [[nodiscard]] FrozenDrainage::Coast find_coast(const ErosionParameters& p,
+                                                 const std::vector<float>& elevation_m,
+                                                 const std::vector<std::uint8_t>& before) const;
   /// Where the sea moves to cover its share of a surface.
   FrozenDrainage::MovedSea find_moved_sea(const ErosionParameters& p,
                                           const std::vector<float>& before, double share) const;
   template <class V>
   [[nodiscard]] std::vector<V> uplift_of(const Model& model, const ActiveVariables<V>& active,
                                          const Ground<V>& ground) const;
-  /// The steps of stage erosion, along routes that are found or held.
+  /// The steps of stage erosion, along routes and coasts that are found or held; `grows`: belts
+  /// thicken.
   template <class V>
-  void wear_along_routes(const ErosionParameters& p, std::span<const V> z, bool routes,
+  void wear_along_routes(const ErosionParameters& p, std::span<const V> z, bool routes, bool grows,
                          Landscape<V>& landscape);
   /// Rates and volumes over land and sea.
   template <class V>
@@ -273,13 +284,26 @@ std::vector<V> SeedPlanet::uplift_of(const Model& model, const ActiveVariables<V
 
 template <class V>
 void SeedPlanet::wear_along_routes(const ErosionParameters& p, std::span<const V> z, bool routes,
-                                   Landscape<V>& landscape) {
-  const auto route = [&](std::int64_t step) -> const Drainage& {
-    Drainage& drainage = held_.drainage[step / p.route_every];
-    if (routes) drain(p, grid(), as_floats<V>(z), landscape.outlets(), drainage);
-    return drainage;
+                                   bool grows, Landscape<V>& landscape) {
+  std::size_t routings = 0;
+  if (routes) held_.drainage.clear();
+  const auto route = [&](std::int64_t) -> const Drainage& {
+    const std::size_t at = routings++;
+    if (!routes) return held_.drainage[at];
+    drain(p, grid(), as_floats<V>(z), landscape.outlets(), held_.drainage.emplace_back());
+    return held_.drainage.back();
   };
-  wear_down(p, {.route = route}, landscape);
+  if (routes) held_.coasts.assign(static_cast<std::size_t>(p.steps), {});
+  const auto coast = [&](std::int64_t step) {
+    FrozenDrainage::Coast& held = held_.coasts[static_cast<std::size_t>(step)];
+    if (routes) held = find_coast(p, as_floats<V>(z), landscape.outlets());
+    if (!held.has_moved) return false;
+    landscape.set_outlets(held.outlets);
+    landscape.set_landlocked(held.landlocked);
+    return true;
+  };
+  wear_down(p, {.route = route, .coast = grows ? coast : std::function<bool(std::int64_t)>{}},
+            landscape);
   if (p.steps > 0) landscape.dry_filled_seas();
 }
 
@@ -312,7 +336,6 @@ PlanetSurface<V> SeedPlanet::evaluate(const Model& model, const ActiveVariables<
     const std::vector<float> after = find_straits(p, as_floats<V>(z), held_.straits);
     held_.outlets = find_outlets(grid, after);
     held_.landlocked = landlocked_cells(p, grid, after);
-    held_.drainage.resize((p.steps + p.route_every - 1) / p.route_every);
   }
   for (const auto& [cell, height_m] : held_.straits) z[cell] = V(height_m);
   std::vector<V> uplift = uplift_of<V>(model, active, ground);
@@ -325,7 +348,7 @@ PlanetSurface<V> SeedPlanet::evaluate(const Model& model, const ActiveVariables<
   }
   Landscape<V> landscape(p, active, grid, z, uplift, ground.thickening, erodibility, held_.outlets);
   landscape.set_landlocked(held_.landlocked);
-  wear_along_routes<V>(p, z, routes, landscape);
+  wear_along_routes<V>(p, z, routes, !ground.thickening.empty(), landscape);
   if (routes) find_straits(p, as_floats<V>(z), held_.late_straits);
   for (const auto& [cell, height_m] : held_.late_straits) z[cell] = V(height_m);
   inject_noise(p, active, grid, seed_, z);

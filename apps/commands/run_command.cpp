@@ -11,8 +11,9 @@
 
 #include "apps/configuration.hpp"
 #include "apps/log.hpp"
-#include "apps/memory.hpp"
-#include "apps/memory_cap.hpp"
+#include "apps/memory/memory.hpp"
+#include "apps/memory/memory_cap.hpp"
+#include "apps/memory/memory_size.hpp"
 #include "apps/progress.hpp"
 #include "apps/signals.hpp"
 #include "apps/thread_count.hpp"

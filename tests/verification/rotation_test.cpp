@@ -222,20 +222,29 @@ TEST(TurnedPlanet, LooksTheSameWithAContinentOnThePole) {
 // A band next to the pole holds a river or two of a planet: only the mean over planets tells what
 // rows do from what these rivers happen to.
 TEST(TurnedPlanet, IsAsRoughInTheRowsNextToThePole) {
-  constexpr int kSeeds = 6;
-  std::map<std::string, std::map<double, double>> added;
+  constexpr int kSeeds = 24;
+  struct Mean {
+    double sum = 0.0;
+    int count = 0;
+  };
+  std::map<std::string, std::map<double, Mean>> added;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     const Pair pair = planets(seed, 512);
     for (const auto* name : kFields) {
       for (const double from : {86.0, 80.0, 74.0, 68.0}) {
         const Both band(pair, name, from, from + 6.0);
-        added[name][from] += band.deviation(band.turned) / band.deviation(band.plain) / kSeeds;
+        const double plain = band.deviation(band.plain);
+        if (plain == 0.0) continue;  // of the age of the sea floor, where there is none
+        Mean& mean = added[name][from];
+        mean.sum += band.deviation(band.turned) / plain;
+        ++mean.count;
       }
     }
   }
   for (const auto& [name, of_band] : added) {
-    for (const auto& [from, ratio] : of_band) {
-      EXPECT_NEAR(ratio, 1.0, 0.08) << name << ", from latitude " << from;
+    for (const auto& [from, mean] : of_band) {
+      EXPECT_GE(mean.count, kSeeds / 2) << name << ", from latitude " << from;
+      EXPECT_NEAR(mean.sum / mean.count, 1.0, 0.08) << name << ", from latitude " << from;
     }
   }
 }

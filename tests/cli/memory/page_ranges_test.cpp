@@ -1,5 +1,5 @@
 // Which pages of a region are in use, and which of the free ones are taken first.
-#include "page_ranges.hpp"
+#include "memory/page_ranges.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -141,6 +143,48 @@ TEST(Inflow, RiverEntersWithWhatGatheredOutside) {
   EXPECT_GE(entered_m2, river.area_m2[in] - 0.6 * own_m2);
   EXPECT_NEAR(entered_m3_s, entered_m2 / river.area_m2[in] * river.discharge_m3_s[in],
               0.02 * entered_m3_s);
+}
+
+/// The river runs through a lake that the plane's edge cuts, into which another falls within the
+/// plane, and perhaps a third at the very cell that the lake spills into.
+struct LakeAcrossTheEdge : DiagonalRiver {
+  static constexpr int kFirst = 5, kLast = 9;  // cells of the river, 8 and more inside
+  static constexpr float kWithin_m3_s = 30.0F, kLoss_m3_s = 4.0F;
+  std::vector<std::int32_t> lake_id = std::vector<std::int32_t>(planet.size());
+
+  explicit LakeAcrossTheEdge(float at_sill_m3_s) {
+    const float outflow_m3_s =
+        discharge_m3_s[of_river(kFirst - 1)] + kWithin_m3_s + at_sill_m3_s - kLoss_m3_s;
+    for (int k = kFirst; k <= kLast; ++k) {
+      lake_id[of_river(k)] = 1;
+      discharge_m3_s[of_river(k)] = outflow_m3_s;
+    }
+    fall_into(of_river(kLast), kWithin_m3_s);
+    fall_into(of_river(kLast + 1), at_sill_m3_s);
+  }
+  [[nodiscard]] Index of_river(int k) const { return planet.cell(170 + k, 99 - k); }
+  void fall_into(Index cell, float river_m3_s) {
+    const Index from = planet.cell(planet.column(cell), planet.row(cell) + 1);
+    receiver[from] = cell;
+    discharge_m3_s[from] = river_m3_s;
+  }
+  /// What comes in over the edge.
+  [[nodiscard]] double entered_m3_s() {
+    std::vector<double> area(fine.size());
+    std::vector<float> inflow(fine.size());
+    find_inflow(cells, {elevation_m, receiver, area_m2, discharge_m3_s, lake_id}, z, area, inflow);
+    return std::accumulate(inflow.begin(), inflow.end(), 0.0);
+  }
+};
+
+TEST(Inflow, LakesThatTheEdgeCutsPassOnTheRiversAboveItAlone) {
+  using Lake = LakeAcrossTheEdge;
+  Lake quiet(0.0F), fed_at_its_sill(25.0F);
+  const double above_m3_s = quiet.discharge_m3_s[quiet.of_river(Lake::kFirst - 1)];
+  const double passes_m3_s =
+      above_m3_s * (1.0 - Lake::kLoss_m3_s / (above_m3_s + Lake::kWithin_m3_s));
+  EXPECT_NEAR(quiet.entered_m3_s(), passes_m3_s, 0.02 * passes_m3_s);
+  EXPECT_NEAR(fed_at_its_sill.entered_m3_s(), passes_m3_s, 0.02 * passes_m3_s);
 }
 
 TEST(RiverCourses, LeaveNoDamAndRaiseNothing) {

@@ -150,6 +150,13 @@ class StageIo {
     check_writable(spec);
     return state_.update(spec);
   }
+  /// An output whose values the stage already has: they are taken over. Throws Bug where they do
+  /// not fit the grid.
+  template <class T>
+  void write(const Field<T>& spec, std::vector<T> values) {
+    check_writable(spec);
+    state_.set(spec, std::move(values));
+  }
   /// The stage reads a field no more: it leaves memory at once unless it is wanted later. What
   /// `read` gave of it ends. Throws Bug where the stage writes it.
   void release(const FieldSpec& spec);

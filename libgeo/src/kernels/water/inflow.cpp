@@ -32,14 +32,19 @@ class Discharge {
     if (water.lake_id.empty()) return;
     const auto begin = static_cast<Index>(cells.first_row()) * cells.planet().nx();
     const Index end = begin + static_cast<Index>(cells.size());
-    std::map<Index, std::int32_t> lake_of_sill;
     for (Index c = begin; c < end; ++c) {
-      const std::int32_t from = lake_of(c), to = lake_of(water.receiver[c]);
-      if (from > 0) lakes_[from].leaves_m3_s = water.discharge_m3_s[c];
-      if (from > 0 && to != from) lake_of_sill[water.receiver[c]] = from;
-      if (to > 0 && to != from) pass_on(to, water.receiver[c], water.discharge_m3_s[c]);
+      if (lake_of(c) > 0) lakes_[lake_of(c)].leaves_m3_s = water.discharge_m3_s[c];
     }
-    for (Index c = begin; c < end; ++c) {
+    // Lakes reach farther than the cells that are covered.
+    std::map<Index, std::int32_t> lake_of_sill;
+    for (Index c = 0; c < cells.planet().size(); ++c) {
+      const std::int32_t from = lake_of(c), to = lake_of(water.receiver[c]);
+      if (to == from) continue;
+      if (lakes_.contains(from)) lake_of_sill[water.receiver[c]] = from;
+      if (lakes_.contains(to)) pass_on(to, water.receiver[c], water.discharge_m3_s[c]);
+    }
+    if (lake_of_sill.empty()) return;
+    for (Index c = 0; c < cells.planet().size(); ++c) {
       const auto sill = lake_of_sill.find(water.receiver[c]);
       if (sill == lake_of_sill.end() || lake_of(c) == sill->second) continue;
       lakes_[sill->second].comes_in_at_sill_m3_s += water.discharge_m3_s[c];

@@ -77,10 +77,10 @@ ErosionRun::ErosionRun(const ErosionParameters& parameters, StageIo& io, Context
       context_(context),
       grid_(io.grid()),
       elevation_m_(io.write(field::elevation)),
-      thickening_m_yr_(thickening_of(p_, io)),
-      uplift_m_yr_(uplift_of(p_, io, context, thickening_m_yr_)),
-      erodibility_(erodibility_of(p_, io, thickening_m_yr_)),
-      landscape_(p_, {}, grid_, elevation_m_, uplift_m_yr_, thickening_m_yr_, erodibility_,
+      grows_(!thickening_of(p_, io).empty()),
+      uplift_m_yr_(uplift_of(p_, io, context, thickening_of(p_, io))),
+      erodibility_(erodibility_of(p_, io, thickening_of(p_, io))),
+      landscape_(p_, {}, grid_, elevation_m_, uplift_m_yr_, thickening_of(p_, io), erodibility_,
                  find_outlets(grid_, elevation_m_)),
       events_(grid_, context, p_.steps, p_.time_step_yr),
       follows_rain_(p_.discharge == "rain" && has_climate(grid_, context)),
@@ -94,7 +94,7 @@ ErosionRun::ErosionRun(const ErosionParameters& parameters, StageIo& io, Context
            &field::transform_deformation}) {
     io.release(*spec);
   }
-  if (thickening_m_yr_.empty()) io.release(field::thickening_rate);
+  if (!grows_) io.release(field::thickening_rate);
 }
 
 /// Changes elevation at will; land and sea are then told apart again.
@@ -118,6 +118,7 @@ void ErosionRun::wear() {
              turn_climate(step);
              return struck;
            },
+       .coast = [&](std::int64_t) { return move_coast(); },
        .ice = [&](std::int64_t step) { return ice_of(step); },
        .after =
            [&](std::int64_t step) {
@@ -128,6 +129,9 @@ void ErosionRun::wear() {
       landscape_);
   landscape_.dry_filled_seas();
   landscape_.set_outlets(find_outlets(grid_, elevation_m_));
+  // Only steps read what lifts land and how rock resists.
+  if (grows_) io_.release(field::thickening_rate);
+  release(erodibility_);
   reshape([&] { return join_seas(p_, grid_, elevation_m_); });
 }
 
@@ -139,6 +143,16 @@ const Drainage& ErosionRun::route() {
 bool ErosionRun::strike(std::int64_t step) {
   if (context_.events.empty()) return false;
   return reshape([&] { return events_.strike(step, elevation_m_); });
+}
+
+/// Floor of the sea that belts have lifted out of it is land, and what it cuts off is landlocked.
+bool ErosionRun::move_coast() {
+  if (!grows_) return false;
+  std::vector<std::uint8_t> outlets = find_outlets(grid_, elevation_m_);
+  if (outlets == landscape_.outlets()) return false;
+  landscape_.set_outlets(std::move(outlets));
+  landscape_.set_landlocked(landlocked_cells(p_, grid_, elevation_m_));
+  return true;
 }
 
 void ErosionRun::turn_climate(std::int64_t step) {
@@ -160,7 +174,6 @@ IceWork ErosionRun::ice_of(std::int64_t step) {
 }
 
 void ErosionRun::finish() {
-  if (!thickening_m_yr_.empty()) write_rock_uplift();
   reshape([&] { return inject_noise<float>(p_, {}, grid_, context_.seed, elevation_m_); });
   reshape([&] { return warp<float>(p_, {}, grid_, context_.seed, elevation_m_); });
   landscape_.relax();
@@ -188,27 +201,30 @@ void ErosionRun::cut_last_sills() {
   is_routed_ = true;
 }
 
+/// What a field is made from leaves memory with it: all of both would be the most that a run takes.
 void ErosionRun::write() {
-  write_crust();
-  if (p_.deposits()) write_sediment();
   report();
+  LandscapeRecords<float> records = landscape_.take_records();
+  if (grows_) write_rock_uplift(records.raised_m);
+  write_crust(records.crust_change_m);
+  if (p_.deposits()) write_sediment(records.sediment);
+  if (p_.steps > 0) write_erosion_rate(records.lowered_m);
   write_drainage(/*iced=*/lay_ice());
-  write_erosion_rate();
-  if (thickening_m_yr_.empty()) add_uniform_uplift();
+  if (!grows_) add_uniform_uplift();
 }
 
 /// The elevation that others see is the surface of the ice. Returns whether any lies.
 bool ErosionRun::lay_ice() {
   if (!p_.freezes()) return false;
-  const std::span<float> thickness_m = io_.write(field::ice_thickness);
   if (!ice_) {
-    std::fill(thickness_m.begin(), thickness_m.end(), 0.0F);
+    io_.write(field::ice_thickness, std::vector<float>(elevation_m_.size()));
     return false;
   }
-  std::copy(ice_->thickness_m().begin(), ice_->thickness_m().end(), thickness_m.begin());
+  ice_->report(context_.budget);
+  std::vector<float> thickness_m = ice_->take_thickness_m();
 #pragma omp parallel for schedule(static)
   for (std::size_t c = 0; c < elevation_m_.size(); ++c) elevation_m_[c] += thickness_m[c];
-  ice_->report(context_.budget);
+  io_.write(field::ice_thickness, std::move(thickness_m));
   return context_.budget["ice_m3"] != 0.0;
 }
 
@@ -219,56 +235,49 @@ void ErosionRun::write_drainage(bool iced) {
   } else if (!is_routed_) {
     route();
   }
-  std::copy(drainage_.area_m2.begin(), drainage_.area_m2.end(),
-            io_.write(field::drainage_area).begin());
-  std::copy(drainage_.graph.receiver.begin(), drainage_.graph.receiver.end(),
-            io_.write(field::flow_receiver).begin());
+  if (p_.steps == 0) write_incision_rate();
+  release(drainage_.graph.order);
+  io_.write(field::flow_receiver, std::move(drainage_.graph.receiver));
+  io_.write(field::drainage_area, std::move(drainage_.area_m2));
 }
 
-void ErosionRun::write_erosion_rate() const {
-  const std::span<float> rate_m_yr = io_.write(field::erosion_rate);
-  if (p_.steps == 0) {
-    return incision_rate(grid_, drainage_.graph, drainage_.area_m2, erodibility_, landscape_.law(),
-                         io_.read(field::elevation), rate_m_yr);
-  }
+void ErosionRun::write_incision_rate() const {
+  incision_rate(grid_, drainage_.graph, drainage_.area_m2, erodibility_, landscape_.law(),
+                io_.read(field::elevation), io_.write(field::erosion_rate));
+}
+
+void ErosionRun::write_erosion_rate(std::vector<float>& lowered_m) const {
   const double time_yr = p_.steps * p_.time_step_yr;
-  const std::span<const float> lowered_m = landscape_.lowered_m();
 #pragma omp parallel for schedule(static)
-  for (Index cell = 0; cell < grid_.size(); ++cell) {
-    rate_m_yr[cell] = static_cast<float>(lowered_m[cell] / time_yr);
-  }
+  for (float& value : lowered_m) value = static_cast<float>(value / time_yr);
+  io_.write(field::erosion_rate, std::move(lowered_m));
 }
 
-void ErosionRun::write_crust() const {
-  const std::span<float> change_m = io_.write(field::crust_thickness_change);
-#pragma omp parallel for schedule(static)
-  for (std::size_t cell = 0; cell < change_m.size(); ++cell) {
-    change_m[cell] = static_cast<float>(landscape_.crust_change_m()[cell]);
-  }
+void ErosionRun::write_crust(std::vector<double>& change_m) const {
+  const std::span<float> values = io_.write(field::crust_thickness_change);
+  std::copy(change_m.begin(), change_m.end(), values.begin());
+  release(change_m);
 }
 
-void ErosionRun::write_sediment() const {
-  const SedimentRecord& sediment = landscape_.sediment();
-  const auto copy = [&](const std::vector<float>& from, const Field<float>& to, double factor) {
-    const std::span<float> values = io_.write(to);
-    if (from.empty()) return std::fill(values.begin(), values.end(), 0.0F);
-#pragma omp parallel for schedule(static)
-    for (std::size_t cell = 0; cell < values.size(); ++cell) {
-      values[cell] = static_cast<float>(factor * from[cell]);
-    }
+void ErosionRun::write_sediment(SedimentRecord& sediment) const {
+  const auto write = [&](std::vector<float>& values, const Field<float>& to) {
+    values.resize(grid_.size(), 0.0F);
+    io_.write(to, std::move(values));
   };
-  const double time_yr = std::max(1.0, p_.steps * p_.time_step_yr);
-  copy(sediment.thickness_m, field::sediment_thickness, 1.0);
-  copy(sediment.laid_m, field::deposition_rate, 1.0 / time_yr);
-  copy(sediment.carried_m3_yr, field::sediment_flux, 1.0);
+  const double per_yr = 1.0 / std::max(1.0, p_.steps * p_.time_step_yr);
+#pragma omp parallel for schedule(static)
+  for (float& value : sediment.laid_m) value = static_cast<float>(per_yr * value);
+  write(sediment.thickness_m, field::sediment_thickness);
+  write(sediment.laid_m, field::deposition_rate);
+  write(sediment.carried_m3_yr, field::sediment_flux);
 }
 
 /// Where crust thickens, the file reports how fast rock came up, rebound included.
-void ErosionRun::write_rock_uplift() const {
+void ErosionRun::write_rock_uplift(const std::vector<float>& raised_m) const {
   const double time_yr = 1e6 * growth_of_belts_myr<float>(p_, {});
 #pragma omp parallel for schedule(static)
   for (std::size_t cell = 0; cell < uplift_m_yr_.size(); ++cell) {
-    uplift_m_yr_[cell] = static_cast<float>(landscape_.raised_m()[cell] / time_yr);
+    uplift_m_yr_[cell] = static_cast<float>(raised_m[cell] / time_yr);
   }
 }
 
@@ -295,8 +304,8 @@ void ErosionRun::report() const {
   budget["rock_stored_m3"] = stored;
   budget["rock_rounded_m3"] = rock.rounded;
   if (growth_of_belts_myr<float>(p_, {}) > 0.0) {
-    const double grown = area_sum<double>(landscape_.grid(),
-                                          [&](Index c) { return landscape_.crust_change_m()[c]; });
+    const double grown = area_sum<double>(
+        landscape_.grid(), [&](Index c) { return landscape_.records().crust_change_m[c]; });
     budget["crust_shortened_m3"] = rock.shortened;
     budget["crust_stored_m3"] = grown;
     budget["crust_closing_error"] =

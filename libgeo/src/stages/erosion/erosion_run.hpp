@@ -32,16 +32,18 @@ class ErosionRun {
   const Drainage& route();
   bool strike(std::int64_t step);
   [[nodiscard]] IceWork ice_of(std::int64_t step);
+  bool move_coast();
   void turn_climate(std::int64_t step);
   template <class Change>
   bool reshape(Change&& change);
   void cut_last_sills();
   [[nodiscard]] bool lay_ice();
   void write_drainage(bool iced);
-  void write_erosion_rate() const;
-  void write_crust() const;
-  void write_sediment() const;
-  void write_rock_uplift() const;
+  void write_incision_rate() const;
+  void write_erosion_rate(std::vector<float>& lowered_m) const;
+  void write_crust(std::vector<double>& change_m) const;
+  void write_sediment(SedimentRecord& sediment) const;
+  void write_rock_uplift(const std::vector<float>& raised_m) const;
   void add_uniform_uplift() const;
   void report() const;
 
@@ -50,7 +52,7 @@ class ErosionRun {
   Context& context_;
   const Grid& grid_;
   std::span<float> elevation_m_;
-  std::span<const float> thickening_m_yr_;  ///< empty where belts do not grow
+  bool grows_;  ///< whether belts thicken while the landscape runs
   std::span<float> uplift_m_yr_;
   std::vector<float> erodibility_;
   Landscape<float> landscape_;

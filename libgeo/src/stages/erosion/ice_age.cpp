@@ -127,6 +127,11 @@ void IceAge::melt_away() {
   flux_.share = flux_.melted = {};
 }
 
+std::vector<float> IceAge::take_thickness_m() {
+  release(next_), release(sunk_m_);
+  return std::move(thickness_m_);
+}
+
 void IceAge::settle(const LandClimate& climate, const Age& age,
                     std::span<const float> elevation_m) {
   next_.resize(elevation_m.size(), IceGround::bare);

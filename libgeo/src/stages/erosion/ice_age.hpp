@@ -37,6 +37,8 @@ class IceAge {
   [[nodiscard]] std::span<const float> thickness_m() const { return thickness_m_; }
   /// Of that ice and of the ground that it holds down.
   [[nodiscard]] std::vector<float> surface_m(std::span<const float> elevation_m) const;
+  /// The same of today. With it all that is left of the ice goes.
+  [[nodiscard]] std::vector<float> take_thickness_m();
   /// By how much its weight holds down the land beneath and beside it, m; the surface of the ice,
   /// and land without it, stay above the sea.
   [[nodiscard]] std::span<const float> sunk_m() const { return sunk_m_; }

@@ -50,18 +50,38 @@ bool keep_sea_share(const ErosionParameters& p, const Grid& grid, std::span<floa
                     double share) {
   const float level_m = moved_sea_level_m(p, grid, elevation_m, share);
   if (level_m == 0.0F) return false;
-  constexpr float kShallowest_m = -1e-3F, kLevel_m = 1e-6F;
+  constexpr float kRavinement_m = -5.0F, kLevel_m = 1e-6F;
   for (float& z : elevation_m) {
     z -= level_m;
     if (std::abs(z) < kLevel_m) z = 0.0F;
   }
   double lacking_m2 = (share - share_of_sea(grid, elevation_m)) * grid.total_area_m2();
-  for (Index c = 0; c < grid.size(); ++c) {
+  // The sea comes in over flats from their shores; those that it cannot reach are last.
+  std::vector<Index> drowned;
+  const auto drown = [&](Index c) {
+    if (c == kNoCell || elevation_m[c] != 0.0F) return;
     const double area_m2 = grid.area_m2(grid.row(c));
-    if (elevation_m[c] != 0.0F || lacking_m2 < 0.5 * area_m2) continue;
-    elevation_m[c] = kShallowest_m;
+    if (lacking_m2 < 0.5 * area_m2) return;
+    elevation_m[c] = kRavinement_m;
     lacking_m2 -= area_m2;
+    drowned.push_back(c);
+  };
+  const auto is_shore = [&](Index c) {
+    for (int k = 0; k < kDirections; ++k) {
+      const Index beside = grid.neighbour(c, k);
+      if (beside != kNoCell && elevation_m[beside] < 0.0F) return true;
+    }
+    return false;
+  };
+  std::vector<Index> shore;
+  for (Index c = 0; c < grid.size(); ++c) {
+    if (elevation_m[c] == 0.0F && is_shore(c)) shore.push_back(c);
   }
+  std::for_each(shore.begin(), shore.end(), drown);
+  for (std::size_t at = 0; at < drowned.size(); ++at) {
+    for (int k = 0; k < kDirections; ++k) drown(grid.neighbour(drowned[at], k));
+  }
+  for (Index c = 0; c < grid.size(); ++c) drown(c);
   return true;
 }
 

@@ -132,7 +132,7 @@ IslandErosion wear_island(const PlanetCells& cells, const IslandParameters& p,
     advance(static_cast<double>(step + 1) / static_cast<double>(law.steps));
   };
   wear_down(law, {.route = route, .after = restore}, landscape);
-  done.lowered_m.assign(landscape.lowered_m().begin(), landscape.lowered_m().end());
+  done.lowered_m = landscape.take_records().lowered_m;
   return done;
 }
 

@@ -41,11 +41,12 @@ std::vector<std::uint8_t> closed_by_edge(const Grid& fine, const FlowGraph& grap
 
 /// Makes plains of dips: they rise from where their water leaves them, along its ways over the
 /// ground as it dips, as graded rivers do, S = S1 (A / 1 km2)^-1/2. On an even plain rivers would
-/// run straight along the grid. Where the window's edge holds a hollow closed, its plain rises from
-/// there.
+/// run straight along the grid. At the shore they stand as high as tides lay mud. Where the
+/// window's edge holds a hollow closed, its plain rises from there.
 void grade_plains(const Grid& fine, double seam_m, std::span<const std::uint8_t> dips,
                   std::span<const std::uint8_t> sea, std::span<float> z) {
   constexpr double kSlope = 2e-4, kArea_m2 = 1e6;
+  constexpr float kHighWater_m = 0.5F;
   std::vector<std::uint8_t> outlets(sea.begin(), sea.end());
   for (Index c = 0; c < fine.size(); ++c) {
     if (fine.is_open_edge(fine.column(c), fine.row(c))) outlets[c] = 1;
@@ -57,7 +58,7 @@ void grade_plains(const Grid& fine, double seam_m, std::span<const std::uint8_t>
   for (auto at = graph.order.rbegin(); at != graph.order.rend(); ++at) {  // downstream first
     const Index c = *at, to = graph.receiver[c];
     if (dips[c] == 0 && hollow[c] == 0) continue;
-    z[c] = std::max(z[c], 0.0F);
+    z[c] = std::max(z[c], kHighWater_m);
     if (to == c) continue;
     const ReceiverDistance distance(fine, fine.row(c));
     const double slope = kSlope * std::sqrt(kArea_m2 / area_m2[c]);

@@ -45,6 +45,16 @@ struct SedimentRecord {
   std::vector<float> carried_m3_yr;
 };
 
+/// What a landscape remembers of its steps, one value per cell.
+template <class V>
+struct LandscapeRecords {
+  std::vector<V> lowered_m;  ///< by how much each cell was lowered
+  // Empty where numbers carry derivatives:
+  std::vector<double> crust_change_m;  ///< shortening and deposition less erosion
+  std::vector<float> raised_m;         ///< by uplift and rebound in all; empty without shortening
+  SedimentRecord sediment;             ///< empty where rivers lay nothing down
+};
+
 /// Ice that changes elevation, m, from what it was `before_m`, which stays: returns the rock that
 /// it lets out to the water of each cell, m3.
 using IceWork = std::function<std::vector<double>(std::span<float> elevation_m,
@@ -79,18 +89,19 @@ class Landscape {
         uplift_m_yr_(uplift_m_yr),
         thickening_m_yr_(thickening_m_yr),
         erodibility_(erodibility),
-        initial_(elevation_m.begin(), elevation_m.end()),
-        outlets_(std::move(outlets)),
-        lowered_(grid.size(), V(0.0F)) {
+        initial_m3_(volume_m3()),
+        outlets_(std::move(outlets)) {
+    if (p_.relaxation_fraction > 0.0) initial_.assign(z_.begin(), z_.end());
+    records_.lowered_m.assign(grid.size(), V(0.0F));
     if constexpr (kRecords) {
-      crust_change_m_.assign(grid.size(), 0.0);
-      if (!thickening_m_yr_.empty()) raised_m_.assign(grid.size(), 0.0F);
+      records_.crust_change_m.assign(grid.size(), 0.0);
+      if (!thickening_m_yr_.empty()) records_.raised_m.assign(grid.size(), 0.0F);
     }
     if (!deposits()) return;
     unsettled_m_.assign(grid.size(), Number(0.0));
     if constexpr (kRecords) {
-      sediment_.thickness_m.assign(grid.size(), 0.0F);
-      sediment_.laid_m.assign(grid.size(), 0.0F);
+      records_.sediment.thickness_m.assign(grid.size(), 0.0F);
+      records_.sediment.laid_m.assign(grid.size(), 0.0F);
     }
   }
 
@@ -103,6 +114,9 @@ class Landscape {
   /// Lets it do so.
   void breach(const Drainage& drainage);
 
+  /// Uplift of one step. Floor of the sea may come up out of it: the coast is then to be told anew.
+  void raise();
+  /// What works on the surface in a step once it has been raised.
   /// `builds_deltas`: the step ends at a time when the sea has stood still for a while. `ice`, if
   /// any, works after the rivers; where it lets the sea in, the coast moves. `done`: see there.
   void step(const Drainage& drainage, bool builds_deltas = false, const IceWork& ice = {},
@@ -147,25 +161,20 @@ class Landscape {
   [[nodiscard]] const RockVolumes<Number>& rock() const { return rock_; }
   /// Whether rivers deposit what they cannot carry.
   [[nodiscard]] bool deposits() const { return p_.deposits() && p_.steps > 0; }
-  /// Empty where they do not, or where numbers carry derivatives.
-  [[nodiscard]] const SedimentRecord& sediment() const { return sediment_; }
   /// Volume that has reached the sea but is not laid: what heights round away, and what a sea has
   /// no room for, m3.
   [[nodiscard]] Number unsettled_m3() const {
     if (unsettled_m_.empty()) return Number(0.0);
     return area_sum<Number>(grid_, [&](Index c) { return unsettled_m_[c]; });
   }
-  /// By how much each cell was lowered, m.
-  [[nodiscard]] std::span<const V> lowered_m() const { return lowered_; }
-  /// By how much each column's crust has grown: shortening and deposition less erosion, m. Empty
-  /// where numbers carry derivatives.
-  [[nodiscard]] const std::vector<double>& crust_change_m() const { return crust_change_m_; }
-  /// How far rock has come up in all, by uplift and rebound, m. Empty without shortening.
-  [[nodiscard]] const std::vector<float>& raised_m() const { return raised_m_; }
-  /// Volume above the initial surface, m3.
-  [[nodiscard]] Number stored_m3() const {
-    return area_sum<Number>(grid_, [&](Index c) { return Number(z_[c]) - Number(initial_[c]); });
+  [[nodiscard]] const LandscapeRecords<V>& records() const { return records_; }
+  /// The same to keep: once rock has ceased to move, and its volumes have been read.
+  [[nodiscard]] LandscapeRecords<V> take_records() {
+    release(unsettled_m_), release(owed_m_), release(initial_), release(landlocked_);
+    return std::move(records_);
   }
+  /// Volume above the initial surface, m3.
+  [[nodiscard]] Number stored_m3() const { return volume_m3() - initial_m3_; }
 
  private:
   static constexpr bool kRecords = std::is_same_v<V, float>;
@@ -223,10 +232,13 @@ class Landscape {
     const Number before_m(before_[cell]);
     return lesser(by_m, Number(greater(Number(-kShallowest_m), before_m) - before_m));
   }
+  /// Above the level of the sea, below it negative.
+  [[nodiscard]] Number volume_m3() const {
+    return area_sum<Number>(grid_, [&](Index c) { return Number(z_[c]); });
+  }
   [[nodiscard]] Number volume_since_before() const {
     return area_sum<Number>(grid_, [&](Index c) { return Number(z_[c]) - Number(before_[c]); });
   }
-  void raise();
   void record_raising();
   /// Crust grows also where the sea stands on it.
   void thicken(const Number& dt);
@@ -270,15 +282,14 @@ class Landscape {
   std::span<V> z_;
   std::span<const V> uplift_m_yr_, thickening_m_yr_;
   std::span<const V> erodibility_;
-  std::vector<V> initial_;
+  std::vector<V> initial_;  ///< the surface that it may be brought back to, or empty
+  Number initial_m3_;
   std::vector<std::uint8_t> outlets_;
   std::vector<std::uint8_t> landlocked_;  ///< or empty
   bool builds_deltas_ = false;
-  std::vector<V> lowered_, before_, owed_m_;
+  std::vector<V> before_, owed_m_;
   std::vector<Number> unsettled_m_;
-  std::vector<double> crust_change_m_;
-  std::vector<float> raised_m_;
-  SedimentRecord sediment_;
+  LandscapeRecords<V> records_;
   RockVolumes<Number> rock_;
 };
 
@@ -296,8 +307,7 @@ template <class V>
 void Landscape<V>::step(const Drainage& drainage, bool builds_deltas, const IceWork& ice,
                         const DrainageDone& done) {
   builds_deltas_ = builds_deltas;
-  release(sediment_.carried_m3_yr);
-  raise();
+  release(records_.sediment.carried_m3_yr);
   before_.assign(z_.begin(), z_.end());
   const std::span<const double> area_m2(drainage.area_m2);
   if (deposits()) {
@@ -343,9 +353,9 @@ void Landscape<V>::hold_outlets() {
 template <class V>
 void Landscape<V>::account_lowering() {
   rock_.eroded -= volume_since_before();
-  on_land([&](Index cell) { lowered_[cell] += before_[cell] - z_[cell]; });
+  on_land([&](Index cell) { records_.lowered_m[cell] += before_[cell] - z_[cell]; });
   if constexpr (kRecords) {
-    on_land([&](Index cell) { crust_change_m_[cell] += Number(z_[cell]) - before_[cell]; });
+    on_land([&](Index cell) { records_.crust_change_m[cell] += Number(z_[cell]) - before_[cell]; });
   }
 }
 

@@ -37,8 +37,8 @@ void Landscape<V>::let_ice_work(const FlowGraph& graph, const IceWork& ice,
   rock_.eroded -= volume_since_before();
 #pragma omp parallel for schedule(static)
   for (Index cell = 0; cell < grid_.size(); ++cell) {
-    if (outlets_[cell] == 0) lowered_[cell] += before_[cell] - z_[cell];
-    crust_change_m_[cell] += Number(z_[cell]) - Number(before_[cell]);
+    if (outlets_[cell] == 0) records_.lowered_m[cell] += before_[cell] - z_[cell];
+    records_.crust_change_m[cell] += Number(z_[cell]) - Number(before_[cell]);
   }
   if (deposits()) {
     for (const Index cell : graph.order) {
@@ -91,7 +91,7 @@ void Landscape<V>::spread_at_sea(std::vector<Number>& volume_m3) {
     z_[cell] = lesser(V(Number(floor) + supply_m[cell]), greater(floor, V(-kShallowest_m)));
     laid_m[cell] = z_[cell] - floor;
     unsettled_m_[cell] = supply_m[cell] - (Number(z_[cell]) - Number(floor));
-    if constexpr (kRecords) crust_change_m_[cell] += Number(z_[cell]) - Number(floor);
+    if constexpr (kRecords) records_.crust_change_m[cell] += Number(z_[cell]) - Number(floor);
   }
   rock_.laid_at_sea += area_sum<Number>(grid_, [&](Index c) {
     return sea[c] != 0 ? Number(z_[c]) - Number(before_[c]) : Number(0.0);
@@ -112,7 +112,8 @@ void Landscape<V>::build_at_mouths(const std::vector<std::uint8_t>& sea,
     std::vector<double> left_m3(grid_.size());
     for (Index cell = 0; cell < grid_.size(); ++cell) left_m3[cell] = brought_m3(cell);
     for (const auto& [cell, mouth] : build_deltas(grid_, {}, sea, z_, left_m3, laid_m)) {
-      if (mouth != kNoCell) sediment_.carried_m3_yr[mouth] += sediment_.carried_m3_yr[cell];
+      if (mouth != kNoCell)
+        records_.sediment.carried_m3_yr[mouth] += records_.sediment.carried_m3_yr[cell];
     }
     for (Index cell = 0; cell < grid_.size(); ++cell) {
       volume_m3[cell] -= brought_m3(cell) - left_m3[cell];
@@ -122,7 +123,7 @@ void Landscape<V>::build_at_mouths(const std::vector<std::uint8_t>& sea,
       if (laid_m[cell] == 0.0F) continue;
       const float floor = z_[cell];
       z_[cell] += laid_m[cell];
-      crust_change_m_[cell] += Number(z_[cell]) - Number(floor);
+      records_.crust_change_m[cell] += Number(z_[cell]) - Number(floor);
       // What rounding to the height of the plain took or gave.
       unsettled_m_[cell] += Number(laid_m[cell]) - (Number(z_[cell]) - Number(floor));
     }
@@ -135,9 +136,9 @@ void Landscape<V>::record_layers() {
   if constexpr (kRecords) {
     on_land([&](Index cell) {
       const float rise_m = z_[cell] - before_[cell];
-      float& thickness_m = sediment_.thickness_m[cell];
+      float& thickness_m = records_.sediment.thickness_m[cell];
       thickness_m = std::max(0.0F, thickness_m + rise_m);
-      sediment_.laid_m[cell] += std::max(0.0F, rise_m);
+      records_.sediment.laid_m[cell] += std::max(0.0F, rise_m);
     });
   }
   rock_.laid_on_land += area_sum<Number>(grid_, [&](Index c) {
@@ -149,10 +150,10 @@ void Landscape<V>::record_layers() {
 template <class V>
 void Landscape<V>::record_carried(const std::vector<Number>& volume_m3) {
   if constexpr (kRecords) {
-    sediment_.carried_m3_yr.resize(grid_.size());
+    records_.sediment.carried_m3_yr.resize(grid_.size(), 0.0F);
 #pragma omp parallel for schedule(static)
     for (Index cell = 0; cell < grid_.size(); ++cell) {
-      sediment_.carried_m3_yr[cell] =
+      records_.sediment.carried_m3_yr[cell] +=
           static_cast<float>(std::max(0.0, volume_m3[cell]) / p_.time_step_yr);
     }
   }
@@ -164,9 +165,9 @@ void Landscape<V>::record_at_sea(const std::vector<V>& laid_m) {
 #pragma omp parallel for schedule(static)
     for (Index cell = 0; cell < grid_.size(); ++cell) {
       // What heights round away may be taken off again.
-      float& thickness_m = sediment_.thickness_m[cell];
+      float& thickness_m = records_.sediment.thickness_m[cell];
       thickness_m = std::max(0.0F, thickness_m + laid_m[cell]);
-      sediment_.laid_m[cell] += std::max(0.0F, laid_m[cell]);
+      records_.sediment.laid_m[cell] += std::max(0.0F, laid_m[cell]);
     }
   }
 }

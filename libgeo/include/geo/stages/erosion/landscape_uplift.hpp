@@ -30,27 +30,23 @@ void Landscape<V>::raise() {
 template <class V>
 void Landscape<V>::record_raising() {
   if constexpr (kRecords) {
-    if (raised_m_.empty()) return;
-    on_land([&](Index cell) { raised_m_[cell] += z_[cell] - before_[cell]; });
+    if (records_.raised_m.empty()) return;
+    on_land([&](Index cell) { records_.raised_m[cell] += z_[cell] - before_[cell]; });
   }
 }
 
 template <class V>
 void Landscape<V>::thicken(const Number& dt) {
-  at_sea_floor([&](Index cell) {
-    z_[cell] = lesser(V(Number(z_[cell]) + Number(uplift_m_yr_[cell]) * dt), V(-kShallowest_m));
-  });
-  // Floor that stood a hair below the sea is let down to where it stays sea.
-  account_sea_floor(rock_.uplifted, [&](Index cell) {
-    return lesser(Number(Number(uplift_m_yr_[cell]) * dt),
-                  Number(Number(-kShallowest_m) - Number(before_[cell])));
-  });
+  at_sea_floor(
+      [&](Index cell) { z_[cell] = V(Number(z_[cell]) + Number(uplift_m_yr_[cell]) * dt); });
+  account_sea_floor(rock_.uplifted,
+                    [&](Index cell) { return Number(Number(uplift_m_yr_[cell]) * dt); });
   rock_.shortened +=
       area_sum<Number>(grid_, [&](Index cell) { return Number(thickening_m_yr_[cell]) * dt; });
   if constexpr (kRecords) {
 #pragma omp parallel for schedule(static)
     for (Index cell = 0; cell < grid_.size(); ++cell) {
-      crust_change_m_[cell] += Number(thickening_m_yr_[cell]) * dt;
+      records_.crust_change_m[cell] += Number(thickening_m_yr_[cell]) * dt;
     }
   }
 }

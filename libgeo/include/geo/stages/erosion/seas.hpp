@@ -29,7 +29,8 @@ bool join_seas(const ErosionParameters& parameters, const Grid& grid, std::span<
                                       std::span<const float> elevation_m, double share);
 
 /// Moves the datum there. Of flats that lie just at the new level, as mouths have laid them, as
-/// many cells as `share` still lacks become sea, in their order. Returns whether anything changed.
+/// many cells as `share` still lacks become sea, from their shores on; waves plane off 5 m of what
+/// a rising sea drowns [cattaneo2003]. Returns whether anything changed.
 bool keep_sea_share(const ErosionParameters& parameters, const Grid& grid,
                     std::span<float> elevation_m, double share);
 

@@ -15,6 +15,9 @@ struct Surroundings {
   std::function<const Drainage&(std::int64_t step)> route;
   /// What else happens before a step; returns whether it changed the surface.
   std::function<bool(std::int64_t step)> strike{};
+  /// Tells land and sea apart on the surface that the step has raised; returns whether a coast has
+  /// moved.
+  std::function<bool(std::int64_t step)> coast{};
   /// The ice of a step, or none.
   std::function<IceWork(std::int64_t step)> ice{};
   /// Called after each step.
@@ -23,15 +26,18 @@ struct Surroundings {
   DrainageDone done{};
 };
 
-/// The steps of a landscape, for every planet, island and fit. Water is routed again every
-/// `route_every` steps, and where events or ice have changed the surface, which breaches its
-/// depressions where they are to be. The last step builds deltas.
+/// The steps of a landscape, for every planet, island and fit: each raises the surface, and then
+/// wears it down. Water is routed again every `route_every` steps, and where events, ice or a moved
+/// coast ask for it; depressions are then breached where they are to be. The last step builds
+/// deltas.
 template <class V>
 void wear_down(const ErosionParameters& p, const Surroundings& around, Landscape<V>& landscape) {
   const Drainage* drainage = nullptr;
   bool coast_moved = false;
   for (std::int64_t step = 0; step < p.steps; ++step) {
     const bool struck = around.strike && around.strike(step);
+    landscape.raise();
+    coast_moved = (around.coast && around.coast(step)) || coast_moved;
     if (struck || coast_moved || step % p.route_every == 0) {
       drainage = &around.route(step);
       landscape.breach(*drainage);

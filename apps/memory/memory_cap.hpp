@@ -3,17 +3,8 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
-#include <string>
 
 namespace terrane {
-
-/// Bytes of "16GiB" or "500MB" (kB, MB, GB, TB by 1000; KiB, MiB, GiB, TiB by 1024). Throws
-/// ConfigurationError that names `--memory`.
-double parse_memory_size(const std::string& text);
-
-/// Less than this no run can be kept to: the program, its libraries and what they hold in small
-/// blocks.
-constexpr double kLeastMemory_bytes = 200e6;
 
 class MemoryPager;
 

@@ -1,0 +1,118 @@
+#include "memory_pager.hpp"
+
+#include <fcntl.h>
+#include <malloc.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+
+#include "block_regions.hpp"
+
+namespace terrane {
+
+using Trace = PageRanges::Trace;
+
+double least_clear_bytes(double cap_bytes) {
+  return std::clamp(cap_bytes / 4.0, 48.0 * kMebibyte, 1024.0 * kMebibyte);
+}
+
+MemoryPager::MemoryPager(std::size_t cap_bytes) : cap_(cap_bytes) {
+  keep_clear(least_clear());
+  most_on_disk_pages_ = pages_of(cap_bytes / 4);
+  statm_ = ::open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
+  own_at_first_ = resident().own;
+  watching_.emplace(std::chrono::milliseconds(1), [this] { look(); });
+  cutting_.emplace(std::chrono::milliseconds(100), [this] { cut(); });
+}
+
+MemoryPager::~MemoryPager() {
+  watching_.reset();
+  cutting_.reset();
+  if (statm_ >= 0) ::close(statm_);
+}
+
+void MemoryPager::look() {
+  const std::size_t taken = taken_bytes();
+  if (taken <= high_) return forget();
+  const std::unique_lock lock(dropping_, std::try_to_lock);
+  if (!lock) return;
+  // On a busy machine this thread comes late: the later it came, the more is kept clear.
+  const std::size_t late = std::min(2 * (taken - std::min(taken, high_.load())), cap_ / 5 * 2);
+  if (late > cap_ - high_) keep_clear(late);
+  while (taken_bytes() > low_) {
+    if (drop_one_free(regions().scratch, Trace::disk)) continue;
+    if (drop_one_free(regions().memory, Trace::none)) continue;
+    if (!drop_round()) break;
+  }
+}
+
+MemoryPager::Resident MemoryPager::resident() const {
+  static const auto kSystemPage = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  std::array<char, 128> text{};
+  if (::pread(statm_, text.data(), text.size() - 1, 0) <= 0) return {};
+  char* at = nullptr;
+  std::strtoull(text.data(), &at, 10);  // address space
+  const std::size_t all = std::strtoull(at, &at, 10), of_files = std::strtoull(at, &at, 10);
+  return {(all - std::min(all, of_files)) * kSystemPage, of_files * kSystemPage};
+}
+
+std::size_t MemoryPager::taken_bytes() const {
+  const Resident now = resident();
+  Regions& all = regions();
+  const std::lock_guard lock(all.mutex);
+  const std::size_t promised = all.memory.ranges.pages_in_use() * kPage;
+  return now.of_files + std::max(now.own, own_at_first_ + promised);
+}
+
+std::size_t MemoryPager::least_clear() const {
+  return static_cast<std::size_t>(least_clear_bytes(static_cast<double>(cap_)));
+}
+
+void MemoryPager::forget() {
+  constexpr std::size_t kLooks = 1000;
+  const std::size_t clear = cap_ - high_;
+  if (clear > least_clear()) keep_clear(clear - (clear - least_clear() + kLooks - 1) / kLooks);
+}
+
+void MemoryPager::keep_clear(std::size_t margin) {
+  high_ = cap_ - margin;
+  low_ = cap_ - margin - margin / 4;
+}
+
+bool MemoryPager::drop_round() {
+  constexpr std::size_t kStep = 4 * kMebibyte / kPage;
+  Regions& all = regions();
+  std::size_t reach = 0;
+  {
+    const std::lock_guard lock(all.mutex);
+    reach = all.scratch.ranges.reach();
+  }
+  for (std::size_t gone = 0; gone < reach; gone += kStep) {
+    if (hand_ >= reach) hand_ = 0;
+    const std::size_t pages = std::min(kStep, reach - hand_);
+    ::madvise(all.scratch.at(hand_), pages * kPage, MADV_DONTNEED);
+    hand_ += pages;
+    if (taken_bytes() <= low_) return true;
+  }
+  const auto now = std::chrono::steady_clock::now();
+  if (now - trimmed_ > std::chrono::milliseconds(200)) {
+    trimmed_ = now;
+    malloc_trim(0);
+  }
+  return false;
+}
+
+void MemoryPager::cut() const {
+  Regions& all = regions();
+  const auto is_much = [&] {
+    const std::lock_guard lock(all.mutex);
+    return all.scratch.ranges.free_pages(Trace::disk) > most_on_disk_pages_;
+  };
+  while (is_much() && cut_one_free(Trace::disk)) {
+  }
+}
+
+}  // namespace terrane
