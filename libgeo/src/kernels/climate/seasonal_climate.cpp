@@ -276,8 +276,7 @@ SeasonalFields SeasonalYear::fields() const {
 SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& model,
                                       std::span<const double> latitude_deg,
                                       std::span<const float> land_fraction,
-                                      std::span<const float> height_m,
-                                      const TerrainAscent& ascent,
+                                      std::span<const float> height_m, const TerrainAscent& ascent,
                                       std::span<const float> glacier_fraction) {
   check_sizes("solve_seasonal_climate", grid.ny(), {{"latitude_deg", latitude_deg.size()}});
   check_sizes("solve_seasonal_climate", grid.size(),

@@ -13,7 +13,8 @@ namespace {
 constexpr double kCoarser = 3.0;
 /// Ice follows a climate for some rounds, then the climate follows the ice.
 constexpr int kColdTurns = 3, kGrowing = 12, kWarmTurns = 2, kShrinking = 6;
-/// Share of the cold times' cooling that is not the work of snow and ice, on the Earth's topography.
+/// Share of the cold times' cooling that is not the work of snow and ice, on the Earth's
+/// topography.
 constexpr double kForcedShare = 0.8;
 /// Arctic summers of the last interglacial were 4 to 5 K warmer than today's (CAPE 2006), where
 /// such departures are 1.6 times the planet's.

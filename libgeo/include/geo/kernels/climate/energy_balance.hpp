@@ -97,8 +97,9 @@ using HeatWinds =
 /// eliminated. By harmonics: for each a sparse linear system with the annual and zonal
 /// mean of u, in whose source all else is found by iteration: the albedo of the months' snow and
 /// ice, which is never below that of what they lie on, the heat that ice at sea and on land takes
-/// as it melts in summer and gives as it freezes in winter, that of the ground's water likewise, and what the winds of each month carry besides, which sums to zero over the planet. F is
-/// the advected heat; without `winds` nothing is carried. Throws Bug if a solver does not converge.
+/// as it melts in summer and gives as it freezes in winter, that of the ground's water likewise,
+/// and what the winds of each month carry besides, which sums to zero over the planet. F is the
+/// advected heat; without `winds` nothing is carried. Throws Bug if a solver does not converge.
 /// Threads: one for each harmonic; the same bits for any number of them.
 ///
 /// @param latitude_deg      per row
