@@ -311,15 +311,15 @@ TEST(ArraySizes, OfClimateAreChecked) {
     Doubles heat(n(cells()));
     ocean_heat(grid, {}, false, latitude, land, heat);
   });
-  expect_refused("solve_energy_balance", 3, [&](Lengths& n) {
+  expect_refused("solve_energy_balance", 4, [&](Lengths& n) {
     const Doubles latitude(n(rows()));
-    const Floats land(n(cells())), height(n(cells()));
-    static_cast<void>(solve_energy_balance(grid, {}, false, latitude, land, height));
+    const Floats land(n(cells())), height(n(cells())), ice(n(cells()));
+    static_cast<void>(solve_energy_balance(grid, {}, false, latitude, land, height, {}, ice));
   });
-  expect_refused("solve_seasonal_climate", 3, [&](Lengths& n) {
+  expect_refused("solve_seasonal_climate", 4, [&](Lengths& n) {
     const Doubles latitude(n(rows()));
-    const Floats land(n(cells())), height(n(cells()));
-    static_cast<void>(solve_seasonal_climate(grid, {}, latitude, land, height));
+    const Floats land(n(cells())), height(n(cells())), ice(n(cells()));
+    static_cast<void>(solve_seasonal_climate(grid, {}, latitude, land, height, {}, ice));
   });
   expect_refused("stationary_wave", 7, [&](Lengths& n) {
     const Doubles latitude(n(rows())), wind(n(rows()));

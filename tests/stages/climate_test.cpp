@@ -447,5 +447,26 @@ TEST(Climate, BlueprintFollowsItsFormulaOnThePlane) {
   EXPECT_LT(state.read(field::wind_east)[210], -6.9F) << "trades, 7 m s-1";
 }
 
+TEST(Climate, SeesTheIceThatLiesOnLand) {
+  const auto grid = std::make_shared<const Grid>(Grid::sphere(72, 36));
+  std::vector<float> polar(static_cast<std::size_t>(grid->size()), -4000.0F), ice(polar.size());
+  for (Index c = 0; c < grid->size(); ++c) {
+    if (grid->latitude_deg(grid->row(c)) > 60.0) polar[c] = 300.0F, ice[c] = 500.0F;
+  }
+  const State bare = run(grid, polar);
+  State iced(grid);
+  iced.set(field::elevation, std::move(polar));
+  iced.set(field::ice_thickness, std::move(ice));
+  const auto stage = make_climate_stage(quick());
+  StageIo io(iced, stage->info());
+  Context context;
+  stage->run(io, context);
+  const Index cell = grid->cell(0, 33);
+  const auto warmest = [&](const State& state) {
+    return state.read(field::temperature)[cell] + 0.5F * state.read(field::temperature_range)[cell];
+  };
+  EXPECT_LT(warmest(iced), warmest(bare) - 5.0F);
+}
+
 }  // namespace
 }  // namespace geo

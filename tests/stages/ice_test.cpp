@@ -12,6 +12,7 @@
 #include "geo/kernels/numerics/area_sum.hpp"
 #include "geo/stages/erosion/erosion.hpp"
 #include "geo/stages/stages.hpp"
+#include "stages/erosion/icy_climate.hpp"
 #include "stages/three_continents.hpp"
 #include "support/terrain.hpp"
 
@@ -86,6 +87,40 @@ TEST(Ice, OfColdTimesWorksWhereThatOfTodayDoesNotReach) {
   const State bare = freeze_planet(none, {{"erosion.ice.model", "none"}});
   EXPECT_FALSE(bare.has(field::ice_thickness));
   EXPECT_EQ(none.count("ice_m3"), 0U);
+}
+
+/// Share of a low continent between two parallels that lies under the ice of icy_climate.
+double covered(double from_deg, double to_deg, double glacial_share) {
+  constexpr float kHeight_m = 300.0F;
+  const Pipeline pipeline = make_pipeline();
+  const Grid grid = Grid::sphere(72, 36);
+  std::vector<float> elevation_m(static_cast<std::size_t>(grid.size()), -4000.0F);
+  const auto is_land = [&](Index c) {
+    const double latitude = grid.latitude_deg(grid.row(c));
+    return latitude > from_deg && latitude < to_deg;
+  };
+  for (Index c = 0; c < grid.size(); ++c) {
+    if (is_land(c)) elevation_m[c] = kHeight_m;
+  }
+  ErosionParameters parameters;
+  parameters.glacial_share = glacial_share;
+  Context context;
+  context.configuration = pipeline.parameters();
+  const LandClimate climate = icy_climate(parameters, grid, elevation_m, context);
+  double land_m2 = 0.0, iced_m2 = 0.0;
+  for (Index c = 0; c < grid.size(); ++c) {
+    if (!is_land(c)) continue;
+    land_m2 += grid.area_m2(grid.row(c));
+    if (climate.ice_m[c] >= 10.0F) iced_m2 += grid.area_m2(grid.row(c));
+  }
+  return iced_m2 / land_m2;
+}
+
+// Where the same sun allows ice and none, the last cold time decides.
+TEST(Ice, OverAPoleIsWhatColdTimesHaveLeft) {
+  EXPECT_GT(covered(65.0, 90.0, 0.3), 0.9);
+  EXPECT_LT(covered(65.0, 90.0, 0.0), 0.1) << "without cold times";
+  EXPECT_LT(covered(50.0, 60.0, 0.3), 0.1) << "the warm times melt it";
 }
 
 // Without rivers and creep, which wear ground that is free of ice and so change the difference.

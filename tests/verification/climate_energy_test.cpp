@@ -231,6 +231,99 @@ TEST(EnergyBalance, RangesKeepWarmGroundFromCold) {
   EXPECT_GT(contrast_k(range), 1.3 * contrast_k(flat));
 }
 
+/// A northern polar continent, and the year on it with and without ice.
+struct PolarContinent {
+  static constexpr int kCoast = 25;  ///< first row of land, 60 N
+  Grid grid = Grid::sphere(60, 30);
+  std::vector<double> latitude;
+  std::vector<float> land, flat, iced;
+  PolarContinent() : land(grid.size(), 0.0F), flat(land), iced(land) {
+    for (int j = 0; j < grid.ny(); ++j) latitude.push_back(grid.latitude_deg(j));
+    for (Index c = 0; c < grid.size(); ++c) {
+      if (grid.row(c) >= kCoast) land[c] = iced[c] = 1.0F;
+    }
+  }
+  [[nodiscard]] TemperatureCycle year(const EnergyBalance& model, bool under_ice) const {
+    return solve_energy_balance(
+        grid, model, false, latitude, land, flat, {},
+        under_ice ? std::span<const float>(iced) : std::span<const float>());
+  }
+  [[nodiscard]] Index inland() const { return grid.cell(0, grid.ny() - 2); }
+};
+
+double warmest_c(const TemperatureCycle& year, Index cell) {
+  double warmest = -1e9;
+  for (int m = 0; m < kMonths; ++m) warmest = std::max(warmest, year.month_c(cell, m));
+  return warmest;
+}
+
+TEST(EnergyBalance, IceOnLandMakesSummersColdAndFarClimatesHardly) {
+  const PolarContinent planet;
+  const EnergyBalance model;
+  const auto bare = planet.year(model, false), iced = planet.year(model, true);
+  EXPECT_LT(warmest_c(iced, planet.inland()), warmest_c(bare, planet.inland()) - 5.0);
+  const Index tropics = planet.grid.cell(0, 15);
+  EXPECT_NEAR(iced.mean_c(tropics), bare.mean_c(tropics), 1.5);
+  // Without sunlight to reflect and without melting, ice is ground like any other that is frozen.
+  EnergyBalance dark = model;
+  dark.glacier_coalbedo = dark.ice_coalbedo;
+  dark.melt_w_m2_k = 0.0;
+  EXPECT_LT(warmest_c(planet.year(dark, true), planet.inland()),
+            warmest_c(iced, planet.inland()) + 1.0);
+}
+
+TEST(EnergyBalance, MeltingHoldsSummersOverIceNearFreezing) {
+  const PolarContinent planet;
+  EnergyBalance model;
+  model.glacier_coalbedo = 0.6;  // dark enough to melt
+  model.melt_w_m2_k = 0.0;
+  const double unmelted_c = warmest_c(planet.year(model, true), planet.inland());
+  model.melt_w_m2_k = 20.0;
+  const double melting_c = warmest_c(planet.year(model, true), planet.inland());
+  ASSERT_GT(unmelted_c, 4.0);
+  EXPECT_LT(melting_c, 0.5 * unmelted_c);
+  EXPECT_GT(melting_c, -1.0);
+}
+
+TEST(EnergyBalance, SnowAndIceNeverDarkenWhatTheyLieOn) {
+  const PolarContinent planet;
+  EnergyBalance model;
+  model.snow_coalbedo = model.open_snow_coalbedo = model.sea_ice_coalbedo = 0.9;
+  const auto year = planet.year(model, false);
+  model.snow_coalbedo = model.open_snow_coalbedo = model.sea_ice_coalbedo = 1.0;
+  const auto darker = planet.year(model, false);
+  for (Index c = 0; c < planet.grid.size(); ++c) ASSERT_EQ(year.mean_c(c), darker.mean_c(c));
+}
+
+TEST(EnergyBalance, OpenSnowDelaysSpringWhereSummersAreTooColdForTrees) {
+  const PolarContinent planet;
+  EnergyBalance model;
+  model.freezing_heat_w_yr_m2 = 0.0;
+  model.open_snow_coalbedo = 0.4;
+  model.tree_temperature_c = 60.0;  // trees nowhere
+  const auto bright = planet.year(model, false);
+  model.tree_temperature_c = -60.0;  // trees everywhere
+  const auto wooded = planet.year(model, false);
+  constexpr int kMay = 4;
+  EXPECT_LT(bright.month_c(planet.inland(), kMay), wooded.month_c(planet.inland(), kMay) - 2.0);
+}
+
+// The heat of freezing is lent, not made: it warms the autumn by what it takes from the spring.
+TEST(EnergyBalance, FreezingGroundDelaysTheSeasons) {
+  const PolarContinent planet;
+  EnergyBalance model = constant_albedo();
+  model.ice_width_k = 2.0;
+  model.snow_coalbedo = model.open_snow_coalbedo = model.ice_coalbedo = model.coalbedo;
+  model.sea_ice_coalbedo = model.coalbedo;
+  model.freezing_heat_w_yr_m2 = 0.0;
+  const auto dry = planet.year(model, false);
+  model.freezing_heat_w_yr_m2 = 2.0;
+  const auto wet = planet.year(model, false);
+  const Index cell = planet.grid.cell(0, PolarContinent::kCoast + 1);
+  EXPECT_NEAR(wet.mean_c(cell), dry.mean_c(cell), 0.1);
+  EXPECT_LT(std::arg(wet.harmonic(1)[cell] / dry.harmonic(1)[cell]), -0.02) << "later";
+}
+
 TEST(EnergyBalance, SeaWindsMakeWesternCoastsMild) {
   const Grid grid = Grid::sphere(90, 45);
   std::vector<double> latitude;

@@ -53,6 +53,21 @@ TEST(SnowBalance, MeltwaterFreezesInSnowBeforeAnyIsLost) {
   EXPECT_NEAR(snow_balance_m_yr(law, -8.0, 0.0, 2000.0), snow / law.ice_kg_m3, 1e-12);
 }
 
+TEST(SnowBalance, RainOfSummersIsNoSnow) {
+  const SnowLaw law;
+  // Half of the year far above freezing, half far below: the cosine's mean over the frost is 2 / pi
+  // of its amplitude, by seven months rather less.
+  const double even = frost_of_year(law, 0.0, 400.0).snow_share;
+  const double wet_summers = frost_of_year(law, 0.0, 400.0, 1.0).snow_share;
+  EXPECT_NEAR(even, 0.5, 1e-9);
+  EXPECT_NEAR(wet_summers, 0.5 - 1.0 / std::numbers::pi, 0.01);
+  EXPECT_NEAR(frost_of_year(law, 0.0, 400.0, -1.0).snow_share, 1.0 - wet_summers, 1e-9);
+  // Where it never thaws all is snow.
+  EXPECT_NEAR(frost_of_year(law, -60.0, 20.0, 1.0).snow_share, 1.0, 1e-9);
+  EXPECT_EQ(frost_of_year(law, -5.0, 20.0, 1.0).degree_days,
+            frost_of_year(law, -5.0, 20.0).degree_days);
+}
+
 TEST(SnowBalance, FallsAsTheYearWarms) {
   const SnowLaw law;
   for (const double range : {0.0, 15.0, 40.0}) {

@@ -21,7 +21,7 @@ using Complex = std::complex<double>;
 constexpr double kPi = std::numbers::pi;
 constexpr double kRadians = kPi / 180.0;
 constexpr int kHarmonics = TemperatureCycle::kHarmonics;
-constexpr double kMelting_c = -1.0;  // of a month on ice that is melting
+constexpr double kMelting_c = -1.0;  // of a month over ice that is melting
 
 /// Rises from 0 to 1 as a temperature falls below a limit; 0 without a width.
 double frozen_share(double temperature_c, double limit_c, double width_k) {
@@ -113,9 +113,15 @@ class HarmonicSolver {
 /// Albedo, heat capacity and diffusivity as the temperatures have them.
 class Surface {
  public:
+  using Months = std::array<double, kMonths>;
   Surface(const Grid& grid, const EnergyBalance& model, std::span<const double> latitude_deg,
-          std::span<const float> land_fraction, std::span<const float> height_m)
-      : grid_(grid), model_(model), land_(land_fraction), height_m_(height_m) {
+          std::span<const float> land_fraction, std::span<const float> height_m,
+          std::span<const float> glacier_fraction)
+      : grid_(grid),
+        model_(model),
+        land_(land_fraction),
+        height_m_(height_m),
+        glacier_(glacier_fraction) {
     for (int j = 0; j < grid.ny(); ++j) {
       insolation_.push_back(
           monthly_insolation_w_m2(latitude_deg[j], model.orbit, model.solar_constant_w_m2));
@@ -129,38 +135,40 @@ class Surface {
     return sea_ice_share(model_, annual_mean_c);
   }
 
-  /// Sunlight that a cell absorbs in each month, less what melts its sea ice, and what that gives
-  /// back.
-  [[nodiscard]] std::array<double, kMonths> absorbed_w_m2(const TemperatureCycle& temperature,
-                                                          Index cell) const {
+  /// Sunlight that a cell absorbs in each month, less what melts its ice, and what that gives back.
+  [[nodiscard]] Months absorbed_w_m2(const TemperatureCycle& temperature, Index cell) const {
     const int row = grid_.row(cell);
-    std::array<double, kMonths> ground_c{}, absorbed{};
+    Months air_c{}, ground_c{}, absorbed{};
     for (int m = 0; m < kMonths; ++m) {
-      ground_c[m] = temperature.month_c(cell, m) - model_.lapse_k_m * height_m_[cell];
+      air_c[m] = temperature.month_c(cell, m);
+      ground_c[m] = air_c[m] - model_.lapse_k_m * height_m_[cell];
     }
     // Snow that outlasts the warmest month becomes ice.
     const double warmest_c = *std::max_element(ground_c.begin(), ground_c.end());
-    const double ice = frozen_share(warmest_c, 0.0, model_.ice_width_k);
+    const double stays = frozen_share(warmest_c, 0.0, model_.ice_width_k);
+    const auto unless_it_stays = [&](double coalbedo) {
+      return coalbedo + stays * (model_.ice_coalbedo - coalbedo);
+    };
     const double land = land_[cell], bare = bare_[row];
-    const double snowy = model_.snow_coalbedo + ice * (model_.ice_coalbedo - model_.snow_coalbedo);
-    const double sea = bare + sea_ice(temperature.mean_c(cell)) * (model_.sea_ice_coalbedo - bare);
-    const double melting = (1.0 - land) * sea_ice(temperature.mean_c(cell)) * model_.melt_w_m2_k;
-    double melted_w_m2 = 0.0, frost_k = 0.0;
+    const double glacier = glacier_.empty() ? 0.0 : glacier_[cell];
+    const double icy = unless_it_stays(model_.glacier_coalbedo);
+    const double treeless = frozen_share(warmest_c, model_.tree_temperature_c, model_.ice_width_k);
+    const double snowy = unless_it_stays(std::min(
+        bare,
+        model_.snow_coalbedo + treeless * (model_.open_snow_coalbedo - model_.snow_coalbedo)));
+    const double sea_ice_here = sea_ice(temperature.mean_c(cell));
+    const double sea = bare + sea_ice_here * (std::min(bare, model_.sea_ice_coalbedo) - bare);
+    Months frozen{};
     for (int m = 0; m < kMonths; ++m) {
+      frozen[m] = frozen_share(ground_c[m], 0.0, model_.ice_width_k);
       const double snow =
-          std::max(ice, frozen_share(ground_c[m], model_.snow_temperature_c, model_.ice_width_k));
-      const double share = land * (bare + snow * (snowy - bare)) + (1.0 - land) * sea;
-      const double warmer_k = temperature.month_c(cell, m) - kMelting_c;
-      const double melt_w_m2 = melting * std::max(0.0, warmer_k);
-      absorbed[m] = insolation_[row][m] * share - melt_w_m2;
-      melted_w_m2 += melt_w_m2;
-      frost_k += std::max(0.0, -warmer_k);
+          std::max(stays, frozen_share(ground_c[m], model_.snow_temperature_c, model_.ice_width_k));
+      const double ground = (1.0 - glacier) * (bare + snow * (snowy - bare)) + glacier * icy;
+      absorbed[m] = insolation_[row][m] * (land * ground + (1.0 - land) * sea);
     }
-    // What melts in summer freezes in winter, most in the coldest months.
-    for (int m = 0; m < kMonths && frost_k > 0.0; ++m) {
-      const double colder_k = kMelting_c - temperature.month_c(cell, m);
-      absorbed[m] += melted_w_m2 * std::max(0.0, colder_k) / frost_k;
-    }
+    freeze(land * (1.0 - glacier), frozen, absorbed);
+    melt_and_freeze((1.0 - land) * sea_ice_here, air_c, absorbed);
+    melt_and_freeze(land * glacier, ground_c, absorbed);
     return absorbed;
   }
 
@@ -204,10 +212,37 @@ class Surface {
   }
 
  private:
+  /// Ground, a share of the cell, gives heat as its water freezes in autumn, and takes it in
+  /// spring.
+  void freeze(double ground, const Months& frozen, Months& absorbed_w_m2) const {
+    for (int m = 0; m < kMonths; ++m) {
+      const double growth_1_yr =
+          0.5 * kMonths * (frozen[(m + 1) % kMonths] - frozen[(m + kMonths - 1) % kMonths]);
+      absorbed_w_m2[m] += ground * model_.freezing_heat_w_yr_m2 * growth_1_yr;
+    }
+  }
+
+  /// What ice, a share of the cell, takes as it melts in summer it gives as it freezes in winter,
+  /// most in the coldest months.
+  void melt_and_freeze(double ice, const Months& temperature_c, Months& absorbed_w_m2) const {
+    if (ice <= 0.0) return;
+    double melted_w_m2 = 0.0, frost_k = 0.0;
+    for (int m = 0; m < kMonths; ++m) {
+      const double warmer_k = temperature_c[m] - kMelting_c;
+      const double melt_w_m2 = ice * model_.melt_w_m2_k * std::max(0.0, warmer_k);
+      absorbed_w_m2[m] -= melt_w_m2;
+      melted_w_m2 += melt_w_m2;
+      frost_k += std::max(0.0, -warmer_k);
+    }
+    for (int m = 0; m < kMonths && frost_k > 0.0; ++m) {
+      absorbed_w_m2[m] += melted_w_m2 * std::max(0.0, kMelting_c - temperature_c[m]) / frost_k;
+    }
+  }
+
   const Grid& grid_;
   const EnergyBalance& model_;
-  std::span<const float> land_, height_m_;
-  std::vector<std::array<double, kMonths>> insolation_;
+  std::span<const float> land_, height_m_, glacier_;
+  std::vector<Months> insolation_;
   std::vector<double> bare_;
 };
 
@@ -237,11 +272,12 @@ class PeriodicYear {
  public:
   PeriodicYear(const Grid& grid, const EnergyBalance& model, bool retrograde,
                std::span<const double> latitude_deg, std::span<const float> land_fraction,
-               std::span<const float> height_m, const HeatWinds& winds)
+               std::span<const float> height_m, const HeatWinds& winds,
+               std::span<const float> glacier_fraction)
       : grid_(grid),
         model_(model),
         size_(static_cast<std::size_t>(grid.size())),
-        surface_(grid, model, latitude_deg, land_fraction, height_m),
+        surface_(grid, model, latitude_deg, land_fraction, height_m, glacier_fraction),
         advection_(grid, model.advected_heat_j_m2_k, winds),
         ocean_(size_),
         diffusivity_(size_),
@@ -357,11 +393,15 @@ class PeriodicYear {
 TemperatureCycle solve_energy_balance(const Grid& grid, const EnergyBalance& model, bool retrograde,
                                       std::span<const double> latitude_deg,
                                       std::span<const float> land_fraction,
-                                      std::span<const float> height_m, const HeatWinds& winds) {
+                                      std::span<const float> height_m, const HeatWinds& winds,
+                                      std::span<const float> glacier_fraction) {
   check_sizes("solve_energy_balance", grid.ny(), {{"latitude_deg", latitude_deg.size()}});
   check_sizes("solve_energy_balance", grid.size(),
-              {{"land_fraction", land_fraction.size()}, {"height_m", height_m.size()}});
-  return PeriodicYear(grid, model, retrograde, latitude_deg, land_fraction, height_m, winds)
+              {{"land_fraction", land_fraction.size()},
+               {"height_m", height_m.size()},
+               {"glacier_fraction", glacier_fraction.size(), ArraySize::May::be_empty}});
+  return PeriodicYear(grid, model, retrograde, latitude_deg, land_fraction, height_m, winds,
+                      glacier_fraction)
       .solve();
 }
 

@@ -276,12 +276,14 @@ SeasonalFields SeasonalYear::fields() const {
 SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& model,
                                       std::span<const double> latitude_deg,
                                       std::span<const float> land_fraction,
-                                      std::span<const float> height_m,
-                                      const TerrainAscent& ascent) {
+                                      std::span<const float> height_m, const TerrainAscent& ascent,
+                                      std::span<const float> glacier_fraction) {
   check_sizes("solve_seasonal_climate", grid.ny(), {{"latitude_deg", latitude_deg.size()}});
   check_sizes("solve_seasonal_climate", grid.size(),
-              {{"land_fraction", land_fraction.size()}, {"height_m", height_m.size()}});
-  SeasonalYear year(grid, model, latitude_deg, land_fraction, height_m);
+              {{"land_fraction", land_fraction.size()},
+               {"height_m", height_m.size()},
+               {"glacier_fraction", glacier_fraction.size(), ArraySize::May::be_empty}});
+  SeasonalYear year(grid, model, latitude_deg, land_fraction, height_m, glacier_fraction);
   year.warm();
   constexpr int kRounds = 7, kLevelRounds = 3;
   constexpr double kNearlyClosed = 1e-4, kClosed = 1e-7;

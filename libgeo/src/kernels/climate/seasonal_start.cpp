@@ -45,9 +45,9 @@ void SeasonalYear::carry_heat(std::span<const float> month_c, std::span<const do
 /// Temperatures of the months, and all that follows from them alone.
 void SeasonalYear::warm() {
   const int ny = grid_.ny();
-  const TemperatureCycle temperature =
-      solve_energy_balance(grid_, model_.energy, model_.circulation.retrograde, latitude_deg_,
-                           land_, height_m_, [this](auto... fields) { carry_heat(fields...); });
+  const TemperatureCycle temperature = solve_energy_balance(
+      grid_, model_.energy, model_.circulation.retrograde, latitude_deg_, land_, height_m_,
+      [this](auto... fields) { carry_heat(fields...); }, glacier_);
   // Evaporation in series with the energy that the sun gives through the year.
   constexpr double kWattsEvaporating = 28.36;
   most_evaporation_mm_d_.resize(ny);

@@ -36,12 +36,14 @@ struct AirOfMonth {
 class SeasonalYear {
  public:
   SeasonalYear(const Grid& grid, const SeasonalClimate& model, std::span<const double> latitude_deg,
-               std::span<const float> land_fraction, std::span<const float> height_m)
+               std::span<const float> land_fraction, std::span<const float> height_m,
+               std::span<const float> glacier_fraction)
       : grid_(grid),
         model_(model),
         latitude_deg_(latitude_deg),
         land_(land_fraction),
         height_m_(height_m),
+        glacier_(glacier_fraction),
         size_(static_cast<std::size_t>(grid.size())),
         ascent_(size_, 1.0F),
         has_sea_(model.moisture.evaporation_velocity_1_d > 0.0 &&
@@ -84,7 +86,7 @@ class SeasonalYear {
   const Grid& grid_;
   const SeasonalClimate& model_;
   std::span<const double> latitude_deg_;
-  std::span<const float> land_, height_m_;
+  std::span<const float> land_, height_m_, glacier_;
   std::size_t size_;
   std::array<AirOfMonth, kMonths> months_;
   std::vector<float> ascent_;  ///< of single ranges

@@ -7,7 +7,7 @@
 
 namespace geo {
 
-FrostOfYear frost_of_year(const SnowLaw& law, double mean_c, double range_k) {
+FrostOfYear frost_of_year(const SnowLaw& law, double mean_c, double range_k, double summer_rain) {
   // Twelve months of a cosine are seven temperatures, those between the ends twice.
   constexpr int kHalf = 6;
   static const std::array<double, kHalf + 1> kCosine = [] {
@@ -23,14 +23,14 @@ FrostOfYear frost_of_year(const SnowLaw& law, double mean_c, double range_k) {
     const double frost = 0.5 * std::erfc(t / std::numbers::sqrt2);
     const double warmth = per_root * std::exp(-0.5 * t * t) + t * (1.0 - frost);
     year.degree_days += weight * law.scatter_k * law.year_d * std::max(0.0, warmth);
-    year.snow_share += weight * frost;
+    year.snow_share += weight * (1.0 + summer_rain * kCosine[m]) * frost;
   }
   return year;
 }
 
 double snow_balance_m_yr(const SnowLaw& law, double mean_c, double range_k,
-                         double precipitation_mm_yr) {
-  const FrostOfYear year = frost_of_year(law, mean_c, range_k);
+                         double precipitation_mm_yr, double summer_rain) {
+  const FrostOfYear year = frost_of_year(law, mean_c, range_k, summer_rain);
   const double snow_mm = year.snow_share * precipitation_mm_yr;
   const double melted_mm = std::min(snow_mm, law.snow_melt_mm_k_d * year.degree_days);
   const double lost_mm = std::max(0.0, melted_mm - law.refreezing * snow_mm);

@@ -18,10 +18,11 @@ namespace geo {
 namespace {
 
 /// The model's constants on this planet: its sun's path, its air.
-SeasonalClimate on_planet(SeasonalClimate model, const Planet& planet, double greenhouse_k) {
+SeasonalClimate on_planet(SeasonalClimate model, const Planet& planet, double greenhouse_k,
+                          double colder_k) {
   model.energy.orbit = {planet.obliquity_deg, planet.eccentricity, planet.perihelion_deg};
   const double warming_k = greenhouse_k * (std::log1p(planet.pressure_bar) - std::log1p(1.0));
-  model.energy.outgoing_w_m2 -= model.energy.outgoing_slope_w_m2_k * warming_k;
+  model.energy.outgoing_w_m2 -= model.energy.outgoing_slope_w_m2_k * (warming_k - colder_k);
   model.energy.diffusivity_w_m2_k *= planet.pressure_bar;  // the mass that carries the heat
   return model;
 }
@@ -149,7 +150,11 @@ class ClimateStage final : public Stage {
     const auto size = static_cast<std::size_t>(frame.planet().size());
     std::vector<float> land(size), height_m(size);
     frame.planet_topography(elevation, land, height_m);
-    const auto model = on_planet(p_.seasonal, context.planet, p_.blueprint.greenhouse_k);
+    const auto ice_m = io.read_optional(field::ice_thickness);
+    std::vector<float> glaciers;
+    if (!ice_m.empty()) glaciers = frame.planet_glaciers(ice_m, land);
+    const auto model =
+        on_planet(p_.seasonal, context.planet, p_.blueprint.greenhouse_k, p_.colder_k);
     const auto topography_size = static_cast<std::size_t>(frame.topography().size());
     std::vector<float> topography_land(topography_size), topography_height(topography_size),
         coverage(topography_size);
@@ -166,7 +171,7 @@ class ClimateStage final : public Stage {
       };
     }
     const SeasonalFields fields = solve_seasonal_climate(
-        frame.planet(), model, frame.planet_latitudes_deg(), land, height_m, ascent_of);
+        frame.planet(), model, frame.planet_latitudes_deg(), land, height_m, ascent_of, glaciers);
     context.advance(0.5);
     const DimmedSun dimmed =
         dim_the_sun(model.energy, closed_formulas ? &p_.blueprint : nullptr, context);
@@ -216,7 +221,7 @@ class ClimateStage final : public Stage {
   StageInfo info_{"climate",
                   "temperature, winds and rain from insolation, topography and the sea",
                   {&field::elevation},
-                  {},
+                  {&field::ice_thickness},
                   {&field::temperature, &field::temperature_range, &field::precipitation,
                    &field::precipitation_seasonality, &field::wind_east, &field::wind_north,
                    &field::distance_to_coast, &field::potential_evapotranspiration,

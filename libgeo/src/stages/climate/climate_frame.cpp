@@ -101,6 +101,23 @@ void ClimateFrame::planet_topography(std::span<const float> elevation,
   }
 }
 
+std::vector<float> ClimateFrame::planet_glaciers(std::span<const float> ice_thickness_m,
+                                                 std::span<const float> land_fraction) const {
+  constexpr float kWhole_m = 100.0F;  // glaciers that cover a part of a cell are about so thick
+  std::vector<float> covered(ice_thickness_m.size()), glaciers(land_fraction.size());
+#pragma omp parallel for schedule(static)
+  for (std::size_t cell = 0; cell < covered.size(); ++cell) {
+    covered[cell] = std::min(1.0F, ice_thickness_m[cell] / kWhole_m);
+  }
+  on_planet_->average(covered, glaciers);
+  for (std::size_t cell = 0; cell < glaciers.size(); ++cell) {
+    if (glaciers[cell] > 0.0F) {
+      glaciers[cell] = std::min(1.0F, glaciers[cell] / std::max(1e-6F, land_fraction[cell]));
+    }
+  }
+  return glaciers;
+}
+
 void ClimateFrame::continue_edge(std::span<float> coverage, std::span<float> land_fraction,
                                  std::span<float> height_m) const {
   constexpr double kReach_m = 1.0e6;

@@ -39,6 +39,9 @@ class ClimateFrame {
   /// planet, its edge continues for about 1000 km (`surroundings` "edge") before the sea begins.
   void planet_topography(std::span<const float> elevation, std::span<float> land_fraction,
                          std::span<float> height_m) const;
+  /// Share of each cell's land that ice covers, from its mean thickness; `land_fraction` as above.
+  [[nodiscard]] std::vector<float> planet_glaciers(std::span<const float> ice_thickness_m,
+                                                   std::span<const float> land_fraction) const;
 
  private:
   void continue_edge(std::span<float> coverage, std::span<float> land_fraction,

@@ -12,14 +12,20 @@ namespace {
 
 constexpr int kMostColumns = 512;
 
-/// The stage `climate` with the settings that it has in a run; currents of the sea are left out.
-std::unique_ptr<Stage> climate_stage_of(std::span<const Parameter> configuration) {
+/// The stage `climate` with the settings that it has in a run, in the air of another time; currents
+/// of the sea are left out.
+std::unique_ptr<Stage> climate_stage_of(std::span<const Parameter> configuration,
+                                        const AirOfTime& air) {
   ClimateParameters land;
   land.solves_currents = false;
+  land.colder_k = air.colder_k;
   auto stage = make_climate_stage(land);
   for (const Parameter& parameter : stage->parameters()) {
     if (const Parameter* outside = find_parameter(configuration, parameter.name)) {
       parameter.set(outside->value());
+    }
+    if (parameter.name == "climate.resolution_deg") {
+      parameter.set(std::min(parameter.max, air.coarser * std::get<double>(parameter.value())));
     }
   }
   return stage;
@@ -32,16 +38,21 @@ bool has_climate(const Grid& grid, const Context& context) {
          find_parameter(context.configuration, "climate.model") != nullptr;
 }
 
-LandClimate climate_of_land(const Grid& grid, std::span<const float> elevation_m,
-                            Context& context) {
-  const int nx = std::min(grid.nx(), kMostColumns);
-  const int ny = std::min(grid.ny(), kMostColumns / 2);
-  State scratch(std::make_shared<const Grid>(Grid::sphere(nx, ny, grid.figure())));
-  const Raster fine = raster_of(grid), coarse = raster_of(scratch.grid());
-  const std::span<float> height_m = scratch.update(field::elevation);
-  resample_raster(fine, elevation_m, coarse, height_m, grid.figure());
+Grid climate_grid(const Grid& grid) {
+  return Grid::sphere(std::min(grid.nx(), kMostColumns), std::min(grid.ny(), kMostColumns / 2),
+                      grid.figure());
+}
 
-  const auto stage = climate_stage_of(context.configuration);
+LandClimate climate_of_surface(const std::shared_ptr<const Grid>& grid,
+                               std::span<const float> surface_m, std::span<const float> ice_m,
+                               const AirOfTime& air, Context& context) {
+  State scratch(grid);
+  const std::span<float> height_m = scratch.update(field::elevation);
+  std::copy(surface_m.begin(), surface_m.end(), height_m.begin());
+  if (!ice_m.empty()) {
+    std::copy(ice_m.begin(), ice_m.end(), scratch.update(field::ice_thickness).begin());
+  }
+  const auto stage = climate_stage_of(context.configuration, air);
   Context inner;
   inner.planet = context.planet;
   inner.seed = context.seed;
@@ -50,22 +61,34 @@ LandClimate climate_of_land(const Grid& grid, std::span<const float> elevation_m
   stage->run(io, inner);
 
   LandClimate climate;
-  climate.between = std::make_shared<const RowResampling>(coarse, fine, grid.figure());
   const auto keep = [](std::span<const float> values) {
     return std::vector<float>(values.begin(), values.end());
   };
   climate.precipitation_mm_yr = keep(scratch.read(field::precipitation));
   climate.potential_mm_yr = keep(scratch.read(field::potential_evapotranspiration));
   climate.range_k = keep(scratch.read(field::temperature_range));
+  climate.summer_rain = keep(scratch.read(field::precipitation_seasonality));
   climate.sea_level_temperature_c = keep(scratch.read(field::temperature));
   for (std::size_t c = 0; c < height_m.size(); ++c) {
     climate.sea_level_temperature_c[c] += kLapse_K_m * std::max(0.0F, height_m[c]);
   }
+  climate.ice_m = keep(ice_m);
   return climate;
 }
 
-double climate_of_land_seconds(std::span<const Parameter> configuration) {
-  return climate_stage_of(configuration)->cost(configuration).fixed_s;
+LandClimate climate_of_land(const Grid& grid, std::span<const float> elevation_m,
+                            Context& context) {
+  const auto coarse = std::make_shared<const Grid>(climate_grid(grid));
+  std::vector<float> height_m(static_cast<std::size_t>(coarse->size()));
+  const Raster fine = raster_of(grid), raster = raster_of(*coarse);
+  resample_raster(fine, elevation_m, raster, height_m, grid.figure());
+  LandClimate climate = climate_of_surface(coarse, height_m, {}, {}, context);
+  climate.between = std::make_shared<const RowResampling>(raster, fine, grid.figure());
+  return climate;
+}
+
+double climate_of_land_seconds(std::span<const Parameter> configuration, const AirOfTime& air) {
+  return climate_stage_of(configuration, air)->cost(configuration).fixed_s;
 }
 
 }  // namespace geo

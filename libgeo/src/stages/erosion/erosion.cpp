@@ -7,6 +7,7 @@
 
 #include "climate_of_land.hpp"
 #include "erosion_run.hpp"
+#include "icy_climate.hpp"
 
 namespace geo {
 namespace {
@@ -32,8 +33,9 @@ class ErosionStage final : public Stage {
     const double climates =
         follows_rain ? std::min(static_cast<double>(parameters_.climates), steps) : 0.0;
     const double ice_ns = follows_rain && parameters_.freezes() ? kIce_ns : 0.0;
+    const double ice_s = ice_ns > 0.0 ? icy_climate_seconds(configuration) : 0.0;
     return {.per_cell_ns = kStep_ns * steps + ice_ns,
-            .fixed_s = climates * climate_of_land_seconds(configuration),
+            .fixed_s = climates * climate_of_land_seconds(configuration) + ice_s,
             .cell_bytes = 137.0,
             .fixed_bytes = kAir_bytes};
   }

@@ -11,6 +11,7 @@
 #include "geo/stages/erosion/ground.hpp"
 #include "geo/stages/erosion/seas.hpp"
 #include "geo/stages/erosion/wear_down.hpp"
+#include "icy_climate.hpp"
 
 namespace geo {
 namespace {
@@ -186,9 +187,11 @@ void ErosionRun::finish() {
     if (reshape([&] { return join_seas(p_, grid_, elevation_m_); })) keep_share();
   }
   strike(p_.steps);
-  if (ice_) ice_->settle_today(*climate_, elevation_m_);
   climate_.reset();  // files have the area
-  if (ice_) landscape_.sink(ice_->sunk_m());
+  if (ice_) {
+    ice_->settle_today(icy_climate(p_, grid_, elevation_m_, context_), elevation_m_);
+    landscape_.sink(ice_->sunk_m());
+  }
   cut_last_sills();
 }
 

@@ -59,28 +59,63 @@ std::vector<double> IceAge::work(const LandClimate& climate, double years_yr,
   return let_out_m3;
 }
 
+void IceAge::follow(const LandClimate& climate, double warmer_k, int rounds,
+                    std::span<const float> elevation_m) {
+  settle(climate, {-warmer_k, 0.0, rounds}, elevation_m);
+  measure(elevation_m);
+  weigh(elevation_m);
+}
+
 void IceAge::settle_today(const LandClimate& climate, std::span<const float> elevation_m) {
   constexpr int kRounds = 3, kTurns = 2;
   const Age today{0.0, 0.0, kRounds};
+  lay(climate);
   settle(climate, today, elevation_m);
   // The ground sinks under the ice, and the ice changes with the ground.
   for (int turn = 0; turn < kTurns; ++turn) {
     weigh(elevation_m);
     settle(climate, today, elevation_m);
   }
-  thickness_m_.assign(elevation_m.size(), 0.0F);
+  measure(elevation_m);
 #pragma omp parallel for schedule(static)
   for (Index c = 0; c < grid_.size(); ++c) {
     if (elevation_m[c] < 0.0F) continue;
-    if (ground_[c] == IceGround::iced) {
-      const float whole = surface_.height_m.of(c) - bed_m_[c];
-      thickness_m_[c] = flux_.share.of(c) * whole;
-      if (thickness_m_[c] < kThinnest_m) thickness_m_[c] = 0.0F;
-    }
     sunk_m_[c] =
         std::clamp(sunk_m_[c], 0.0F, std::max(0.0F, elevation_m[c] + thickness_m_[c] - kAshore_m));
   }
   melt_away();
+}
+
+/// Ice begins where the climate has it.
+void IceAge::lay(const LandClimate& climate) {
+  next_.resize(static_cast<std::size_t>(grid_.size()), IceGround::bare);
+  if (climate.ice_m.empty()) return;
+  LandClimate::Reader ice(climate, grid_, climate.ice_m);
+  for (int j = 0; j < grid_.ny(); ++j) {
+    const auto row = ice.row(j);
+    for (int i = 0; i < grid_.nx(); ++i) {
+      if (row[i] >= kThinnest_m) next_[grid_.cell(i, j)] = IceGround::iced;
+    }
+  }
+}
+
+/// Thickness on land of the ice that has settled.
+void IceAge::measure(std::span<const float> elevation_m) {
+  thickness_m_.assign(elevation_m.size(), 0.0F);
+#pragma omp parallel for schedule(static)
+  for (Index c = 0; c < grid_.size(); ++c) {
+    if (elevation_m[c] < 0.0F || ground_[c] != IceGround::iced) continue;
+    const float mean_m = flux_.share.of(c) * (surface_.height_m.of(c) - bed_m_[c]);
+    if (mean_m >= kThinnest_m) thickness_m_[c] = mean_m;
+  }
+}
+
+std::vector<float> IceAge::surface_m(std::span<const float> elevation_m) const {
+  std::vector<float> surface(elevation_m.begin(), elevation_m.end());
+  for (std::size_t c = 0; c < thickness_m_.size(); ++c) {
+    if (thickness_m_[c] > 0.0F) surface[c] += thickness_m_[c] - sunk_m_[c];
+  }
+  return surface;
 }
 
 /// What only ice that works needs leaves memory; its sums stay.
@@ -185,6 +220,8 @@ IceAge::Cold IceAge::cold_cells(const LandClimate& climate) const {
   cold.sea_level_temperature_c = gather(climate.sea_level_temperature_c);
   cold.range_k = gather(climate.range_k);
   cold.precipitation_mm_yr = gather(climate.precipitation_mm_yr);
+  cold.summer_rain = gather(climate.summer_rain);
+  cold.knows_ice = !climate.ice_m.empty();
   return cold;
 }
 
@@ -198,9 +235,11 @@ void IceAge::balance(const Cold& cold, const Age& age, std::span<const float> el
     const double cooling = cooling_of_row[grid_.row(c)];
     const double ground = std::max(0.0F, elevation_m[c]), surface = surface_.height_m.of(c);
     const double mean_c = cold.sea_level_temperature_c[n] - cooling - kLapse_K_m * surface;
-    const double colder_k = cooling + kLapse_K_m * std::max(0.0, surface - ground);
+    const double higher_m = cold.knows_ice ? 0.0 : std::max(0.0, surface - ground);
+    const double colder_k = cooling + kLapse_K_m * higher_m;
     const double rain = cold.precipitation_mm_yr[n] * std::exp(-kDrier_1_K * colder_k);
-    balance_m_yr[c] = static_cast<float>(snow_balance_m_yr(snow_, mean_c, cold.range_k[n], rain));
+    balance_m_yr[c] = static_cast<float>(
+        snow_balance_m_yr(snow_, mean_c, cold.range_k[n], rain, cold.summer_rain[n]));
   }
 }
 

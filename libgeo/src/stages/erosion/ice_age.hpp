@@ -27,10 +27,17 @@ class IceAge {
   /// Lets the ice of `years_yr` work on a surface; see IceWork.
   [[nodiscard]] std::vector<double> work(const LandClimate& climate, double years_yr,
                                          std::span<float> elevation_m);
-  /// Ice on the land of today, once its surface is finished.
+  /// Lets the ice grow or shrink for some rounds in a climate, or in one that is `warmer_k` warmer.
+  void follow(const LandClimate& climate, double warmer_k, int rounds,
+              std::span<const float> elevation_m);
+  /// Ice on the land of today, once its surface is finished: what lives on of that in the climate.
   void settle_today(const LandClimate& climate, std::span<const float> elevation_m);
 
-  /// Of today, m; mean of the cell. With it all that is left of the ice goes.
+  /// Of the time settled last, m; mean of the cell. Empty before.
+  [[nodiscard]] std::span<const float> thickness_m() const { return thickness_m_; }
+  /// Of that ice and of the ground that it holds down.
+  [[nodiscard]] std::vector<float> surface_m(std::span<const float> elevation_m) const;
+  /// The same of today. With it all that is left of the ice goes.
   [[nodiscard]] std::vector<float> take_thickness_m();
   /// By how much its weight holds down the land beneath and beside it, m; the surface of the ice,
   /// and land without it, stay above the sea.
@@ -48,13 +55,16 @@ class IceAge {
   /// The climate of the cells that ice may come to, which are few.
   struct Cold {
     std::vector<Index> cells;  ///< ascending
-    std::vector<float> sea_level_temperature_c, range_k, precipitation_mm_yr;
+    std::vector<float> sea_level_temperature_c, range_k, precipitation_mm_yr, summer_rain;
+    bool knows_ice = false;  ///< whether they are of the surface of the ice, not of the ground
   };
   void settle(const LandClimate& climate, const Age& age, std::span<const float> elevation_m);
   void sort_ground(const LandClimate& climate, const Age& age, std::span<const float> elevation_m);
   [[nodiscard]] Cold cold_cells(const LandClimate& climate) const;
   void balance(const Cold& cold, const Age& age, std::span<const float> elevation_m,
                std::span<float> balance_m_yr) const;
+  void lay(const LandClimate& climate);
+  void measure(std::span<const float> elevation_m);
   void melt_away();
   void weigh(std::span<const float> elevation_m);
   [[nodiscard]] double cooling_k(const Age& age, int row) const;

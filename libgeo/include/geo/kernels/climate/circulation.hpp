@@ -28,7 +28,7 @@ struct Circulation {
   double subtropical_high_hpa = 2.5;  ///< above the equatorial trough
   double subpolar_low_hpa = 5.55;     ///< below the subtropical high
   double polar_high_hpa = 1.51;       ///< above the subpolar low
-  double thermal_low_hpa_k = 0.708;   ///< fall of pressure per kelvin of heat anomaly
+  double thermal_low_hpa_k = 0.66;    ///< fall of pressure per kelvin of heat anomaly
   double cold_high_share = 0.664;     ///< of it, where the anomaly is cold and shallow
 
   /// Angular velocity, negative if retrograde.

@@ -16,37 +16,41 @@ namespace geo {
 struct EnergyBalance {
   double solar_constant_w_m2 = 1361.0;
   Orbit orbit;
-  double outgoing_w_m2 = 193;              ///< A at 0 degC
+  double outgoing_w_m2 = 191;              ///< A at 0 degC
   double outgoing_slope_w_m2_k = 2.4;      ///< B
-  double diffusivity_w_m2_k = 0.61;        ///< D at 15 degC, on the unit sphere
-  double moist_transport = 1.22;           ///< share of latent heat in D's change with temperature
-  double advected_heat_j_m2_k = 6.82e+06;  ///< of the air that winds move
-  double coalbedo = 0.663;                 ///< mean absorbed share without snow and ice
-  double coalbedo_p2 = -0.115;             ///< its second Legendre coefficient in latitude
-  double snow_coalbedo = 0.65;             ///< of snow that melts in summer
-  double ice_coalbedo = 0.3;               ///< of land whose snow stays
-  double sea_ice_coalbedo = 0.601;         ///< of sea ice, broken and wet in summer
-  double snow_temperature_c = 0;           ///< monthly mean at which half the land is under snow
-  double ice_temperature_c = -8.72;        ///< annual mean at which half the sea is ice
+  double diffusivity_w_m2_k = 0.634;       ///< D at 15 degC, on the unit sphere
+  double moist_transport = 1.28;           ///< share of latent heat in D's change with temperature
+  double advected_heat_j_m2_k = 6.66e+06;  ///< of the air that winds move
+  double coalbedo = 0.664;                 ///< mean absorbed share without snow and ice
+  double coalbedo_p2 = -0.121;             ///< its second Legendre coefficient in latitude
+  double snow_coalbedo = 0.59;             ///< of snow beneath trees
+  double open_snow_coalbedo = 0.45;        ///< of snow where summers are too cold for trees
+  double tree_temperature_c = 10;          ///< warmest month at which half the land has trees
+  double ice_coalbedo = 0.274;             ///< of land whose snow stays
+  double glacier_coalbedo = 0.45;          ///< of land ice that melts in summer
+  double sea_ice_coalbedo = 0.56;          ///< of sea ice, broken and wet in summer
+  double snow_temperature_c = -2.3;        ///< monthly mean at which half the land is under snow
+  double ice_temperature_c = -9;           ///< annual mean at which half the sea is ice
   double ice_width_k = 2.45;               ///< width of both transitions; 0: no ice and snow at all
   double land_heat_capacity_w_yr_m2_k = 0.21;
-  double ocean_heat_capacity_w_yr_m2_k = 4.87;
-  double sea_exchange_w_m2_k = 21.3;  ///< heat and vapour from sea to air, per kelvin, at 15 degC
+  double freezing_heat_w_yr_m2 = 3.06;  ///< that the ground's water and snow give as they freeze
+  double ocean_heat_capacity_w_yr_m2_k = 5.3;
+  double sea_exchange_w_m2_k = 17.3;  ///< heat and vapour from sea to air, per kelvin, at 15 degC
   double sunlit_air_share = 0.251;    ///< of the absorbed sunlight that air over the sea absorbs
-  double ice_heat_capacity_w_yr_m2_k = 0.926;  ///< of sea ice that does not melt
-  double melt_w_m2_k = 6.63;     ///< heat that melting sea ice takes for each kelvin above -1 degC
-  double gyre_heat_w_m2 = 14.5;  ///< heat that gyres release along a western coast of an ocean
-  double gyre_reach_km = 1.6e+03;  ///< e-folding distance of a coast's influence
-  double subpolar_heat_w_m2 = 53;  ///< heat that subpolar gyres release along an eastern coast
+  double ice_heat_capacity_w_yr_m2_k = 0.843;  ///< of sea ice that does not melt
+  double melt_w_m2_k = 6.43;         ///< heat that melting ice takes for each kelvin above -1 degC
+  double gyre_heat_w_m2 = 14.5;      ///< heat that gyres release along a western coast of an ocean
+  double gyre_reach_km = 1.6e+03;    ///< e-folding distance of a coast's influence
+  double subpolar_heat_w_m2 = 55.9;  ///< heat that subpolar gyres release along an eastern coast
   double subpolar_reach_km = 2.43e+03;
-  double blocking_height_m = 1.73e+03;  ///< of topography that halves the heat passing over
+  double blocking_height_m = 1580;  ///< of topography that halves the heat passing over
   double lapse_k_m = 0.0054;
-  double heat_wind_share = 0.223;  ///< of the zonal wind in mid-troposphere that carries heat
+  double heat_wind_share = 0.197;  ///< of the zonal wind in mid-troposphere that carries heat
   double heat_wave_share = 0;      ///< of the winds about warm and cold ground that carries it
   double upwelling_w_m2 = 149;     ///< heat that water welling up along the equator takes
   double upwelling_reach_km = 2.78e+03;  ///< to the west of a coast, over which that falls by e
-  double dry_warming_k_m2_w = 0.027;   ///< by which dry ground is warmer for each W m-2 of sunlight
-  double dry_warming_from_w_m2 = 193;  ///< above this
+  double dry_warming_k_m2_w = 0.0245;  ///< by which dry ground is warmer for each W m-2 of sunlight
+  double dry_warming_from_w_m2 = 202;  ///< above this
 };
 
 /// Share of the heat carried over level ground that passes over a cell of a mean height:
@@ -92,20 +96,24 @@ using HeatWinds =
 /// exchange of heat and vapour, which grows with the annual mean of T (Haney 1971). T_s is
 /// eliminated. By harmonics: for each a sparse linear system with the annual and zonal
 /// mean of u, in whose source all else is found by iteration: the albedo of the months' snow and
-/// ice, the heat that sea ice takes as it melts in summer and gives as it freezes in winter, and
-/// what the winds of each month carry besides, which sums to zero over the planet. F is the
+/// ice, which is never below that of what they lie on, the heat that ice at sea and on land takes
+/// as it melts in summer and gives as it freezes in winter, that of the ground's water likewise,
+/// and what the winds of each month carry besides, which sums to zero over the planet. F is the
 /// advected heat; without `winds` nothing is carried. Throws Bug if a solver does not converge.
 /// Threads: one for each harmonic; the same bits for any number of them.
 ///
-/// @param latitude_deg   per row
-/// @param land_fraction  0..1 per cell
-/// @param height_m       mean elevation of the cell above sea level, 0 at sea
+/// @param latitude_deg      per row
+/// @param land_fraction     0..1 per cell
+/// @param height_m          mean elevation of the cell above sea level, 0 at sea
+/// @param glacier_fraction  of the cell's land, 0..1; empty: no ice lies on land. Where none does,
+///                          land is bright as its temperature has it snow
 /// Throws Bug where sizes differ.
 [[nodiscard]] TemperatureCycle solve_energy_balance(const Grid& grid, const EnergyBalance& model,
                                                     bool retrograde,
                                                     std::span<const double> latitude_deg,
                                                     std::span<const float> land_fraction,
                                                     std::span<const float> height_m,
-                                                    const HeatWinds& winds = {});
+                                                    const HeatWinds& winds = {},
+                                                    std::span<const float> glacier_fraction = {});
 
 }  // namespace geo

@@ -26,7 +26,7 @@ struct SeasonalClimate {
   double itcz_share = 1;         ///< of the thermal equator's excursion that the cells follow
   double itcz_lag_month = 1;     ///< by which the trough follows the warmth of the air
   double itcz_locality = 0;      ///< how far the trough follows its meridian's warmest latitude
-  double sensible_w_m2_k = 3.2;  ///< heating of the air over ground warmer than its parallel
+  double sensible_w_m2_k = 2.9;  ///< heating of the air over ground warmer than its parallel
   double base_diffusivity_m2_s = 2.9e+06;
   double eddy_diffusivity_m2_s = 2e+05;  ///< at the reference temperature gradient
   double eddy_rain = 0.15;  ///< rain-out by eddies there, whether the mean air rises or sinks
@@ -79,11 +79,13 @@ using TerrainAscent = std::function<std::vector<float>(std::span<const float> wi
 /// are iterated together. What `ascent` (empty: level ground) lets rain out over one cell the air
 /// lacks over the next; rain and evaporation of the whole surface agree every month. Months run in
 /// parallel; the same bits for any number of threads. `latitude_deg`: one value per row, from south
-/// to north; the others one per cell; Bug otherwise.
+/// to north; the others one per cell, `glacier_fraction` (of the cell's land that ice covers) or
+/// none; Bug otherwise.
 SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& model,
                                       std::span<const double> latitude_deg,
                                       std::span<const float> land_fraction,
                                       std::span<const float> height_m,
-                                      const TerrainAscent& ascent = {});
+                                      const TerrainAscent& ascent = {},
+                                      std::span<const float> glacier_fraction = {});
 
 }  // namespace geo

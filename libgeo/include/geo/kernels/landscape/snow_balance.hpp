@@ -24,13 +24,16 @@ struct FrostOfYear {
 ///
 ///   degree-days   s φ(T/s) + T Φ(T/s) a day      snow   Φ(-T/s)
 ///
-/// (Calov & Greve 2005), precipitation even through the year. Finite arguments; range >= 0.
-[[nodiscard]] FrostOfYear frost_of_year(const SnowLaw& law, double mean_c, double range_k);
+/// (Calov & Greve 2005). Precipitation follows the same cosine, by `summer_rain` of its mean: 0 is
+/// even through the year, 1 none in the coldest month, -1 none in the warmest. Finite arguments;
+/// range >= 0.
+[[nodiscard]] FrostOfYear frost_of_year(const SnowLaw& law, double mean_c, double range_k,
+                                        double summer_rain = 0.0);
 
 /// Mass balance of a surface under that year, m of ice a year: snow, less what degree-days melt,
 /// first snow, beyond what freezes in it again, then ice. What rains runs off. The balance falls as
 /// the mean temperature rises.
 [[nodiscard]] double snow_balance_m_yr(const SnowLaw& law, double mean_c, double range_k,
-                                       double precipitation_mm_yr);
+                                       double precipitation_mm_yr, double summer_rain = 0.0);
 
 }  // namespace geo

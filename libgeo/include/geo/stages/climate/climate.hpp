@@ -27,6 +27,8 @@ struct ClimateParameters {
   /// No key of its own: off where nobody reads the currents of the sea, which are then 0. Nothing
   /// else depends on them.
   bool solves_currents = true;
+  /// No key of its own: by how much the planet would be colder but for what snow and ice add.
+  double colder_k = 0.0;
 
   [[nodiscard]] std::vector<Parameter> declarations();
 };

@@ -15,8 +15,11 @@ namespace geo {
 /// known on a coarser grid, per cell of that, and how rows of the planet lie between them.
 struct LandClimate {
   std::vector<float> precipitation_mm_yr, potential_mm_yr;
-  std::vector<float> sea_level_temperature_c;      ///< annual mean, brought down to the sea
-  std::vector<float> range_k;                      ///< warmest less coldest month
+  std::vector<float> sea_level_temperature_c;  ///< annual mean, brought down to the sea
+  std::vector<float> range_k;                  ///< warmest less coldest month
+  std::vector<float> summer_rain;  ///< how far precipitation follows temperature, as in SnowLaw
+  /// Ice on the surface that this is the climate of, mean of the cell; empty: of bare ground.
+  std::vector<float> ice_m{};
   std::shared_ptr<const RowResampling> between{};  ///< null: values are those of the cells
 
   /// What one thread reads the rows of a field with.
