@@ -163,6 +163,7 @@ void advance_both(SphereTectonics& follower, SphereTectonics& leader) {
   find_margins(follower);
   shape_crust(follower);
   end_step(follower);
+  if (sink_slabs(follower)) derive_followed_plates(follower);
   repeat(follower, leader.step.changes, repeated, leader.step.plates.size(), leader.step.pairs);
   follower.state.plates = leader.step.plates;
   follower.state.pairs = leader.step.pairs;

@@ -322,6 +322,8 @@ std::string_view word_for(SphereEvent::Kind kind) {
       return "plate-rifting";
     case SphereEvent::Kind::subduction_initiation:
       return "subduction-initiation";
+    case SphereEvent::Kind::back_arc:
+      return "back-arc-opening";
   }
   return "";
 }
