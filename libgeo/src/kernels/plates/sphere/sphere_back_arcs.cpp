@@ -91,6 +91,35 @@ int plate_of_life(const SphereState& state, std::int16_t id) {
   return -1;
 }
 
+/// An arc that leaves the plate behind it.
+struct Basin {
+  int arc, behind;
+  Vector3 centre;  ///< of the arc, unit vector
+};
+std::vector<Basin> opening_basins(const SphereTectonics& model) {
+  std::vector<Basin> basins;
+  const int plates = std::min<int>(model.partition.plates(), std::ssize(model.state.plates));
+  for (int p = 0; p < plates; ++p) {
+    const SpherePlate& plate = model.state.plates[p];
+    if (!plate.alive || plate.carrier >= 0 || !is_back_arc(model.state, p)) continue;
+    const Vector3 centre = times(model.frame[p], model.partition.cap(p).centre);
+    basins.push_back(
+        {p, plate_of_life(model.state, model.state.lives[plate.id].parent), centre});
+  }
+  return basins;
+}
+
+/// Whether a sample is of an arc or near it on the plate behind.
+bool is_beside(const SphereTectonics& model, std::span<const Basin> basins, std::int32_t sample) {
+  const std::int16_t own = model.state.crust.plate[sample];
+  const int root = model.state.root(own);
+  const double is_near = std::cos(kTrench_km / model.settings.radius_km);
+  const Vector3 at = times(model.frame[own], model.mesh->samples().position(sample));
+  return std::ranges::any_of(basins, [&](const Basin& basin) {
+    return basin.arc == root || (basin.behind == root && dot(at, basin.centre) > is_near);
+  });
+}
+
 }  // namespace
 
 bool is_back_arc(const SphereState& state, int plate) {
@@ -99,15 +128,17 @@ bool is_back_arc(const SphereState& state, int plate) {
 }
 
 /// Plates lie flat over each other: without this a basin would open onto the floor that has gone
-/// below the arc since the crust was resampled.
+/// below the arc, and below what is behind it, since the crust was resampled.
 bool sink_slabs(SphereTectonics& model) {
-  if (model.settings.back_arc_per_myr <= 0.0) return false;
+  const std::vector<Basin> basins = opening_basins(model);
+  if (basins.empty()) return false;
   SphereCrust& crust = model.state.crust;
   const SphereMargins& margins = model.margins;
   bool has_sunk = false;
   for (const std::int32_t i : margins.contacts) {
     if (margins.hidden[i] == 0 || crust.continental[i] != 0 || crust.plate[i] < 0) continue;
     const std::int32_t above = margins.partner[i], trench = margins.nearest_trench[above];
+    if (crust.plate[above] < 0 || !is_beside(model, basins, above)) continue;
     if (trench >= 0 && model.distance_km(above, margins.trenches[trench].sample) < kSunk_km) {
       continue;
     }

@@ -163,11 +163,12 @@ void advance_both(SphereTectonics& follower, SphereTectonics& leader) {
   find_margins(follower);
   shape_crust(follower);
   end_step(follower);
-  if (sink_slabs(follower)) derive_followed_plates(follower);
   repeat(follower, leader.step.changes, repeated, leader.step.plates.size(), leader.step.pairs);
   follower.state.plates = leader.step.plates;
   follower.state.pairs = leader.step.pairs;
+  follower.state.lives = leader.state.lives;
   derive_plates_of_same_samples(follower);
+  if (sink_slabs(follower)) derive_followed_plates(follower);
   flow_lower_crust(follower);
   spread_roots(follower);
   if (leader.budget.resampled) {

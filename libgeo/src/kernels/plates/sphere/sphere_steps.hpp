@@ -130,8 +130,8 @@ void remember_penetration(SphereTectonics& model);
 /// Plates rift, and old margins begin to subduct, by chance.
 void rift_by_chance(SphereTectonics& model);
 void initiate_subduction_by_chance(SphereTectonics& model);
-/// Needs margins. Floor well below other plates sinks into the mantle where back-arc basins open;
-/// tells whether any has, after which plates are to be derived.
+/// Needs margins. Floor well below arcs that follow their trenches, and below what is behind them,
+/// sinks into the mantle. Tells whether any has, after which plates are to be derived.
 bool sink_slabs(SphereTectonics& model);
 /// Needs margins. Arcs above old slabs break off and follow their trenches, by chance.
 void open_back_arcs_by_chance(SphereTectonics& model);

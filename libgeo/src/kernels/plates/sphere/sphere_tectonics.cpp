@@ -130,13 +130,13 @@ void advance(SphereTectonics& model) {
   if (!s.by_forces) pull_slabs(model);
   yield_to_links(model, s.by_forces ? balance_forces(model) : drag_below(model));
   end_step(model);
-  if (sink_slabs(model)) derive_plates(model);
   collide_continents(model);
   flow_lower_crust(model);
   spread_roots(model);
   rift_by_chance(model);
   initiate_subduction_by_chance(model);
   open_back_arcs_by_chance(model);
+  if (sink_slabs(model)) derive_plates(model);
   model.step.plates = model.state.plates;
   model.step.pairs = model.state.pairs;
   if (is_due(model)) {
