@@ -103,8 +103,7 @@ std::vector<Basin> opening_basins(const SphereTectonics& model) {
     const SpherePlate& plate = model.state.plates[p];
     if (!plate.alive || plate.carrier >= 0 || !is_back_arc(model.state, p)) continue;
     const Vector3 centre = times(model.frame[p], model.partition.cap(p).centre);
-    basins.push_back(
-        {p, plate_of_life(model.state, model.state.lives[plate.id].parent), centre});
+    basins.push_back({p, plate_of_life(model.state, model.state.lives[plate.id].parent), centre});
   }
   return basins;
 }
