@@ -269,7 +269,7 @@ Pieces pieces_of_plates(const SphereTectonics& model) {
   return pieces;
 }
 
-/// Area of a piece by which it counts as small: that of its continents more than that of floor.
+/// Area by which a plate counts as small: that of its continents more than that of floor.
 double counted_km2(const SphereTectonics& model, std::span<const std::int32_t> piece) {
   const auto& continental = model.state.crust.continental;
   const auto land =
@@ -286,20 +286,26 @@ bool is_young_arc(const SphereState& state, int plate, const SphereSettings& s) 
 
 /// Detached pieces of plates: small ones join a neighbour, large ones are plates of their own that
 /// go on as they did. A plate that is small as a whole joins a neighbour too, unless another one
-/// has just joined it: of two small plates one goes on.
+/// has just joined it: then both are looked at again as one.
 void tidy_pieces(SphereTectonics& model) {
   auto& plate = model.state.crust.plate;
   const auto [pieces, largest] = pieces_of_plates(model);
   std::vector<std::uint64_t> parts_of(model.state.plates.size(), 0);
+  bool must_go_on = false;
   std::vector<std::uint8_t> has_grown(model.state.plates.size() + pieces.size(), 0);
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     const std::vector<std::int32_t>& piece = pieces[k];
     const auto own = plate[piece.front()];
-    const bool is_small = counted_km2(model, piece) <= model.settings.smallest_piece_km2;
     const bool keeps = largest[own] == static_cast<std::int32_t>(k);
-    if (keeps && (!is_small || pieces.size() < 3 || has_grown[own] != 0 ||
-                  is_young_arc(model.state, own, model.settings)))
+    const double area_km2 =
+        keeps ? counted_km2(model, piece) : model.sample_km2() * static_cast<double>(piece.size());
+    const bool is_small = area_km2 <= model.settings.smallest_piece_km2;
+    if (keeps && (!is_small || pieces.size() < 3 || is_young_arc(model.state, own, model.settings)))
       continue;
+    if (keeps && has_grown[own] != 0) {
+      must_go_on = true;
+      continue;
+    }
     if (!is_small) {
       SpherePlate copy = model.state.plates[own];
       copy.id = model.state.begin_life(PlateLife::Origin::piece, copy.id);
@@ -319,6 +325,7 @@ void tidy_pieces(SphereTectonics& model) {
     }
     for (const std::int32_t i : piece) plate[i] = static_cast<std::int16_t>(neighbour);
   }
+  if (must_go_on) tidy_pieces(model);
 }
 
 }  // namespace
@@ -328,7 +335,8 @@ void join_small_pieces(SphereTectonics& model) {
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     const auto own = model.state.crust.plate[pieces[k].front()];
     if (largest[own] == static_cast<std::int32_t>(k)) continue;
-    if (counted_km2(model, pieces[k]) > model.settings.smallest_piece_km2) continue;
+    const double area_km2 = model.sample_km2() * static_cast<double>(pieces[k].size());
+    if (area_km2 > model.settings.smallest_piece_km2) continue;
     const int neighbour = slowest_neighbour(model, pieces[k]);
     if (neighbour < 0) continue;
     for (const std::int32_t i : pieces[k]) {
