@@ -292,6 +292,7 @@ void tidy_pieces(SphereTectonics& model) {
   const auto [pieces, largest] = pieces_of_plates(model);
   std::vector<std::uint64_t> parts_of(model.state.plates.size(), 0);
   bool must_go_on = false;
+  std::vector<std::uint8_t> has_ended(model.state.plates.size() + pieces.size(), 0);
   std::vector<std::uint8_t> has_grown(model.state.plates.size() + pieces.size(), 0);
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     const std::vector<std::int32_t>& piece = pieces[k];
@@ -319,8 +320,13 @@ void tidy_pieces(SphereTectonics& model) {
     }
     const int neighbour = slowest_neighbour(model, piece);
     if (neighbour < 0) continue;
+    if (has_ended[neighbour] != 0) {  // what is left of it is still to go
+      must_go_on = true;
+      continue;
+    }
     has_grown[neighbour] = 1;
     if (keeps) {
+      has_ended[own] = 1;
       model.state.end_life(model.state.plates[own].id, model.state.plates[neighbour].id);
     }
     for (const std::int32_t i : piece) plate[i] = static_cast<std::int16_t>(neighbour);
