@@ -236,6 +236,14 @@ std::vector<Parameter> sphere_collision_rows(PlatesParameters& p) {
            "speed below which continents of which one is thrust 300 km below the other become one "
            "plate; 0: they do so only after plates.sphere.penetration_km",
            "copley2010"),
+      real("plates.sphere.welding_mm_yr", p.sphere.welding_mm_yr, "mm yr-1", 0.0, 1000.0,
+           "speed below which plates beside each other become one when the crust is resampled; 0: "
+           "none do",
+           "gordon1998"),
+      real("plates.sphere.welding_after_myr", p.sphere.welding_after_myr, "Myr", 0.0, 1e4,
+           "time that a rift has to open faster than that, or it fails", "design"),
+      real("plates.sphere.welding_continental", p.sphere.welding_continental, "1", 0.0, 1.0,
+           "share by which that speed is lower where continents border each other", "design"),
       real("plates.sphere.suture_drag", p.sphere.suture_drag, "1", 0.0, 1e6,
            "drag between continents of which one is thrust below the other, over that of "
            "the mantle below a plate; 0: they do not slow each other",
@@ -349,6 +357,9 @@ std::vector<Parameter> sphere_rifting_rows(PlatesParameters& p) {
            "speed at which fragments leave the middle of their plate", "design"),
       real("plates.sphere.rift_onset_myr", p.sphere.rift_onset_myr, "Myr", 0.0, 1000.0,
            "time in which they reach it; 0: at once", "brune2016"),
+      real("plates.sphere.rift_onset_power", p.sphere.rift_onset_power, "1", 0.1, 10.0,
+           "with which power of time they do: above 1 they are slow for long and then fast",
+           "brune2016"),
       real("plates.sphere.plume_rift_share", p.sphere.plume_rift_share, "1", 0.0, 1.0,
            "share of the rifts of plates with a plume below their continents whose arms meet above "
            "it",
@@ -372,6 +383,23 @@ std::vector<Parameter> sphere_rifting_rows(PlatesParameters& p) {
   };
 }
 
+std::vector<Parameter> sphere_back_arc_rows(PlatesParameters& p) {
+  return {
+      real("plates.sphere.back_arc_myr", p.sphere.back_arc_per_myr, "Myr-1", 0.0, 1.0,
+           "rate at which each 1000 km of trench with old floor begin to retreat, and the arc "
+           "above to follow; 0: none does",
+           "sdrolias2006"),
+      real("plates.sphere.back_arc_age_myr", p.sphere.back_arc_age_myr, "Myr", 0.0, 5000.0,
+           "age from which floor that subducts is so old", "sdrolias2006"),
+      real("plates.sphere.back_arc_mm_yr", p.sphere.back_arc_mm_yr, "mm yr-1", 0.0, 1000.0,
+           "most speed at which such an arc leaves the plate behind it", "sdrolias2006"),
+      real("plates.sphere.back_arc_km", p.sphere.back_arc_km, "km", 0.0, 2000.0,
+           "width of such an arc", "sdrolias2006"),
+      real("plates.sphere.back_arc_lasts_myr", p.sphere.back_arc_lasts_myr, "Myr", 0.0, 1000.0,
+           "how long an arc that is too small for a plate goes on as one", "sdrolias2006"),
+  };
+}
+
 std::vector<Parameter> sphere_piece_rows(PlatesParameters& p) {
   return {
       real("plates.sphere.coast_warp_km", p.sphere.coast_warp_km, "km", 0.0, 2000.0,
@@ -380,6 +408,11 @@ std::vector<Parameter> sphere_piece_rows(PlatesParameters& p) {
            "cortial2019"),
       real("plates.sphere.smallest_piece_km2", p.sphere.smallest_piece_km2, "km2", 0.0, 1e8,
            "smaller detached pieces of a plate join a neighbour", "design"),
+      real("plates.sphere.piece_continental_weight", p.sphere.piece_continental_weight, "1", 1.0,
+           100.0,
+           "how many times the area of continents counts there: plates of floor are taken "
+           "over by their neighbours sooner than those of continents",
+           "stock1994"),
       integer("plates.sphere.resampling_least", p.sphere.least_steps, "1", 1, 1000,
               "steps between resamplings, when a plate is as fast as any may be", "cortial2019"),
       integer("plates.sphere.resampling_most", p.sphere.most_steps, "1", 1, 1000,
@@ -390,10 +423,11 @@ std::vector<Parameter> sphere_piece_rows(PlatesParameters& p) {
 }  // namespace
 
 std::vector<Parameter> PlatesParameters::declarations() {
-  std::vector<Parameter> rows = joined(
-      *this, {shared_rows, growth_rows, growth_continent_rows, sphere_drift_rows,
-              sphere_subduction_rows, sphere_force_rows, sphere_collision_rows, sphere_surface_rows,
-              sphere_volcano_rows, sphere_margin_rows, sphere_rifting_rows, sphere_piece_rows});
+  std::vector<Parameter> rows =
+      joined(*this, {shared_rows, growth_rows, growth_continent_rows, sphere_drift_rows,
+                     sphere_subduction_rows, sphere_force_rows, sphere_collision_rows,
+                     sphere_surface_rows, sphere_volcano_rows, sphere_margin_rows,
+                     sphere_rifting_rows, sphere_back_arc_rows, sphere_piece_rows});
   for (Parameter& row : hypsography_parameters(*this)) rows.push_back(std::move(row));
   for (Parameter& row : raster_declarations(raster)) rows.push_back(std::move(row));
   // What all models share, then model by model.

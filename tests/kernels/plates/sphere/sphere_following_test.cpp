@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -110,6 +111,27 @@ TEST(LedPlates, HoldTheCrustThatTheLeaderHasOnThem) {
     same += led.model.state.crust.plate[i] == led.leader.state.crust.plate[there] ? 1 : 0;
   }
   EXPECT_GT(same, 0.9 * world.mesh.size());
+}
+
+TEST(LedPlates, WeldAndOpenBasinsWhereTheLeadersDo) {
+  const SampledSphere leading(8000), world(16000);
+  SphereSettings settings = lively();
+  settings.welding_mm_yr = 8.0;
+  settings.welding_continental = 1.0;
+  settings.back_arc_per_myr = 0.02;
+  settings.back_arc_age_myr = 30.0;
+  settings.back_arc_km = 500.0;
+  SphereTectonics leader(leading.mesh, settings, begin(leading, settings, 3), 3);
+  SphereTectonics model(world.mesh, settings, begin(world, settings, 3), 3);
+  follow(model, leader);
+  for (int k = 0; k < 50; ++k) advance_both(model, leader);
+  finish_both(model, leader);
+  EXPECT_GT(std::ranges::count(leader.events, SphereEvent::Kind::back_arc, &SphereEvent::kind), 3);
+  std::size_t welded = 0;
+  for (const PlateLife& life : leader.state.lives) welded += life.joined >= 0 ? 1 : 0;
+  EXPECT_GT(welded, 3U);
+  EXPECT_NEAR(model.budget.area_error, 0.0, 1e-12);
+  EXPECT_GT(agreement(model, leader), 0.75);
 }
 
 TEST(LedPlates, CloseTheirBudgets) {

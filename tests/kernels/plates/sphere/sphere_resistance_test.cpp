@@ -193,6 +193,20 @@ TEST(Rifts, ComeToTheirSpeedSteadilyOverTheirOnset) {
   }
 }
 
+TEST(Rifts, AreSlowForLongWithAPowerAboveOne) {
+  const SampledSphere world(12000);
+  SphereSettings s = settings();
+  s.rift_onset_myr = 20.0;
+  s.rift_onset_power = 2.0;
+  SphereTectonics model(world.mesh, s, one_plate(world), 1);
+  rift_plate(model, 0, kSides, 30.0);
+  for (int k = 1; k <= 12; ++k) {
+    advance(model);
+    const double share = std::min(1.0, k * s.law.step_myr / s.rift_onset_myr);
+    EXPECT_NEAR(parting_mm_yr(model), 60.0 * share * share, 1e-6);
+  }
+}
+
 TEST(Rifts, BreakAgainWithoutLosingWhatTheyHadStillToGain) {
   const SampledSphere world(12000);
   SphereSettings s = settings();

@@ -166,7 +166,9 @@ void advance_both(SphereTectonics& follower, SphereTectonics& leader) {
   repeat(follower, leader.step.changes, repeated, leader.step.plates.size(), leader.step.pairs);
   follower.state.plates = leader.step.plates;
   follower.state.pairs = leader.step.pairs;
+  follower.state.lives = leader.state.lives;
   derive_plates_of_same_samples(follower);
+  if (sink_slabs(follower)) derive_followed_plates(follower);
   flow_lower_crust(follower);
   spread_roots(follower);
   if (leader.budget.resampled) {

@@ -207,7 +207,7 @@ std::vector<Matrix3> balance_forces(SphereTectonics& model) {
     plate.speed_rad_myr = length(next);
     if (plate.speed_rad_myr > 0.0) plate.axis = normalised(next);
   }
-  derive_motion(model);
+  hold_back_arcs(model);
   const double radius_m = 1e3 * model.settings.radius_km;
   const double sample =
       basal_drag_pa_s_m(model.settings.force) * 1e6 * model.sample_km2() * radius_m * radius_m;

@@ -74,8 +74,8 @@ struct Link {
 };
 
 /// Lithosphere that has begun to part is whole at first: fragments leave each other at a share
-/// s = t / onset of what drives them apart. A drag of (1 - s) / s (A^-1 + B^-1)^-1 between plates
-/// that A and B hold back does that to any motion.
+/// s = (t / onset)^n of what drives them apart. A drag of (1 - s) / s (A^-1 + B^-1)^-1 between
+/// plates that A and B hold back does that to any motion.
 std::vector<Link> links_of_rifts(const SphereTectonics& model, const std::vector<Matrix3>& drag) {
   std::vector<Link> links;
   for (int a = 0; a < std::ssize(drag); ++a) {
@@ -85,7 +85,8 @@ std::vector<Link> links_of_rifts(const SphereTectonics& model, const std::vector
       const double since_myr =
           model.state.time_myr + model.settings.law.step_myr - model.state.pair(a, b).parted_myr;
       if (since_myr >= model.settings.rift_onset_myr) continue;
-      const double share = since_myr / model.settings.rift_onset_myr;
+      const double share =
+          std::pow(since_myr / model.settings.rift_onset_myr, model.settings.rift_onset_power);
       const Eigen::Matrix3d below = eigen(drag[first]), beside = eigen(drag[second]);
       const Eigen::Matrix3d both = below * (below + beside).inverse() * beside;
       Matrix3 rub;

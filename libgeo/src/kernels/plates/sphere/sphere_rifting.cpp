@@ -177,6 +177,17 @@ FragmentAt voronoi_fragments(const SphereTectonics& model, int plate,
   };
 }
 
+PlateLife::Origin origin_by(SphereEvent::Kind kind) {
+  switch (kind) {
+    case SphereEvent::Kind::subduction_initiation:
+      return PlateLife::Origin::subduction_initiation;
+    case SphereEvent::Kind::back_arc:
+      return PlateLife::Origin::back_arc;
+    default:
+      return PlateLife::Origin::rift;
+  }
+}
+
 /// A plume below the continents of a plate: the nearest to their middle, or none.
 const SpherePlume* plume_below(const SphereTectonics& model, int plate) {
   const auto& cap = model.partition.cap(plate);
@@ -350,8 +361,7 @@ bool part_plate(SphereTectonics& model, int plate, std::span<const std::int8_t> 
       part.chances = {.descent = descent_from(model, whole.chances, Descent::rift, k)};
     }
     if (static_cast<std::ptrdiff_t>(k) != fragments->largest()) {
-      part.id = state.begin_life(
-          is_rift ? PlateLife::Origin::rift : PlateLife::Origin::subduction_initiation, whole.id);
+      part.id = state.begin_life(origin_by(kind), whole.id);
       part.born_myr = state.time_myr;
       part.driver = -1;
     }

@@ -130,6 +130,15 @@ void remember_penetration(SphereTectonics& model);
 /// Plates rift, and old margins begin to subduct, by chance.
 void rift_by_chance(SphereTectonics& model);
 void initiate_subduction_by_chance(SphereTectonics& model);
+/// Needs margins. Floor well below arcs that follow their trenches, and below what is behind them,
+/// sinks into the mantle. Tells whether any has, after which plates are to be derived.
+bool sink_slabs(SphereTectonics& model);
+/// Needs margins. Arcs above old slabs break off and follow their trenches, by chance.
+void open_back_arcs_by_chance(SphereTectonics& model);
+/// Whether a plate is such an arc.
+[[nodiscard]] bool is_back_arc(const SphereState& state, int plate);
+/// Bounds how fast arcs leave the plates behind them, and derives motion.
+void hold_back_arcs(SphereTectonics& model);
 /// Fragments of a plate (-1 beside it) become plates, each turned about an axis on top of the old
 /// motion. False when there are no two.
 /// `part_at` tells other samples their fragment; without it they have that of the nearest sample.
@@ -146,6 +155,9 @@ void resample(SphereTectonics& model, const std::function<void(SphereTectonics&)
 /// Detached pieces of plates that are too small to be plates join the neighbour beside which they
 /// move slowest.
 void join_small_pieces(SphereTectonics& model);
+/// Plates that hardly move beside a neighbour become one with it. Needs crust that has just been
+/// resampled.
+void weld_still_plates(SphereTectonics& model);
 /// Ends the step: what follows happens at its end, and the next one may begin.
 void end_step(SphereTectonics& model);
 /// Uplift, erosion, volcanoes and rivers of a step. Needs margins.

@@ -135,6 +135,8 @@ void advance(SphereTectonics& model) {
   spread_roots(model);
   rift_by_chance(model);
   initiate_subduction_by_chance(model);
+  open_back_arcs_by_chance(model);
+  if (sink_slabs(model)) derive_plates(model);
   model.step.plates = model.state.plates;
   model.step.pairs = model.state.pairs;
   if (is_due(model)) {

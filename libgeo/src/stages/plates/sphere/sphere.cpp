@@ -264,12 +264,17 @@ class Drift {
   template <class Progress>
   void spin_up(Progress&& progress) {
     if (plates().state.time_myr >= 0.0) return;
-    while (plates().state.time_myr < -0.5 * plates().settings.law.step_myr) {
+    const double step_myr = plates().settings.law.step_myr;
+    const double arcs_last_myr = plates().settings.back_arc_lasts_myr;
+    while (plates().state.time_myr < -0.5 * step_myr) {
       progress(plates().state.time_myr);
+      // Arcs that have left their plates are not among the first plates.
+      if (plates().state.time_myr > -1.5 * step_myr) plates().settings.back_arc_lasts_myr = 0.0;
       advance();
     }
     // So that the first plates are those that the first frame shows.
     leader_ ? finish_both(crust(), plates()) : finish(crust());
+    plates().settings.back_arc_lasts_myr = arcs_last_myr;
     begin_history(plates());
     if (!leader_) return;
     begin_history(crust());
@@ -322,6 +327,8 @@ std::string_view word_for(SphereEvent::Kind kind) {
       return "plate-rifting";
     case SphereEvent::Kind::subduction_initiation:
       return "subduction-initiation";
+    case SphereEvent::Kind::back_arc:
+      return "back-arc-opening";
   }
   return "";
 }

@@ -23,6 +23,8 @@ std::string_view word_for(PlateLife::Origin origin) {
       return "piece";
     case PlateLife::Origin::terrane:
       return "terrane";
+    case PlateLife::Origin::back_arc:
+      return "back-arc";
   }
   return "";
 }

@@ -34,7 +34,7 @@ struct SphereBudget {
 
 /// A happening worth telling.
 struct SphereEvent {
-  enum class Kind { collision, rift, subduction_initiation } kind;
+  enum class Kind { collision, rift, subduction_initiation, back_arc } kind;
   double time_myr;
   int first, second;  ///< plates: terrane's and collided one, or the plate that broke and -1
   Vector3 place;      ///< centroid, unit vector

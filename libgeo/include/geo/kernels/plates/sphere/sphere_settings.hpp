@@ -25,6 +25,9 @@ struct SphereSettings {
   PlateForces force;
   double penetration_km = 300.0;        ///< of continents, before they collide
   double suturing_mm_yr = 0.0;          ///< slower continents collide after 300 km; 0: none do
+  double welding_mm_yr = 0.0;           ///< plates that move slower beside each other become one
+  double welding_after_myr = 40.0;      ///< of a rift before its sides may do so
+  double welding_continental = 0.0;     ///< share of that speed by which continents hold out
   double suture_drag = 0.0;             ///< between them, over that below a plate
   double surge_km = 4.5;                ///< most that one collision lifts
   double crustal_flow_km2_myr = 0.0;    ///< D with which thick crust flows to its sides
@@ -45,20 +48,27 @@ struct SphereSettings {
   double rift_smallest = 0.5;           ///< smaller plates, in mean areas, do not rift
   double rift_speed_mm_yr = 30.0;       ///< at which fragments part
   double rift_onset_myr = 0.0;          ///< in which they come to it
+  double rift_onset_power = 1.0;        ///< n: at (t / onset)^n of what drives them apart
   double rift_warp_km = 400.0;          ///< of their borders
   double plume_rift_share = 0.0;        ///< of the rifts of continents above a plume begin there
   double initiation_per_myr =
       0.01;  ///< rate at which 1000 km of old passive margin begin to subduct
-  double initiation_age_myr = 120.0;     ///< from which floor at a passive margin is old
-  double initiation_speed_mm_yr = 50.0;  ///< at which such floor subducts
-  double coast_warp_km = 120.0;          ///< of crust that events change
-  double mean_area_km2 = 1.27e7;         ///< A_0
-  double smallest_piece_km2 = 5e5;       ///< detached pieces below join a neighbour
-  double plume_mm_yr = 0.0;              ///< output of the first plumes, as growth of one mound
-  double plume_km = 60.0;                ///< over which that would fall to a half
-  double volcano_km = 30.0;              ///< over which the growth of one volcano does
-  double volcano_spacing_km = 100.0;     ///< mean way of a plate from one volcano to the next
-  double island_wear_myr = 6.0;          ///< in which ocean floor above the sea wears down to 1/e
+  double initiation_age_myr = 120.0;      ///< from which floor at a passive margin is old
+  double initiation_speed_mm_yr = 50.0;   ///< at which such floor subducts
+  double back_arc_per_myr = 0.0;          ///< rate at which 1000 km of old trench begin to retreat
+  double back_arc_age_myr = 55.0;         ///< from which floor that subducts is old
+  double back_arc_mm_yr = 40.0;           ///< most at which an arc leaves what is behind it
+  double back_arc_km = 350.0;             ///< width of the arc that follows its trench
+  double back_arc_lasts_myr = 20.0;       ///< before a small one joins a neighbour
+  double coast_warp_km = 120.0;           ///< of crust that events change
+  double mean_area_km2 = 1.27e7;          ///< A_0
+  double smallest_piece_km2 = 5e5;        ///< detached pieces below join a neighbour
+  double piece_continental_weight = 1.0;  ///< by which the area of continents counts there
+  double plume_mm_yr = 0.0;               ///< output of the first plumes, as growth of one mound
+  double plume_km = 60.0;                 ///< over which that would fall to a half
+  double volcano_km = 30.0;               ///< over which the growth of one volcano does
+  double volcano_spacing_km = 100.0;      ///< mean way of a plate from one volcano to the next
+  double island_wear_myr = 6.0;           ///< in which ocean floor above the sea wears down to 1/e
   double swell_decay_myr = 30.0;  ///< the same of what lifted floor, with floor_by_age; 0: never
   double plume_top_km = 2.0;      ///< height that volcanoes of the sea floor reach
   // Rules of Driftworld in place of the paper's.

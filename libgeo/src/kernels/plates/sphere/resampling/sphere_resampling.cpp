@@ -176,10 +176,9 @@ double area_km2(const SphereTectonics& model, Holds&& holds) {
          sum_over(model.mesh->size(), [&](std::int32_t i) { return holds(i) ? 1.0 : 0.0; });
 }
 
+/// Of floor, with what has sunk since the last resampling.
 double ocean_km2(const SphereTectonics& model) {
-  const SphereCrust& crust = model.state.crust;
-  return area_km2(model,
-                  [&](std::int32_t i) { return crust.plate[i] >= 0 && crust.continental[i] == 0; });
+  return area_km2(model, [&](std::int32_t i) { return model.state.crust.continental[i] == 0; });
 }
 
 /// What has opened, and what has gone below other plates or been consumed.
@@ -270,20 +269,45 @@ Pieces pieces_of_plates(const SphereTectonics& model) {
   return pieces;
 }
 
-/// Detached pieces of plates: small ones join a neighbour, large ones are plates
-/// of their own that go on as they did.
+/// Area by which a plate counts as small: that of its continents more than that of floor.
+double counted_km2(const SphereTectonics& model, std::span<const std::int32_t> piece) {
+  const auto& continental = model.state.crust.continental;
+  const auto land =
+      std::ranges::count_if(piece, [&](std::int32_t i) { return continental[i] != 0; });
+  return model.sample_km2() * (static_cast<double>(std::ssize(piece) - land) +
+                               model.settings.piece_continental_weight * static_cast<double>(land));
+}
+
+/// Whether a plate is an arc that still leaves what is behind it.
+bool is_young_arc(const SphereState& state, int plate, const SphereSettings& s) {
+  return is_back_arc(state, plate) &&
+         state.time_myr - state.plates[plate].born_myr < s.back_arc_lasts_myr;
+}
+
+/// Detached pieces of plates: small ones join a neighbour, large ones are plates of their own that
+/// go on as they did. A plate that is small as a whole joins a neighbour too, unless another one
+/// has just joined it: then both are looked at again as one.
 void tidy_pieces(SphereTectonics& model) {
   auto& plate = model.state.crust.plate;
   const auto [pieces, largest] = pieces_of_plates(model);
   std::vector<std::uint64_t> parts_of(model.state.plates.size(), 0);
-  const double small = model.settings.smallest_piece_km2 / model.sample_km2();
+  bool must_go_on = false;
+  std::vector<std::uint8_t> has_ended(model.state.plates.size() + pieces.size(), 0);
+  std::vector<std::uint8_t> has_grown(model.state.plates.size() + pieces.size(), 0);
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     const std::vector<std::int32_t>& piece = pieces[k];
     const auto own = plate[piece.front()];
-    const auto size = static_cast<double>(piece.size());
     const bool keeps = largest[own] == static_cast<std::int32_t>(k);
-    if (keeps && (size > small || pieces.size() < 3)) continue;
-    if (size > small) {
+    const double area_km2 =
+        keeps ? counted_km2(model, piece) : model.sample_km2() * static_cast<double>(piece.size());
+    const bool is_small = area_km2 <= model.settings.smallest_piece_km2;
+    if (keeps && (!is_small || pieces.size() < 3 || is_young_arc(model.state, own, model.settings)))
+      continue;
+    if (keeps && has_grown[own] != 0) {
+      must_go_on = true;
+      continue;
+    }
+    if (!is_small) {
       SpherePlate copy = model.state.plates[own];
       copy.id = model.state.begin_life(PlateLife::Origin::piece, copy.id);
       copy.born_myr = model.state.time_myr;
@@ -296,22 +320,29 @@ void tidy_pieces(SphereTectonics& model) {
     }
     const int neighbour = slowest_neighbour(model, piece);
     if (neighbour < 0) continue;
+    if (has_ended[neighbour] != 0) {  // what is left of it is still to go
+      must_go_on = true;
+      continue;
+    }
+    has_grown[neighbour] = 1;
     if (keeps) {
+      has_ended[own] = 1;
       model.state.end_life(model.state.plates[own].id, model.state.plates[neighbour].id);
     }
     for (const std::int32_t i : piece) plate[i] = static_cast<std::int16_t>(neighbour);
   }
+  if (must_go_on) tidy_pieces(model);
 }
 
 }  // namespace
 
 void join_small_pieces(SphereTectonics& model) {
   const auto [pieces, largest] = pieces_of_plates(model);
-  const double small = model.settings.smallest_piece_km2 / model.sample_km2();
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     const auto own = model.state.crust.plate[pieces[k].front()];
     if (largest[own] == static_cast<std::int32_t>(k)) continue;
-    if (static_cast<double>(pieces[k].size()) > small) continue;
+    const double area_km2 = model.sample_km2() * static_cast<double>(pieces[k].size());
+    if (area_km2 > model.settings.smallest_piece_km2) continue;
     const int neighbour = slowest_neighbour(model, pieces[k]);
     if (neighbour < 0) continue;
     for (const std::int32_t i : pieces[k]) {
@@ -324,6 +355,7 @@ void resample(SphereTectonics& model) {
   resample(model, [](SphereTectonics& resampled) {
     tidy_pieces(resampled);
     derive_plates(resampled);
+    weld_still_plates(resampled);
   });
 }
 
