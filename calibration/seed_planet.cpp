@@ -92,8 +92,7 @@ FrozenDrainage::MovedSea SeedPlanet::find_moved_sea(const ErosionParameters& p,
   if (sea.level_m == 0.0F) return sea;
   const std::vector<double> heights_m(before.begin(), before.end());
   sea.ranking.emplace(grid(), heights_m);
-  // Flats at the very level bend there: some land and some sea beside them tell more.
-  sea.window = sea.ranking->window(share, 4.0 * kHalfWidth);
+  sea.window = sea.ranking->window(share, kHalfWidth);
   sea.mean_m = sea.ranking->mean(sea.window, std::span<const double>(heights_m));
   std::vector<float> after = before;
   keep_sea_share(p, grid(), after, share);

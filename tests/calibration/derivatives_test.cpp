@@ -390,8 +390,9 @@ TEST(Derivatives, ValuesAreThoseOfARun) {
 TEST(Derivatives, QuantilesFollowTheMeanOfTheCellsThere) {
   constexpr int kParts = 50;
   // Where rivers lay down, many cells stand at one height, that of wave base: a step then changes
-  // which cells a quantile is taken from.
-  Planet1 p(96, "isostasy.ocean_depth_m=0", {"erosion.model=detachment"});
+  // which cells a quantile is taken from. A sea that moves follows cells at the shore, which bend.
+  Planet1 p(96, "isostasy.ocean_depth_m=0",
+            {"erosion.model=detachment", "erosion.strait_sill_m=0"});
   const Grid& grid = p.planet.grid();
   const Ranking ranking(grid, p.planet.with_frozen_drainage<double>(p.model, {}).elevation_m);
   for (const std::string name :
