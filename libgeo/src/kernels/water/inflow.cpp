@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <map>
 #include <vector>
 
@@ -12,34 +11,16 @@
 namespace geo {
 namespace {
 
-/// What of the edge rivers have taken.
-enum class Taken : std::uint8_t { none, beside, whole };
-
-/// Lowest land cell of a stretch that no river has taken, kNoCell when there is none: away from
-/// other rivers where there is any, as those that cross side by side would become one.
-Index lowest_land(const Stretch& stretch, std::span<const float> z, std::span<const Taken> taken) {
-  for (const Taken most : {Taken::none, Taken::beside}) {
-    Index lowest = kNoCell;
-    for (int k = 0; k < stretch.count; ++k) {
-      const Index cell = stretch.first + k * stretch.step;
-      if (taken[cell] > most) continue;
-      if (z[cell] >= 0.0F && (lowest == kNoCell || z[cell] < z[lowest])) lowest = cell;
-    }
-    if (lowest != kNoCell) return lowest;
-  }
-  return kNoCell;
-}
-
-/// A river takes a cell, and a sixth of the stretch to both sides.
-void take_stretch(const Stretch& stretch, Index taken_cell, std::span<Taken> taken) {
-  const int apart = stretch.count / 6;
+/// Lowest land cell of a stretch that no river has taken, kNoCell when there is none.
+Index lowest_land(const Stretch& stretch, std::span<const float> z,
+                  std::span<const std::uint8_t> taken) {
+  Index lowest = kNoCell;
   for (int k = 0; k < stretch.count; ++k) {
     const Index cell = stretch.first + k * stretch.step;
-    if (std::abs(cell - taken_cell) <= static_cast<Index>(apart) * std::abs(stretch.step)) {
-      taken[cell] = std::max(taken[cell], Taken::beside);
-    }
+    if (taken[cell] != 0) continue;
+    if (z[cell] >= 0.0F && (lowest == kNoCell || z[cell] < z[lowest])) lowest = cell;
   }
-  taken[taken_cell] = Taken::whole;
+  return lowest;
 }
 
 /// Discharge out of planet cells, also on lakes. A lake shows on all its cells what leaves it, of
@@ -218,7 +199,7 @@ class Inflow {
                                      std::max(water_.elevation_m[to], 0.0F), way);
     z_[lowest] = std::min(z_[lowest], static_cast<float>(level_m));
     crossings_.rivers.push_back({from, lowest});
-    take_stretch(stretch, lowest, taken_);
+    taken_[lowest] = 1;
     if (outward) {
       leaves_[lowest] = 1;
       return;
@@ -253,8 +234,7 @@ class Inflow {
   PlanetWindow window_;
   Discharge discharge_;
   std::vector<double> inside_m2_;
-  std::vector<Taken> taken_;
-  std::vector<std::uint8_t> leaves_;
+  std::vector<std::uint8_t> taken_, leaves_;
   std::map<Index, Index> entry_of_;
   Crossings crossings_;
 };
