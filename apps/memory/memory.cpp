@@ -19,9 +19,9 @@
 #include <fstream>
 #include <new>
 
+#include "apps/log.hpp"
 #include "geo/core/error.hpp"
 #include "geo/core/parallel_errors.hpp"
-#include "log.hpp"
 #include "memory_cap.hpp"
 
 namespace terrane {
