@@ -25,21 +25,39 @@ double cost_of(const Eigen::VectorXd& residual) {
   return std::isfinite(cost) ? cost : std::numeric_limits<double>::infinity();
 }
 
-/// One Gauss-Newton step with derivatives by differences of planets rerouted, over a step wide
-/// enough to average over the jumps of rivers. Returns whether it found a better place.
+/// How far to move each parameter for differences: as far as moves the residuals by about what is
+/// left of them, so that rivers jump no more than they do on the way that is left.
+Eigen::VectorXd difference_widths(Objective& objective, const Eigen::VectorXd& x,
+                                  const Eigen::VectorXd& residual, double factor) {
+  constexpr double kLeast = 1e-4, kMost = 0.05;
+  Eigen::MatrixXd rates;
+  objective.linearise(x, &rates);
+  Eigen::VectorXd width(x.size());
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const double rate = std::max(rates.col(i).norm(), 1e-300);
+    width[i] = std::clamp(factor * residual.norm() / rate, kLeast, kMost);
+  }
+  return width;
+}
+
+/// One Gauss-Newton step with derivatives by differences of planets rerouted, central where bounds
+/// allow it, over steps wide enough to average over the jumps of rivers. Returns whether it found a
+/// better place.
 bool polish(Objective& objective, const Problem& problem, FitState& state) {
-  constexpr std::array kSteps{0.02, 0.005, 0.05};
-  const double width = kSteps[state.polishes % kSteps.size()];
+  constexpr std::array kFactors{1.0, 0.5, 2.0};
   constexpr double kFarthest = 0.2;
   const Eigen::Index count = state.x.size();
   const Eigen::VectorXd here = objective.evaluate(state.x);
-  Eigen::MatrixXd rates(here.size(), count);
+  const Eigen::VectorXd width =
+      difference_widths(objective, state.x, here, kFactors[state.polishes % kFactors.size()]);
+  Eigen::MatrixXd rates = Eigen::MatrixXd::Zero(here.size(), count);
   for (Eigen::Index i = 0; i < count; ++i) {
     const FreeParameter& free = problem.free[i];
-    Eigen::VectorXd x = state.x;
-    const double step = x[i] + width > free.to_x(free.high) ? -width : width;
-    x[i] += step;
-    rates.col(i) = (objective.evaluate(x) - here) / step;
+    Eigen::VectorXd below = state.x, above = state.x;
+    below[i] = std::max(below[i] - width[i], free.to_x(free.low));
+    above[i] = std::min(above[i] + width[i], free.to_x(free.high));
+    if (!(above[i] > below[i])) continue;
+    rates.col(i) = (objective.evaluate(above) - objective.evaluate(below)) / (above[i] - below[i]);
   }
   Eigen::VectorXd step = -rates.completeOrthogonalDecomposition().solve(here);
   step *= std::min(1.0, kFarthest / std::max(step.cwiseAbs().maxCoeff(), 1e-300));

@@ -71,10 +71,8 @@ void Objective::hold(std::size_t s, const PlanetSurface<double>& surface) {
   held = {};
   held.elevation.emplace(grid, surface.elevation_m);
   for (std::size_t k = 0; k < target.share.size(); ++k) {
-    held.windows.push_back(held.elevation->window(target.share[k], half_width(target.share, k)));
-    held.quantile.push_back(held.elevation->quantile(target.share[k]));
-    held.mean.push_back(
-        held.elevation->mean(held.windows[k], std::span<const double>(surface.elevation_m)));
+    held.windows.push_back(
+        held.elevation->quantile_window(target.share[k], half_width(target.share, k)));
   }
   constexpr double kHalfWidth = 0.005;
   for (const Term& term : problem_.terms) {
@@ -95,9 +93,7 @@ void Objective::hold(std::size_t s, const PlanetSurface<double>& surface) {
         for (Index c = 0; c < grid.size(); ++c) continental[c] = fraction[c] >= 0.5F;
         held.thickness.emplace(grid, surface.thickness_m, continental);
       }
-      of.window = held.thickness->window(term.share, kHalfWidth);
-      of.mean = held.thickness->mean(of.window, std::span<const double>(surface.thickness_m));
-      of.value = held.thickness->quantile(term.share);
+      of.window = held.thickness->quantile_window(term.share, kHalfWidth);
     } else if (term.kind == Term::Kind::concavity && !planets_[s]->held().drainage.empty()) {
       constexpr double kCells = 10.0;  // that drain through a channel at least
       const Drainage& drainage = planets_[s]->held().drainage.back();
@@ -142,9 +138,8 @@ std::vector<V> Objective::statistics_of(std::size_t s, const PlanetSurface<V>& s
   const std::span<const V> elevation_m(surface.elevation_m), thickness_m(surface.thickness_m);
   std::vector<V> all;
   all.reserve(problem_.statistics());
-  for (std::size_t k = 0; k < held.windows.size(); ++k) {
-    all.push_back(held.quantile[k] +
-                  (held.elevation->mean(held.windows[k], elevation_m) - held.mean[k]));
+  for (const Ranking::Window& window : held.windows) {
+    all.push_back(held.elevation->mean(window, elevation_m));
   }
   for (std::size_t t = 0; t < problem_.terms.size(); ++t) {
     const Held::OfTerm& of = held.terms[t];
@@ -163,7 +158,7 @@ std::vector<V> Objective::statistics_of(std::size_t s, const PlanetSurface<V>& s
         all.push_back(concavity(s, surface.elevation_m));
         break;
       case Term::Kind::crust_thickness:
-        all.push_back(1e-3 * (of.value + (held.thickness->mean(of.window, thickness_m) - of.mean)));
+        all.push_back(1e-3 * held.thickness->mean(of.window, thickness_m));
         break;
     }
   }

@@ -103,7 +103,6 @@ class Objective {
   struct Held {
     std::optional<Ranking> elevation, thickness;
     std::vector<Ranking::Window> windows;  ///< one for each quantile
-    std::vector<double> quantile, mean;
     struct OfTerm {
       Ranking::Window window;
       double value = 0.0, mean = 0.0, rate = 0.0;

@@ -58,7 +58,8 @@ std::vector<double> Ranking::bin_means(int count) const {
   return means;
 }
 
-Ranking::Window Ranking::window(double share, double half_width) const {
+template <class UpTo>
+Ranking::Window Ranking::weighted(double share, double half_width, UpTo&& up_to) const {
   const double from = std::max(0.0, share - half_width), to = std::min(1.0, share + half_width);
   Window window;
   const auto first = std::upper_bound(below_.begin(), below_.end(), from) - below_.begin() - 1;
@@ -66,12 +67,23 @@ Ranking::Window Ranking::window(double share, double half_width) const {
   double sum = 0.0;
   for (std::size_t k = window.first; k < value_.size() && (below_[k] < to || k == window.first);
        ++k) {
-    const double part = std::min(to, below_[k + 1]) - std::max(from, below_[k]);
-    window.weight.push_back(std::max(part, 1e-300));
+    const double lower = std::max(from, below_[k]), upper = std::min(to, below_[k + 1]);
+    window.weight.push_back(up_to(upper) - up_to(lower));
     sum += window.weight.back();
   }
   for (double& weight : window.weight) weight /= sum;
   return window;
+}
+
+Ranking::Window Ranking::window(double share, double half_width) const {
+  return weighted(share, half_width, [](double at) { return at; });
+}
+
+Ranking::Window Ranking::quantile_window(double share, double half_width) const {
+  return weighted(share, half_width, [=](double at) {
+    const double u = (at - share) / half_width, square = u * u;
+    return 15.0 / 32.0 * u * (3.0 + square * (-10.0 / 3.0 + square * 7.0 / 5.0));
+  });
 }
 
 double Ranking::gap_below(double value, double width, int most) const {

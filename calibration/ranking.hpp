@@ -26,6 +26,11 @@ class Ranking {
     std::vector<double> weight;  ///< of the cells from `first` on
   };
   [[nodiscard]] Window window(double share, double half_width) const;
+  /// Weights of a kernel of fourth order in their place, K(u) = 15/32 (1 - u^2)(3 - 7 u^2), u the
+  /// distance in share over the half width: the mean of the field itself is the quantile to the
+  /// fourth power of the half width, and single cells hardly move it (Sheather & Marron 1990).
+  /// Weights may be negative.
+  [[nodiscard]] Window quantile_window(double share, double half_width) const;
 
   /// The mean of another field over a window: with the field's own derivatives, those of the
   /// quantile, dq/dtheta = E[dh/dtheta | h = q] (Hong 2009).
@@ -45,6 +50,10 @@ class Ranking {
   [[nodiscard]] double density(double share, double half_width) const;
 
  private:
+  /// Weights by the share of `up_to(upper) - up_to(lower)` of each cell's part of the window.
+  template <class UpTo>
+  [[nodiscard]] Window weighted(double share, double half_width, UpTo&& up_to) const;
+
   std::vector<Index> order_;
   std::vector<double> value_;  ///< in order
   std::vector<double>

@@ -109,6 +109,7 @@ TEST(Twin, StandardErrorsCoverTheTruthUnderNoise) {
       covered += std::abs(parameter.fitted - kTruth[i].second) <= 2.0 * parameter.standard_error;
     }
   }
+  RecordProperty("covered", covered);
   EXPECT_GE(covered, 0.9 * runs * double(kTruth.size()));
 }
 

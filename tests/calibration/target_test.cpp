@@ -147,6 +147,36 @@ TEST(Ranking, QuantilesAndBinsAreThoseOfTheArea) {
   EXPECT_NEAR(bins[9], 0.9, 0.01);
 }
 
+/// Of cells drawn at random from a curve that bends, where a plain mean over the window is off.
+TEST(Ranking, WindowsOfQuantilesKeepTheirPlaceAndAreSmoother) {
+  const Grid grid = Grid::sphere(128, 64, {6371e3, 0.0});
+  const RandomStream random(1, "test.quantiles");
+  constexpr double kShare = 0.02, kHalfWidth = 0.01;
+  const double truth = std::log(kShare);
+  double of_window = 0.0, of_mean = 0.0, scatter_of_window = 0.0, scatter_of_cells = 0.0;
+  constexpr int kDraws = 200;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    std::vector<double> field(grid.size());
+    for (Index c = 0; c < grid.size(); ++c) {
+      field[c] = std::log(random.uniform(std::uint64_t(draw), std::uint64_t(c), 0.0, 1.0));
+    }
+    const Ranking ranking(grid, field);
+    const auto mean = [&](const Ranking::Window& window) {
+      return ranking.mean(window, std::span<const double>(field)) - truth;
+    };
+    const double smooth = mean(ranking.quantile_window(kShare, kHalfWidth));
+    const double of_cells = ranking.quantile(kShare) - truth;
+    of_window += smooth / kDraws;
+    of_mean += mean(ranking.window(kShare, kHalfWidth)) / kDraws;
+    scatter_of_window += smooth * smooth / kDraws;
+    scatter_of_cells += of_cells * of_cells / kDraws;
+  }
+  // Four standard errors of the mean of the draws.
+  EXPECT_NEAR(of_window, 0.0, 4.0 * std::sqrt(scatter_of_window / kDraws));
+  EXPECT_LT(of_mean, -0.03);
+  EXPECT_LT(scatter_of_window, scatter_of_cells);
+}
+
 TEST(CalibrationSettings, ListsAreRead) {
   EXPECT_EQ(read_seeds("s", "1-3, 7"), (std::vector<std::int64_t>{1, 2, 3, 7}));
   EXPECT_TRUE(read_seeds("s", "").empty());
