@@ -2,6 +2,7 @@
 
 #include <netcdf.h>
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,8 @@ class MadeNetcdf {
   MadeNetcdf(const std::string& path, Bytes& bytes) : bytes_(bytes) {
     // The classic formats are many times as fast to write.
     is_hdf5_ = bytes_.one_in(8);
+    // A file that HDF5 could not close stays open, and cannot be made anew under its inode.
+    std::filesystem::remove(path);
     claim(nc_create(path.c_str(), NC_CLOBBER | (is_hdf5_ ? NC_NETCDF4 : NC_64BIT_DATA), &id_) ==
               NC_NOERR,
           "files can be made");

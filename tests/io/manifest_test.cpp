@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <sstream>
 
 #include "geo/core/error.hpp"
 #include "io/files/vouched_bytes.hpp"
@@ -131,6 +132,21 @@ TEST(Manifest, UnreadableOnesAreNamed) {
   for (const char* text : {"", "{", "{\"version\": 3}", "[]"}) {
     std::ofstream(folder / "bad.json") << text;
     EXPECT_THROW(read_manifest(folder / "bad.json"), InputError) << text;
+  }
+}
+
+TEST(Manifest, NumbersThatDoNotFitAreRefused) {
+  const TemporaryFolder folder;
+  write_manifest(folder / "manifest.json", {});
+  std::stringstream sound;
+  sound << std::ifstream(folder / "manifest.json").rdbuf();
+  for (const char* threads : {"6.6e92", "2.5", "99999999999", "-99999999999", "\"1\"", "null"}) {
+    std::string text = sound.str();
+    const auto at = text.find("\"threads\": 1");
+    ASSERT_NE(at, std::string::npos);
+    text.replace(at, 12, std::string("\"threads\": ") + threads);
+    std::ofstream(folder / "bad.json") << text;
+    EXPECT_THROW(read_manifest(folder / "bad.json"), InputError) << threads;
   }
 }
 

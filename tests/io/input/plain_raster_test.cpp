@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include <array>
 #include <cmath>
@@ -40,6 +41,22 @@ std::filesystem::path stage_file(const std::filesystem::path& path, const Grid& 
   snapshot.fields.emplace_back(&field::elevation, std::make_shared<const Values>(heights(grid)));
   write_netcdf(path, snapshot, {"terrane: erosion", "# none\n", 7, "0.1.0", "now", "none"});
   return path;
+}
+
+TEST(ImageRelief, PicturesThatCannotBeReadKeepNoMemory) {
+  const TemporaryFolder folder;
+  const std::vector<std::uint8_t> grey(16 * 8);
+  write_grey_png(folder / "whole.png", grey, 16, 8);
+  const auto path = (folder / "cut.png").string();
+  write_text(path, test::text_of(folder / "whole.png").substr(0, 20));
+  const auto refuse = [&] {
+    EXPECT_THROW(read_png_raster(path, {.range = std::pair{0.0, 1.0}}), InputError);
+  };
+  constexpr int kTimes = 500;
+  refuse();
+  const auto before = mallinfo2().uordblks;
+  for (int time = 0; time < kTimes; ++time) refuse();
+  EXPECT_LT(mallinfo2().uordblks, before + 100U * kTimes);
 }
 
 TEST(ImageRelief, ExportedAndReadAgainIsWithinHalfAQuantum) {

@@ -46,20 +46,29 @@ void keep_reason(png_structp png, png_const_charp reason) {
 
 void ignore(png_structp, png_const_charp) {}
 
+/// What libpng reads with, which goes with it also where the constructor of its owner throws.
+struct PngStructs {
+  explicit PngStructs(std::string& reason)
+      : png(png_create_read_struct(PNG_LIBPNG_VER_STRING, &reason, keep_reason, ignore)) {
+    if (png != nullptr) info = png_create_info_struct(png);
+  }
+  ~PngStructs() { png_destroy_read_struct(&png, &info, nullptr); }
+  PngStructs(const PngStructs&) = delete;
+  PngStructs& operator=(const PngStructs&) = delete;
+
+  png_structp png;
+  png_infop info = nullptr;
+};
+
 /// A PNG file that is being read. What libpng leaves with longjmp holds no objects.
 class Png {
  public:
   explicit Png(const fs::path& path)
-      : stream_(std::fopen(path.c_str(), "rb"), std::fclose),
-        png_(png_create_read_struct(PNG_LIBPNG_VER_STRING, &reason_, keep_reason, ignore)) {
+      : stream_(std::fopen(path.c_str(), "rb"), std::fclose), structs_(reason_) {
     if (!stream_) throw IoError(fmt::format("{}: cannot be read", path.string()));
-    if (png_ != nullptr) info_ = png_create_info_struct(png_);
     if (info_ == nullptr) throw std::bad_alloc();
     if (!begin()) fail();
   }
-  ~Png() { png_destroy_read_struct(&png_, &info_, nullptr); }
-  Png(const Png&) = delete;
-  Png& operator=(const Png&) = delete;
 
   [[nodiscard]] int width() const { return static_cast<int>(png_get_image_width(png_, info_)); }
   [[nodiscard]] int height() const { return static_cast<int>(png_get_image_height(png_, info_)); }
@@ -104,8 +113,9 @@ class Png {
 
   std::string reason_ = "libpng does not say why";
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream_;
-  png_structp png_;
-  png_infop info_ = nullptr;
+  PngStructs structs_;
+  png_structp png_ = structs_.png;
+  png_infop info_ = structs_.info;
 };
 
 /// value = offset + scale * sample, and where the picture lies.

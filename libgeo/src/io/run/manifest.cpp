@@ -9,6 +9,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <system_error>
+#include <utility>
 
 #include "geo/core/error.hpp"
 #include "geo/io/files/atomic_file.hpp"
@@ -24,6 +25,18 @@ constexpr const char* kPathKey = "path_deg";
 /// JSON has no NaN: null stands for it.
 double number_or_nan(const Json& json) {
   return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
+}
+
+/// A whole number that fits; JSON libraries convert any number, and what does not fit to anything.
+template <class Whole>
+Whole whole_number(const Json& json) {
+  if (json.is_number_unsigned() && std::in_range<Whole>(json.get<std::uint64_t>())) {
+    return static_cast<Whole>(json.get<std::uint64_t>());
+  }
+  if (json.is_number_integer() && std::in_range<Whole>(json.get<std::int64_t>())) {
+    return static_cast<Whole>(json.get<std::int64_t>());
+  }
+  throw InputError(fmt::format("{} is no whole number that fits", json.dump()));
 }
 
 Json to_json(const FieldRecord& field) {
@@ -69,13 +82,13 @@ FieldRecord field_from(const std::string& name, const Json& json) {
           number_or_nan(json.at("min")),
           number_or_nan(json.at("mean")),
           number_or_nan(json.at("max")),
-          json.at("missing").get<std::int64_t>(),
+          whole_number<std::int64_t>(json.at("missing")),
           json.at("digest").get<std::string>()};
 }
 
 EventRecord event_from(const Json& json) {
   EventRecord event;
-  json.at("number").get_to(event.number);
+  event.number = whole_number<decltype(event.number)>(json.at("number"));
   json.at("kind").get_to(event.kind);
   json.at("name").get_to(event.name);
   for (const auto& [name, value] : json.items()) {
@@ -128,8 +141,8 @@ Manifest manifest_from(const Json& json) {
   manifest.allowed = json.value("allowed", manifest.allowed);
   manifest.files = json.value("files", manifest.files);
   json.at("libraries").get_to(manifest.libraries);
-  json.at("seed").get_to(manifest.seed);
-  json.at("threads").get_to(manifest.threads);
+  manifest.seed = whole_number<decltype(manifest.seed)>(json.at("seed"));
+  manifest.threads = whole_number<decltype(manifest.threads)>(json.at("threads"));
   json.at("config_digest").get_to(manifest.config_digest);
   json.at("complete").get_to(manifest.complete);
   for (const Json& stage : json.at("stages")) manifest.stages.push_back(stage_from(stage));
@@ -163,12 +176,18 @@ Manifest read_manifest(const std::filesystem::path& path) {
     throw IoError(
         fmt::format("cannot read {}: {}", path.string(), std::generic_category().message(errno)));
   }
+  const auto refuse = [&](const std::exception& error) {
+    throw InputError(fmt::format("{}: no manifest of this version of terrane ({})", path.string(),
+                                 error.what()));
+  };
   try {
     return manifest_from(Json::parse(stream));
   } catch (const Json::exception& error) {
-    throw InputError(fmt::format("{}: no manifest of this version of terrane ({})", path.string(),
-                                 error.what()));
+    refuse(error);
+  } catch (const InputError& error) {
+    refuse(error);
   }
+  return {};
 }
 
 std::string disagreement(const StageRecord& record, const Snapshot& file) {
