@@ -50,7 +50,7 @@ struct ErosionParameters {
   std::string flow_routing = "mfd";
   double flow_exponent = 1.1;
   std::string depressions = "fill";
-  double erodibility_factor = 0.44;
+  double erodibility_factor = 0.55;
   double reference_cell_km = 10.0;
   double subgrid_exponent = 0.38;
   double uplift_mm_yr = 0.0;

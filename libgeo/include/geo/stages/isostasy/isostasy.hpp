@@ -29,9 +29,9 @@ struct IsostasyParameters {
   double ocean_depth_m = 3750.0;
   double oceanic_km = 7.0;
   double thickness_noise_km = 4.5;
-  double collision_km = 23.0;
-  double collision_shortening = 0.12;
-  double subduction_shortening = 0.04;
+  double collision_km = 18.0;
+  double collision_shortening = 0.08;
+  double subduction_shortening = 0.027;
   double front_shortening = 0.55;
   double arc_km = 13.0;
   double rift_km = 20.0;
@@ -43,7 +43,7 @@ struct IsostasyParameters {
   double craton_compensation = 0.95;
   double swell_m = 345.0;
   double ocean_swell_m = 430.0;
-  double margin_tilt_m = 838.0;
+  double margin_tilt_m = 760.0;
   double margin_tilt_km = 260.0;
   double relict_km = 5.2;
   double heat_m = 950.0;
