@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "geo/core/pipeline.hpp"
@@ -172,6 +173,35 @@ TEST(Erosion, SedimentBudgetClosesFromIndependentSums) {
       for (const float flux : out.flux) ASSERT_GE(flux, 0.0F);
     }
   }
+}
+
+/// Also where valleys drown: the sea, which deltas have pushed back, keeps its share.
+TEST(Erosion, SedimentReachesTheSeaOnce) {
+  const Grid grid = Grid::sphere(128, 64);
+  std::vector<float> z = test::random_terrain(grid, 5);
+  for (Index c = 0; c < grid.size(); ++c) {
+    // Continents that slope gently to shallow seas, which deltas fill.
+    const double height_m =
+        1500.0 * std::cos(4.0 * std::numbers::pi * (grid.column(c) + 0.5) / grid.nx());
+    z[c] = static_cast<float>((height_m > 0.0 ? 0.2 : 0.05) * height_m + 0.05 * z[c]);
+  }
+  constexpr double kYears = 2e6;
+  const Outcome out = erode(grid, z,
+                            {{"erosion.steps", "1"},
+                             {"erosion.time_step_yr", "2e6"},
+                             {"erosion.depressions", "fill"},
+                             {"erosion.warping_m", "0"},
+                             {"erosion.sediment.highstand_yr", "2e6"}});
+  double to_sea_m3 = 0.0;
+  int drowned = 0;
+  for (Index c = 0; c < grid.size(); ++c) {
+    if (out.z[c] < 0.0F) to_sea_m3 += kYears * out.flux[c];
+    drowned += out.z[c] < 0.0F && z[c] >= 0.0F ? 1 : 0;
+  }
+  EXPECT_GT(drowned, 20);
+  const double brought_m3 =
+      out.budget.at("sediment_laid_at_sea_m3") + out.budget.at("sediment_unsettled_m3");
+  EXPECT_NEAR(to_sea_m3 / brought_m3, 1.0, 0.02);
 }
 
 TEST(Erosion, StraitsFilledSeasAndDeltasAreInTheBudgets) {

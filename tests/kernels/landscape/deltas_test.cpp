@@ -30,8 +30,10 @@ TEST(Deltas, OnAnEvenFloorAreHalfDiscsOfWhatTheRiverBrings) {
   const Index mouth = shore.grid.cell(5, 30);
   const double brought = 1e10;  // 10 m of it: 1000 km2
   shore.volume[mouth] = brought;
-  const auto built = build_deltas(shore.grid, {}, shore.sea, shore.z, shore.volume, shore.laid);
-  ASSERT_NEAR(static_cast<double>(built.size()), 250.0, 1.0);
+  build_deltas(shore.grid, {}, shore.sea, shore.z, shore.volume, shore.laid);
+  const auto filled =
+      std::count_if(shore.laid.begin(), shore.laid.end(), [](float m) { return m > 0.0F; });
+  ASSERT_NEAR(static_cast<double>(filled), 250.0, 1.0);
   double laid = 0.0, farthest = 0.0;
   for (Index c = 0; c < shore.grid.size(); ++c) {
     laid += shore.laid[c] * shore.grid.area_m2(0);
@@ -44,11 +46,6 @@ TEST(Deltas, OnAnEvenFloorAreHalfDiscsOfWhatTheRiverBrings) {
   EXPECT_LT(shore.volume[mouth], 10.0 * shore.grid.area_m2(0));
   // A half disc of 1000 km2 has a radius of 25 km; ways over eight neighbours make it an octagon.
   EXPECT_NEAR(2.0 * farthest, std::sqrt(2e3 / std::numbers::pi), 3.0);
-  for (const auto& [cell, beyond] : built) {
-    EXPECT_GT(shore.laid[cell], 0.0F);
-    EXPECT_EQ(shore.laid[beyond], 0.0F);
-    EXPECT_NE(shore.sea[beyond], 0);
-  }
 }
 
 TEST(Deltas, StopWhereTheWaterIsDeepAndSmallRiversBuildNone) {

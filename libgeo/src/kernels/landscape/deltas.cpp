@@ -9,30 +9,6 @@
 namespace geo {
 namespace {
 
-/// For each cell of a delta the nearest cell of the sea, in steps over deltas.
-std::vector<Index> new_mouths(const Grid& grid, std::span<const std::uint8_t> sea,
-                              std::span<const float> laid_m) {
-  std::vector<Index> mouth(laid_m.size(), kNoCell), front;
-  const auto is_delta = [&](Index c) { return sea[c] != 0 && laid_m[c] > 0.0F; };
-  for (Index c = 0; c < grid.size(); ++c) {
-    if (!is_delta(c)) continue;
-    for (int k = 0; k < kDirections && mouth[c] == kNoCell; ++k) {
-      const Index to = grid.neighbour(c, k);
-      if (to != kNoCell && sea[to] != 0 && !is_delta(to)) mouth[c] = to;
-    }
-    if (mouth[c] != kNoCell) front.push_back(c);
-  }
-  for (std::size_t head = 0; head < front.size(); ++head) {
-    for (int k = 0; k < kDirections; ++k) {
-      const Index to = grid.neighbour(front[head], k);
-      if (to == kNoCell || !is_delta(to) || mouth[to] != kNoCell) continue;
-      mouth[to] = mouth[front[head]];
-      front.push_back(to);
-    }
-  }
-  return mouth;
-}
-
 /// Land that rivers lay before their mouths, one mouth after the other.
 class Deltas {
  public:
@@ -109,11 +85,9 @@ class Deltas {
 
 }  // namespace
 
-std::vector<std::pair<Index, Index>> build_deltas(const Grid& grid, const DeltaLaw& law,
-                                                  std::span<const std::uint8_t> sea,
-                                                  std::span<const float> elevation_m,
-                                                  std::span<double> volume_m3,
-                                                  std::span<float> laid_m) {
+void build_deltas(const Grid& grid, const DeltaLaw& law, std::span<const std::uint8_t> sea,
+                  std::span<const float> elevation_m, std::span<double> volume_m3,
+                  std::span<float> laid_m) {
   check_sizes("build_deltas", grid.size(),
               {{"sea", sea.size()},
                {"elevation_m", elevation_m.size()},
@@ -121,12 +95,6 @@ std::vector<std::pair<Index, Index>> build_deltas(const Grid& grid, const DeltaL
                {"laid_m", laid_m.size()}});
   Deltas deltas(grid, law, sea, elevation_m, volume_m3, laid_m);
   for (const Index mouth : deltas.mouths()) deltas.build(mouth);
-  std::vector<std::pair<Index, Index>> built;
-  const std::vector<Index> mouth_of = new_mouths(grid, sea, laid_m);
-  for (Index c = 0; c < grid.size(); ++c) {
-    if (sea[c] != 0 && laid_m[c] > 0.0F) built.emplace_back(c, mouth_of[c]);
-  }
-  return built;
 }
 
 }  // namespace geo

@@ -209,7 +209,9 @@ void ErosionRun::write() {
   write_crust(records.crust_change_m);
   if (p_.deposits()) write_sediment(records.sediment);
   if (p_.steps > 0) write_erosion_rate(records.lowered_m);
-  write_drainage(/*iced=*/lay_ice());
+  drain_surface(/*iced=*/lay_ice());
+  if (p_.deposits()) write_sediment_flux(records.sediment.released_m3_yr);
+  write_drainage();
   if (!grows_) add_uniform_uplift();
 }
 
@@ -229,12 +231,27 @@ bool ErosionRun::lay_ice() {
 }
 
 /// Water flows over the surface of the ice.
-void ErosionRun::write_drainage(bool iced) {
+void ErosionRun::drain_surface(bool iced) {
   if (iced) {
     drain(p_, grid_, elevation_m_, find_outlets(grid_, elevation_m_), drainage_);
   } else if (!is_routed_) {
     route();
   }
+}
+
+/// Sediment goes down the rivers of the finished surface: what were valleys when it was taken may
+/// be arms of the sea now, which it reaches once.
+void ErosionRun::write_sediment_flux(std::vector<float>& carried_m3_yr) const {
+  carried_m3_yr.resize(grid_.size(), 0.0F);
+  for (const Index cell : drainage_.graph.order) {
+    carried_m3_yr[cell] = std::max(0.0F, carried_m3_yr[cell]);
+    const Index to = drainage_.graph.receiver[cell];
+    if (to != cell) carried_m3_yr[to] += carried_m3_yr[cell];
+  }
+  io_.write(field::sediment_flux, std::move(carried_m3_yr));
+}
+
+void ErosionRun::write_drainage() {
   if (p_.steps == 0) write_incision_rate();
   release(drainage_.graph.order);
   io_.write(field::flow_receiver, std::move(drainage_.graph.receiver));
@@ -269,7 +286,6 @@ void ErosionRun::write_sediment(SedimentRecord& sediment) const {
   for (float& value : sediment.laid_m) value = static_cast<float>(per_yr * value);
   write(sediment.thickness_m, field::sediment_thickness);
   write(sediment.laid_m, field::deposition_rate);
-  write(sediment.carried_m3_yr, field::sediment_flux);
 }
 
 /// Where crust thickens, the file reports how fast rock came up, rebound included.

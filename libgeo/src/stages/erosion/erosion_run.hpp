@@ -38,7 +38,9 @@ class ErosionRun {
   bool reshape(Change&& change);
   void cut_last_sills();
   [[nodiscard]] bool lay_ice();
-  void write_drainage(bool iced);
+  void drain_surface(bool iced);
+  void write_sediment_flux(std::vector<float>& carried_m3_yr) const;
+  void write_drainage();
   void write_incision_rate() const;
   void write_erosion_rate(std::vector<float>& lowered_m) const;
   void write_crust(std::vector<double>& change_m) const;

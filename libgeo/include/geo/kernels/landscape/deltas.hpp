@@ -2,8 +2,6 @@
 
 #include <cstdint>
 #include <span>
-#include <utility>
-#include <vector>
 
 #include "geo/core/grid.hpp"
 
@@ -22,15 +20,11 @@ struct DeltaLaw {
 ///
 /// `volume_m3` in: what each river brings to its cell of the sea, 0 elsewhere; out: what is left of
 /// it. `sea`: one byte per cell. `laid_m`: by how much each cell rises, added to; `elevation_m` is
-/// that before. Volumes laid and left add up to what was brought. Returns the
-/// cells that became land, each with the cell of the sea that is nearest to it then, kNoCell where
-/// there is none. Cost: m log
-/// m in the cells filled, and a sort of the mouths. The same bits always.
+/// that before. Volumes laid and left add up to what was brought. Cost: m log m in the cells
+/// filled, and a sort of the mouths. The same bits always.
 /// Arrays have one value per cell (`check_sizes`); Bug otherwise.
-std::vector<std::pair<Index, Index>> build_deltas(const Grid& grid, const DeltaLaw& law,
-                                                  std::span<const std::uint8_t> sea,
-                                                  std::span<const float> elevation_m,
-                                                  std::span<double> volume_m3,
-                                                  std::span<float> laid_m);
+void build_deltas(const Grid& grid, const DeltaLaw& law, std::span<const std::uint8_t> sea,
+                  std::span<const float> elevation_m, std::span<double> volume_m3,
+                  std::span<float> laid_m);
 
 }  // namespace geo

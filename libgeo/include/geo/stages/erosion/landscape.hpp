@@ -38,11 +38,11 @@ struct RockVolumes {
   Number rounded{0.0};     ///< what heights in single precision differ from those sums
 };
 
-/// What rivers have laid down: thickness now, what was laid in all, and what left each cell in the
-/// last step, or arrived at the sea.
+/// What rivers have laid down: thickness now and what was laid in all; and what each cell of land
+/// gave to its river in the last step, by ice too, less what it kept of the river's.
 struct SedimentRecord {
   std::vector<float> thickness_m, laid_m;
-  std::vector<float> carried_m3_yr;
+  std::vector<float> released_m3_yr;
 };
 
 /// What a landscape remembers of its steps, one value per cell.
@@ -269,7 +269,7 @@ class Landscape {
   void build_at_mouths(const std::vector<std::uint8_t>& sea, std::vector<Number>& volume_m3);
   /// What has been laid on land and taken from it since `before_`.
   void record_layers();
-  void record_carried(const std::vector<Number>& volume_m3);
+  void record_released(const FlowGraph& graph, const std::vector<Number>& volume_m3);
   void record_at_sea(const std::vector<V>& laid_m);
   /// Airy rebound of the eroded load, and subsidence under what is laid, spread by the plate and
   /// delayed by the mantle: the part 1 - exp(-dt / tau) of what is still owed comes in each step.
@@ -307,7 +307,7 @@ template <class V>
 void Landscape<V>::step(const Drainage& drainage, bool builds_deltas, const IceWork& ice,
                         const DrainageDone& done) {
   builds_deltas_ = builds_deltas;
-  release(records_.sediment.carried_m3_yr);
+  release(records_.sediment.released_m3_yr);
   before_.assign(z_.begin(), z_.end());
   const std::span<const double> area_m2(drainage.area_m2);
   if (deposits()) {

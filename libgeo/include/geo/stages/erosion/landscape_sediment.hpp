@@ -22,7 +22,7 @@ void Landscape<V>::carry(const FlowGraph& graph, const IceWork& ice,
   if (deposits()) {
     volume_m3 = outflow(graph, before_, z_);
     record_layers();
-    record_carried(volume_m3);
+    record_released(graph, volume_m3);
   }
   if (graph_done) graph_done();
   if (deposits()) spread_at_sea(volume_m3);
@@ -46,12 +46,12 @@ void Landscape<V>::let_ice_work(const FlowGraph& graph, const IceWork& ice,
       if (to != cell) let_out_m3[to] += let_out_m3[cell];
     }
     std::vector<double> volume_m3 = outflow(graph, before_rivers, before_);
-    if (graph_done) graph_done();
 #pragma omp parallel for schedule(static)
     for (Index cell = 0; cell < grid_.size(); ++cell) volume_m3[cell] += let_out_m3[cell];
     release(let_out_m3);
     record_layers();
-    record_carried(volume_m3);
+    record_released(graph, volume_m3);
+    if (graph_done) graph_done();
     before_.assign(z_.begin(), z_.end());
     spread_at_sea(volume_m3);
   }
@@ -111,10 +111,7 @@ void Landscape<V>::build_at_mouths(const std::vector<std::uint8_t>& sea,
     std::vector<float> laid_m(grid_.size());
     std::vector<double> left_m3(grid_.size());
     for (Index cell = 0; cell < grid_.size(); ++cell) left_m3[cell] = brought_m3(cell);
-    for (const auto& [cell, mouth] : build_deltas(grid_, {}, sea, z_, left_m3, laid_m)) {
-      if (mouth != kNoCell)
-        records_.sediment.carried_m3_yr[mouth] += records_.sediment.carried_m3_yr[cell];
-    }
+    build_deltas(grid_, {}, sea, z_, left_m3, laid_m);
     for (Index cell = 0; cell < grid_.size(); ++cell) {
       volume_m3[cell] -= brought_m3(cell) - left_m3[cell];
     }
@@ -148,13 +145,18 @@ void Landscape<V>::record_layers() {
 }
 
 template <class V>
-void Landscape<V>::record_carried(const std::vector<Number>& volume_m3) {
+void Landscape<V>::record_released(const FlowGraph& graph, const std::vector<Number>& volume_m3) {
   if constexpr (kRecords) {
-    records_.sediment.carried_m3_yr.resize(grid_.size(), 0.0F);
+    std::vector<float>& released = records_.sediment.released_m3_yr;
+    released.resize(grid_.size());
 #pragma omp parallel for schedule(static)
     for (Index cell = 0; cell < grid_.size(); ++cell) {
-      records_.sediment.carried_m3_yr[cell] +=
-          static_cast<float>(std::max(0.0, volume_m3[cell]) / p_.time_step_yr);
+      released[cell] = static_cast<float>(volume_m3[cell] / p_.time_step_yr);
+    }
+    // Less what comes from above: by donors in their order, so that sums are the same always.
+    for (Index cell = 0; cell < grid_.size(); ++cell) {
+      const Index to = graph.receiver[cell];
+      if (to != cell) released[to] -= static_cast<float>(volume_m3[cell] / p_.time_step_yr);
     }
   }
 }
