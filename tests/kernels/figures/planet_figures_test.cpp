@@ -326,7 +326,8 @@ TEST(DrainageFigures, HackOfRiversOfOneWidthIsOneAndOfSimilarBasinsAHalf) {
 TEST(DrainageFigures, HortonRatiosOfAFractalTreeAreItsOwn) {
   // Columns of streams on a plane, one per row, placed so that each order has 3 times fewer streams
   // that are 2 times longer and drain 4 times as much.
-  const Grid grid = Grid::plane(80, 200, 1000.0, 1000.0);
+  constexpr int kBrooks = 40;  // that end at the shore on their own
+  const Grid grid = Grid::plane(80, 200 + kBrooks, 1000.0, 1000.0);
   std::vector<float> z(grid.size(), 5.0F);
   std::vector<std::int32_t> receiver(grid.size());
   std::vector<std::int8_t> order(grid.size(), 0);
@@ -341,8 +342,11 @@ TEST(DrainageFigures, HortonRatiosOfAFractalTreeAreItsOwn) {
       }
     }
   }
-  ASSERT_LE(row, grid.ny());
-  const auto ratios = horton_ratios(grid, {z, receiver, area}, order);
+  ASSERT_LE(row, grid.ny() - kBrooks);
+  for (int j = 0; j < row; ++j) area[grid.cell(79, j)] = 1e9;
+  for (; row < grid.ny(); ++row) order[grid.cell(0, row)] = 1;
+  EXPECT_GT(horton_ratios(grid, {z, receiver, area}, order, 0.0).bifurcation, 3.1);
+  const auto ratios = horton_ratios(grid, {z, receiver, area}, order, 1e8);
   EXPECT_NEAR(ratios.bifurcation, 3.0, 1e-9);
   EXPECT_NEAR(ratios.length, 2.0, 1e-9);
   EXPECT_NEAR(ratios.area, 4.0, 1e-9);

@@ -121,7 +121,7 @@ void measure_network(const State& state, double land_m2, Figures& figures) {
   const double least_m2 = std::max(1e10, 100.0 * grid.total_area_m2() / grid.size());
   figures["hack"] = hack_exponent(grid, drainage, least_m2);
   if (state.has(field::stream_order)) {
-    const auto ratios = horton_ratios(grid, drainage, state.read(field::stream_order));
+    const auto ratios = horton_ratios(grid, drainage, state.read(field::stream_order), least_m2);
     figures["horton_bifurcation"] = ratios.bifurcation;
     figures["horton_length"] = ratios.length;
     figures["horton_area"] = ratios.area;

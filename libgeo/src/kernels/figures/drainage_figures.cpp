@@ -45,6 +45,19 @@ bool is_mouth(const DrainedPlanet& drainage, Index c) {
   return is_land(drainage, c) && (to == c || !is_land(drainage, to));
 }
 
+/// Whether each cell lies in a basin that drains at least so much at its mouth.
+std::vector<std::uint8_t> cells_of_large_basins(const DrainedPlanet& drainage,
+                                                double least_area_m2) {
+  std::vector<std::uint8_t> is_large(drainage.receiver.size(), 0);
+  const auto order = downstream_order(drainage.receiver);
+  for (auto cell = order.rbegin(); cell != order.rend(); ++cell) {
+    if (!is_land(drainage, *cell)) continue;
+    is_large[*cell] = is_mouth(drainage, *cell) ? drainage.area_m2[*cell] >= least_area_m2
+                                                : is_large[drainage.receiver[*cell]];
+  }
+  return is_large;
+}
+
 }  // namespace
 
 std::vector<float> flow_length_m(const Grid& grid, const DrainedPlanet& drainage) {
@@ -72,14 +85,15 @@ double hack_exponent(const Grid& grid, const DrainedPlanet& drainage, double lea
 }
 
 HortonRatios horton_ratios(const Grid& grid, const DrainedPlanet& drainage,
-                           std::span<const std::int8_t> stream_order) {
+                           std::span<const std::int8_t> stream_order, double least_area_m2) {
   check_shapes(grid, drainage);
   check_shape(grid, stream_order.size(), "stream_order");
   constexpr int kOrders = 128, kFewestStreams = 5, kFewestOrders = 3;
   std::array<double, kOrders> streams{}, length_m{}, area_m2{};
+  const auto is_counted = cells_of_large_basins(drainage, least_area_m2);
   for (Index c = 0; c < grid.size(); ++c) {
     const int order = stream_order[c];
-    if (order <= 0) continue;
+    if (order <= 0 || is_counted[c] == 0) continue;
     const Index to = drainage.receiver[c];
     if (to != c) length_m[order] += step_m(grid, c, to);
     if (to == c || stream_order[to] != order) {

@@ -29,9 +29,11 @@ struct HortonRatios {
   double bifurcation, length, area;
 };
 /// Numbers, mean lengths and mean areas of streams by order, as straight lines in the logarithm.
-/// Orders with fewer than five streams do not count; NaN with fewer than three orders left.
+/// Streams of the basins that drain at least `least_area_m2` at their mouth, as Horton's laws are
+/// those of a basin: brooks along a coast join no other. Orders with fewer than five streams do not
+/// count; NaN with fewer than three orders left.
 HortonRatios horton_ratios(const Grid& grid, const DrainedPlanet& drainage,
-                           std::span<const std::int8_t> stream_order);
+                           std::span<const std::int8_t> stream_order, double least_area_m2);
 
 /// Areas of the basins on land by number (`basin_id`, 1 the first; position 0 unused), and whether
 /// each ends on land.
