@@ -10,14 +10,15 @@ namespace geo::calibration {
 /// in fitted scales, with s2 = 2 cost / (residuals - parameters), what the residuals show, and e_r
 /// the error to which the figure of residual r is known, over its deviation: that of a quantile
 /// where the target or calibration.error_m says it, of terms and priors their deviation. It is the
-/// same for targets of every kind. J is taken by central differences of planets rerouted, over
-/// 2 % of each parameter; `frozen`: derivatives with drainage frozen, for one that cannot move.
-/// Seeds by the influence of each on the minimum, (J^T J)^-1 J_s^T r_s (a delete-one jackknife, Wu
-/// 1986). Directions are the right singular vectors of J. What is not determined gives warnings in
-/// words. `objective` must have been evaluated and linearised with a Jacobian at `x`, and is left
+/// same for targets of every kind. J: `jacobian`, with drainage frozen; a standard error is that
+/// of central differences over 2 % of planets routed anew if it is larger, as routes and coasts
+/// that follow make the fit of a noisy target less sure. Seeds by the influence of each on the
+/// minimum, (J^T J)^-1 J_s^T r_s (a delete-one jackknife, Wu 1986). Directions are the right
+/// singular vectors of J. What is not determined gives warnings in words.
+/// `objective` must have been evaluated and linearised with a Jacobian at `x`, and is left
 /// evaluated there.
 void assess(Objective& objective, const Problem& problem, const Eigen::VectorXd& x,
-            const Eigen::VectorXd& residual, const Eigen::MatrixXd& frozen, Result& result);
+            const Eigen::VectorXd& residual, const Eigen::MatrixXd& jacobian, Result& result);
 
 /// Profile likelihood of parameter `i` about `x`, with all frozen as the last `evaluate` left it:
 /// it is moved in three steps of a third of `reach` to either side, as far as its bounds allow, and

@@ -42,7 +42,7 @@ struct IsostasyParameters {
   double lithosphere = 1.22;
   double craton_compensation = 0.95;
   double swell_m = 345.0;
-  double ocean_swell_m = 510.0;
+  double ocean_swell_m = 430.0;
   double margin_tilt_m = 760.0;
   double margin_tilt_km = 260.0;
   double relict_km = 5.2;
