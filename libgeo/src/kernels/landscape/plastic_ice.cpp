@@ -6,10 +6,10 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <queue>
 #include <utility>
 
 #include "geo/core/error.hpp"
+#include "monotone_queue.hpp"
 
 namespace geo {
 namespace {
@@ -92,8 +92,7 @@ class March {
       }
     });
     while (!front_.empty()) {
-      const auto [height, cell] = front_.top();
-      front_.pop();
+      const auto [height, cell] = front_.pop();
       if (settled_.of(cell) != 0 || height > surface_.height_m.of(cell)) continue;
       settled_.of(cell) = 1;
       surface_.order.push_back(cell);
@@ -103,8 +102,6 @@ class March {
   }
 
  private:
-  using Entry = std::pair<float, Index>;
-
   void settle_margin(Index cell) {
     surface_.height_m.of(cell) = std::max(bed_m_[cell], 0.0F);
     settled_.of(cell) = 1;
@@ -125,7 +122,7 @@ class March {
     if (height >= now) return;
     now = height;
     surface_.lowest.of(cell) = from;
-    front_.emplace(height, cell);
+    front_.push(height, cell);
   }
   [[nodiscard]] double rise(Index cell, Index from, int back) const {
     const double bed = bed_m_[cell], below = surface_.height_m.of(from);
@@ -157,7 +154,7 @@ class March {
   std::shared_ptr<const CellSet> reach_;
   IceSurface surface_;
   SparseValues<std::uint8_t> settled_;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front_;
+  MonotoneQueue front_;
 };
 
 }  // namespace
