@@ -176,18 +176,16 @@ Manifest read_manifest(const std::filesystem::path& path) {
     throw IoError(
         fmt::format("cannot read {}: {}", path.string(), std::generic_category().message(errno)));
   }
-  const auto refuse = [&](const std::exception& error) {
-    throw InputError(fmt::format("{}: no manifest of this version of terrane ({})", path.string(),
-                                 error.what()));
-  };
+  std::string reason;
   try {
     return manifest_from(Json::parse(stream));
   } catch (const Json::exception& error) {
-    refuse(error);
+    reason = error.what();
   } catch (const InputError& error) {
-    refuse(error);
+    reason = error.what();
   }
-  return {};
+  throw InputError(
+      fmt::format("{}: no manifest of this version of terrane ({})", path.string(), reason));
 }
 
 std::string disagreement(const StageRecord& record, const Snapshot& file) {
