@@ -22,6 +22,7 @@ namespace {
 struct MapsOptions {
   std::string folder, width, projection, center, box, stage, output;
   std::vector<std::string> fields;
+  bool frames = false;
 
   [[nodiscard]] bool is_other_view() const {
     return !projection.empty() || !center.empty() || !box.empty();
@@ -55,6 +56,7 @@ std::filesystem::path folder_for(const MapsOptions& options, const geo::io::RunF
     path /=
         view.projection == "equirectangular" ? (view.box ? "window" : "centred") : view.projection;
   }
+  if (options.frames) path /= "frames";
   return options.fields.empty() ? path : path / "fields";
 }
 
@@ -74,7 +76,9 @@ void draw_maps(const MapsOptions& options) {
                              &configuration.settings.events);
   const geo::io::MapView view = view_of(options, configuration);
   std::vector<std::filesystem::path> drawn;
-  if (!options.fields.empty()) {
+  if (options.frames) {
+    drawn = geo::io::draw_frames(folder, view, folder_for(options, folder, view));
+  } else if (!options.fields.empty()) {
     for (const std::string& field : options.fields) {
       drawn.push_back(geo::io::draw_field(folder, view, {field, options.stage},
                                           folder_for(options, folder, view)));
@@ -132,6 +136,10 @@ void add_maps_command(CLI::App& program, Action& action) {
       ->add_option("--stage", options->stage,
                    "Stage or island that the field is of (default: the last that wrote it)")
       ->type_name("NAME");
+  command
+      ->add_flag("--frames", options->frames,
+                 "Draws the frames of a run through time instead, for films: frames/THEME/TIME.png")
+      ->excludes("--field");
   command->add_option("-o,--output", options->output, "Folder for the pictures")->type_name("DIR");
   command->footer(footer());
   command->callback([&action, options] { action = [options] { draw_maps(*options); }; });

@@ -246,6 +246,25 @@ TEST_F(Scenario, ItsFramesAreWrittenAndGoOn) {
   EXPECT_EQ(plates(first), whole);  // digests of every field among it
 }
 
+TEST_F(Scenario, ItsLandscapeIsInFramesAndFilms) {
+  run("island-and-supercontinent.toml",
+      {"--set", "plates.sphere.time_myr=20", "--set", "plates.sphere.frames_myr=10", "--set",
+       "plates.landscape=full"});
+  const fs::path films = out_ / "maps" / "frames";
+  const Outcome drawn = terrane({"maps", out_.string(), "--frames", "--width", "300"});
+  ASSERT_EQ(drawn.code, 0) << drawn.err;
+  for (const char* theme : {"elevation", "precipitation", "temperature", "crust_age"}) {
+    for (const char* time : {"0000.00.png", "0010.00.png", "0020.00.png"}) {
+      EXPECT_TRUE(fs::exists(films / theme / time)) << theme << time;
+    }
+  }
+  run("island-and-supercontinent.toml",
+      {"--overwrite", "--set", "plates.sphere.time_myr=10", "--set", "plates.sphere.frames_myr=0"});
+  const Outcome none = terrane({"maps", out_.string(), "--frames"});
+  EXPECT_EQ(none.code, 2);
+  EXPECT_NE(none.err.find("has no frames to draw"), std::string::npos) << none.err;
+}
+
 // fields.plates: what one drift leaves begins another one, also behind an export.
 
 std::vector<std::int16_t> plates_in(const std::string& file) {

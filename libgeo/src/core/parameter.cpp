@@ -203,6 +203,14 @@ const Parameter* find_parameter(std::span<const Parameter> parameters, std::stri
   return at == parameters.end() ? nullptr : &*at;
 }
 
+void take_values(std::span<const Parameter> settings, std::span<const Parameter> from) {
+  for (const Parameter& setting : settings) {
+    if (const Parameter* namesake = find_parameter(from, setting.name)) {
+      setting.set(namesake->value());
+    }
+  }
+}
+
 const Parameter* find_renamed(std::span<const Parameter> parameters, std::string_view name) {
   const std::string_view stage = section_of(name);
   const Parameter* model = find_parameter(parameters, fmt::format("{}.model", stage));

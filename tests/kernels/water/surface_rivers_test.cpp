@@ -117,7 +117,7 @@ TEST(SurfaceRivers, FillLakesToTheirSillAndNoFarther) {
   const std::vector<std::int8_t> is_rock{0, 0, 0, 0, 0, 1, 1};  // the sill stays
   const auto work = run_rivers(graph, route_rivers(graph, z), law, is_rock, z, rock);
   for (const int i : {1, 2, 3, 4}) EXPECT_FLOAT_EQ(z[i], 5.0F);
-  EXPECT_NEAR(work.in_lakes_m3, 1e6 * (4.0 + 2.0 + 3.0), 1.0);
+  EXPECT_NEAR(work.on_land_m3, 1e6 * (4.0 + 2.0 + 3.0), 1.0);
   // K dt A^m / d: 1 for the last place of 1 km2, sqrt 2 for the one before, above a lake of 5.
   const double before = 5.0 + 595.0 / (1.0 + std::sqrt(2.0));
   EXPECT_NEAR(z[5], before, 1e-3);
@@ -176,8 +176,8 @@ TEST(SurfaceRivers, LoseNothing) {
     const RiverLaw law{.erodibility_yr = 1e-6};
     const auto work = run_rivers(graph, route_rivers(graph, z), law, is_rock, z, rock);
     EXPECT_GT(work.eroded_m3, 0.0);
-    EXPECT_GT(work.in_lakes_m3, 0.0);
-    EXPECT_NEAR(work.in_lakes_m3 + work.in_sea_m3, work.eroded_m3, 1e-12 * work.eroded_m3);
+    EXPECT_GT(work.on_land_m3, 0.0);
+    EXPECT_NEAR(work.on_land_m3 + work.in_sea_m3, work.eroded_m3, 1e-12 * work.eroded_m3);
     double laid_m = 0.0, gone_m = 0.0;
     for (std::size_t i = 0; i < z.size(); ++i) {
       (rock[i] < 0.0F ? gone_m : laid_m) += std::abs(rock[i]);
@@ -322,6 +322,56 @@ TEST(SphereRivers, GiveTheSameBitsOnAnyNumberOfThreads) {
     EXPECT_EQ(ends[k], ends[2 + k]);
     EXPECT_EQ(ends[k], ends[4 + k]);
   }
+}
+
+TEST(SurfaceRivers, ThatDepositAreSteadyWhereTheyCarryWhatRises) {
+  // K A^m S = (1 + G) U everywhere, with K over the rebound.
+  const SurfaceGraph graph = row_of(40);
+  RiverLaw law;
+  law.erodibility_yr = 1e-5;
+  law.deposition = 1.5;
+  law.dt_yr = 1e5;
+  law.settling_km = 1.0;
+  constexpr double kUplift_m_yr = 1e-4;
+  std::vector<float> z(40, 1.0F), rock(40);
+  z[0] = -5000.0F;
+  const std::vector<std::int8_t> is_rock(40, 1);
+  for (int step = 0; step < 4000; ++step) {
+    for (int i = 1; i < 40; ++i) z[i] += static_cast<float>(kUplift_m_yr * law.dt_yr);
+    z[0] = -5000.0F;
+    run_rivers(graph, route_rivers(graph, z), law, is_rock, z, rock);
+  }
+  for (int i = 2; i < 39; ++i) {
+    const double area_m2 = 1e6 * (40 - i), slope = (z[i] - z[i - 1]) / 1000.0;
+    const double lowering = law.erodibility_yr / law.rebound * std::sqrt(area_m2) * slope;
+    EXPECT_NEAR(lowering, (1.0 + law.deposition) * kUplift_m_yr, 0.01 * lowering) << i;
+  }
+}
+
+TEST(SurfaceRivers, ThatDepositLoseNothing) {
+  const SampledSphere world(20000);
+  const SurfaceGraph graph = whole_sphere(world);
+  for (const double deposition : {0.3, 1.0, 10.0}) {
+    RiverLaw law;
+    law.deposition = deposition;
+    std::vector<float> z = rough_continent(world, 0.7, 5), rock(z.size());
+    const std::vector<std::int8_t> is_rock(z.size(), 1);
+    for (int step = 0; step < 3; ++step) {
+      const auto work = run_rivers(graph, route_rivers(graph, z), law, is_rock, z, rock);
+      EXPECT_GT(work.on_land_m3, 0.0);
+      EXPECT_NEAR(work.on_land_m3 + work.in_sea_m3, work.eroded_m3, 1e-9 * work.eroded_m3);
+    }
+  }
+}
+
+TEST(SurfaceRivers, AreAsLargeAsTheRunoffOfWhatTheyDrain) {
+  const SurfaceGraph graph = row_of(5);
+  const std::vector<float> z{-10.0F, 1.0F, 2.0F, 3.0F, 4.0F}, runoff{1.0F, 0.5F, 2.0F, 0.0F, 3.0F};
+  const SurfaceRivers rivers = route_rivers(graph, z, runoff);
+  EXPECT_EQ(rivers.area_m2[4], 3e6);
+  EXPECT_EQ(rivers.area_m2[3], 3e6);
+  EXPECT_EQ(rivers.area_m2[2], 5e6);
+  EXPECT_EQ(rivers.area_m2[1], 5.5e6);
 }
 
 }  // namespace

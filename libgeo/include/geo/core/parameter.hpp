@@ -90,6 +90,8 @@ std::string to_toml(const ParameterValue& value);
 
 /// The parameter of that name, or nullptr.
 const Parameter* find_parameter(std::span<const Parameter> parameters, std::string_view name);
+/// Gives settings the values that their namesakes have elsewhere, where there are some.
+void take_values(std::span<const Parameter> settings, std::span<const Parameter> from);
 /// The parameter that earlier versions called `name`, or nullptr: the one that was renamed so, or
 /// the one with that key in the section of a model, as those stood in their stage's own section.
 const Parameter* find_renamed(std::span<const Parameter> parameters, std::string_view name);

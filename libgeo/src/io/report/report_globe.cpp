@@ -162,9 +162,8 @@ ordered_json add_frames(const std::vector<GlobeFrame>& frames, const Thinning& t
   auto index = ordered_json::array();
   for (const GlobeFrame& frame : frames) {
     const Thinning own(frame.state.grid(), kMostColumns);
-    const FieldSpec& relief = frame.state.has(field::crust_elevation)
-                                  ? static_cast<const FieldSpec&>(field::crust_elevation)
-                                  : field::elevation;
+    const FieldSpec& relief =
+        frame.state.has(field::elevation) ? field::elevation : field::crust_elevation;
     if (own.nx != thinning.nx || own.ny != thinning.ny || !frame.state.has(relief)) continue;
     auto entry = entry_of("Elevation", "m", "smooth");
     entry["time_myr"] = frame.time_myr;

@@ -24,6 +24,7 @@
 #include "io/maps/map_year.hpp"
 #include "io/report/report_globe.hpp"
 #include "io/report/side_by_side.hpp"
+#include "run_frames.hpp"
 
 namespace geo::io {
 namespace {
@@ -173,32 +174,6 @@ State state_for(const RunFolder& folder, const Manifest& manifest, const StageRe
   return state;
 }
 
-/// The elevation of some frames of a run through time, the first and the last among them.
-std::vector<GlobeFrame> frames_of(const RunFolder& folder) {
-  constexpr std::size_t kMost = 12;
-  std::vector<std::filesystem::path> files;
-  const auto place = folder.path() / "frames";
-  if (!std::filesystem::is_directory(place)) return {};
-  for (const auto& entry : std::filesystem::directory_iterator(place)) {
-    if (entry.path().extension() == ".nc") files.push_back(entry.path());
-  }
-  std::sort(files.begin(), files.end());
-  std::vector<GlobeFrame> frames;
-  const std::size_t count = std::min(kMost, files.size());
-  for (std::size_t k = 0; k < count; ++k) {
-    const auto& file = files[count < 2 ? 0 : k * (files.size() - 1) / (count - 1)];
-    const Snapshot snapshot = read_netcdf(file, [](const FieldSpec& spec) {
-      return spec.name == field::crust_elevation.name || spec.name == field::elevation.name;
-    });
-    State state(snapshot.grid);
-    for (const auto& [spec, values] : snapshot.fields) state.share(*spec, values);
-    // "plates-0050": the time is in the name.
-    const std::string name = file.stem().string();
-    frames.push_back({std::stod(name.substr(name.find_last_of('-') + 1)), std::move(state)});
-  }
-  return frames;
-}
-
 /// The year of the planet, where the run has written its months.
 std::optional<PlanetMonths> months_of(const RunFolder& folder, const Manifest& manifest,
                                       const Grid& grid) {
@@ -282,7 +257,8 @@ std::vector<std::filesystem::path> draw_run(const RunFolder& folder, const MapVi
   std::vector<std::function<void()>> pieces;
   pieces.emplace_back([&] { report.scorecard = scorecard_of(state); });
   const auto months = months_of(folder, manifest, state.grid());
-  pieces.emplace_back([&] { report.globe = globe_markup(state, frames_of(folder), months); });
+  pieces.emplace_back(
+      [&] { report.globe = globe_markup(state, globe_frames(folder, manifest), months); });
   const std::vector<const StageRecord*> islands = islands_of(manifest);
   std::vector<std::vector<MapFile>> island_maps(islands.size());
   for (std::size_t k = 0; k < islands.size(); ++k) {

@@ -117,6 +117,110 @@ float lowest_neighbour_m(const SurfaceGraph& graph, std::span<const float> z, st
   return lowest == kFar ? z[i] : lowest;
 }
 
+/// The elimination of the law on land. Volumes are in metres of the surface on one place.
+class LandStep {
+ public:
+  LandStep(const SurfaceGraph& graph, const SurfaceRivers& rivers, const RiverLaw& law,
+           std::span<const std::int8_t> is_rock, std::span<const float> z)
+      : graph_(graph), rivers_(rivers), law_(law), is_rock_(is_rock), z_(z) {
+    level_m_.assign(z.size(), 0.0F);
+    places_.assign(z.size(), 1.0);
+    lowering_m_.assign(z.size(), 0.0);
+    follows_.assign(z.size(), 0.0);
+    for (const std::int32_t i : rivers_.order) {
+      level_m_[i] = std::max(z_[i], static_cast<float>(base_m(i)));
+    }
+    for (auto at = rivers_.order.rbegin(); at != rivers_.order.rend(); ++at) {
+      const std::int32_t to = rivers_.receiver[*at];
+      if (to >= 0) places_[to] += places_[*at];
+    }
+  }
+
+  /// Elevations after the step; those off the land are as they were.
+  std::vector<float> solve() {
+    eliminate();
+    substitute();
+    std::vector<float> after(z_.begin(), z_.end());
+    for (const std::int32_t i : rivers_.order) {
+      after[i] = static_cast<float>(z_[i] - lowering_m_[i]);
+    }
+    return after;
+  }
+
+ private:
+  [[nodiscard]] bool is_land(std::int32_t i) const {
+    return i >= 0 && rivers_.distance_m[i] > 0.0F;
+  }
+  /// Lakes, and places without a way out, which hold what comes.
+  [[nodiscard]] bool is_basin(std::int32_t i) const {
+    return level_m_[i] > z_[i] || rivers_.receiver[i] == SurfaceRivers::kSink;
+  }
+  [[nodiscard]] bool moves(std::int32_t i) const { return is_land(i) && !is_basin(i); }
+  /// Of the water that a place drains to.
+  [[nodiscard]] double base_m(std::int32_t i) const {
+    const std::int32_t to = rivers_.receiver[i];
+    return to >= 0 ? level_m_[to] : to == SurfaceRivers::kOpen ? 0.0 : z_[i];
+  }
+  [[nodiscard]] double factor(std::int32_t i) const {
+    if (is_rock_[i] == 0) return 0.0;
+    const double per_step = law_.erodibility_yr / law_.rebound * law_.dt_yr;
+    return per_step * std::pow(rivers_.area_m2[i], law_.area_exponent) / rivers_.distance_m[i];
+  }
+  [[nodiscard]] double room_m(std::int32_t i) const {
+    const float full_m = rivers_.receiver[i] == SurfaceRivers::kSink
+                             ? lowest_neighbour_m(graph_, z_, i)
+                             : level_m_[i];
+    return std::max(0.0, static_cast<double>(full_m) - z_[i]);
+  }
+
+  /// Down the rivers: lowering e = lowering + follows e_receiver. Until its turn a place holds what
+  /// its donors bring, lowering + follows e of its own.
+  void eliminate() {
+    for (auto at = rivers_.order.rbegin(); at != rivers_.order.rend(); ++at) {
+      const std::int32_t i = *at, to = rivers_.receiver[i];
+      const double brought = lowering_m_[i], more = follows_[i];
+      double out = 0.0, out_follows = 0.0;
+      if (is_basin(i)) {
+        const double laid = std::clamp(brought, 0.0, room_m(i));
+        lowering_m_[i] = -laid;
+        follows_[i] = 0.0;
+        out = brought - laid;
+      } else {
+        const double settles = law_.deposition / places_[i], f = factor(i);
+        const double total = 1.0 + f + settles * (1.0 + more);
+        lowering_m_[i] = (f * (z_[i] - base_m(i)) - settles * brought) / total;
+        follows_[i] = moves(to) ? f / total : 0.0;
+        out = brought + (1.0 + more) * lowering_m_[i];
+        out_follows = (1.0 + more) * follows_[i];
+      }
+      if (!is_land(to)) continue;
+      lowering_m_[to] += out;
+      follows_[to] += out_follows;
+    }
+  }
+  /// Up the rivers. What lies below its receiver is not cut, and keeps what settles on it.
+  void substitute() {
+    for (const std::int32_t i : rivers_.order) {
+      if (is_basin(i)) continue;
+      const std::int32_t to = rivers_.receiver[i];
+      const double sinks_m = moves(to) ? lowering_m_[to] : 0.0;
+      double& e = lowering_m_[i];
+      e += follows_[i] * sinks_m;
+      const double drop_m = z_[i] - base_m(i) - e + sinks_m;
+      if (drop_m < 0.0) e = std::min(e - factor(i) * drop_m, 0.0);
+    }
+  }
+
+  const SurfaceGraph& graph_;
+  const SurfaceRivers& rivers_;
+  const RiverLaw& law_;
+  std::span<const std::int8_t> is_rock_;
+  std::span<const float> z_;
+  std::vector<float> level_m_;  ///< of the water at each place; that of the sea is 0
+  std::vector<double> places_;  ///< that drain through each
+  std::vector<double> lowering_m_, follows_;
+};
+
 /// Lays what rivers bring to the sea.
 class Sea {
  public:
@@ -124,7 +228,7 @@ class Sea {
       : graph_(graph), law_(law), z_(z), rock_m_(rock_m), load_m3_(z.size(), 0.0) {}
 
   void take(std::int32_t place, double m3) {
-    if (place < 0) {
+    if (place < 0 || m3 < 0.0) {  // what has settled on land beyond what came
       rest_m3_ += m3;
     } else {
       load_m3_[place] += m3;
@@ -201,7 +305,7 @@ class Sea {
     }
   }
   void settle_evenly() {
-    if (rest_m3_ <= 0.0) return;
+    if (rest_m3_ == 0.0) return;
     const auto is_deep = [&](std::int32_t i) {
       return graph_.is_there[i] != 0 && z_[i] < -law_.shelf_m;
     };
@@ -224,10 +328,14 @@ class Sea {
 
 }  // namespace
 
-SurfaceRivers route_rivers(const SurfaceGraph& graph, std::span<const float> elevation_m) {
-  check_sizes("route_rivers", graph.is_there.size(), {{"elevation_m", elevation_m.size()}});
+SurfaceRivers route_rivers(const SurfaceGraph& graph, std::span<const float> elevation_m,
+                           std::span<const float> runoff) {
+  check_sizes(
+      "route_rivers", graph.is_there.size(),
+      {{"elevation_m", elevation_m.size()}, {"runoff", runoff.size(), ArraySize::May::be_empty}});
   SurfaceRivers rivers = Flood(graph, elevation_m).run();
   rivers.area_m2.assign(elevation_m.size(), graph.area_m2);
+  for (std::size_t i = 0; i < runoff.size(); ++i) rivers.area_m2[i] *= runoff[i];
   for (auto at = rivers.order.rbegin(); at != rivers.order.rend(); ++at) {
     const std::int32_t to = rivers.receiver[*at];
     if (to >= 0) rivers.area_m2[to] += rivers.area_m2[*at];
@@ -242,49 +350,22 @@ RiverWork run_rivers(const SurfaceGraph& graph, const SurfaceRivers& rivers, con
               {{"receiver", rivers.receiver.size()},
                {"is_rock", is_rock.size()},
                {"rock_m", rock_m.size()}});
-  RiverWork work;
   std::fill(rock_m.begin(), rock_m.end(), 0.0F);
-  // Level of the water at each place; that of the sea is 0.
-  std::vector<float> level(elevation_m.size(), 0.0F);
+  const std::vector<float> land_m = LandStep(graph, rivers, law, is_rock, elevation_m).solve();
+  RiverWork work;
   std::vector<double> load_m3(elevation_m.size(), 0.0);
-  const double per_step = law.erodibility_yr / law.rebound * law.dt_yr;
-  for (const std::int32_t i : rivers.order) {
-    const std::int32_t to = rivers.receiver[i];
-    const double base_m = to >= 0 ? level[to] : to == SurfaceRivers::kOpen ? 0.0 : elevation_m[i];
-    const double drop_m = elevation_m[i] - base_m;
-    if (drop_m > 0.0 && is_rock[i] != 0) {
-      const double factor =
-          per_step * std::pow(rivers.area_m2[i], law.area_exponent) / rivers.distance_m[i];
-      const auto lower_m = static_cast<float>(base_m + drop_m / (1.0 + factor));
-      const double gone_m = law.rebound * (static_cast<double>(elevation_m[i]) - lower_m);
-      elevation_m[i] = lower_m;
-      rock_m[i] = static_cast<float>(-gone_m);
-      load_m3[i] = gone_m * graph.area_m2;
-      work.eroded_m3 += load_m3[i];
-    }
-    level[i] = std::max(elevation_m[i], static_cast<float>(base_m));
-  }
   Sea sea(graph, law, elevation_m, rock_m);
   for (auto at = rivers.order.rbegin(); at != rivers.order.rend(); ++at) {
     const std::int32_t i = *at, to = rivers.receiver[i];
-    if (load_m3[i] <= 0.0) continue;
-    const float full_m =
-        to == SurfaceRivers::kSink ? lowest_neighbour_m(graph, elevation_m, i) : level[i];
-    const double deep_m = std::max(0.0, static_cast<double>(full_m) - elevation_m[i]);
-    const double room_m3 = law.rebound * deep_m * graph.area_m2;
-    const double kept_m3 = std::min(load_m3[i], room_m3);
-    if (kept_m3 > 0.0) {
-      const double thick_m = kept_m3 / graph.area_m2;
-      elevation_m[i] += static_cast<float>(thick_m / law.rebound);
-      rock_m[i] += static_cast<float>(thick_m);
-      work.in_lakes_m3 += kept_m3;
-    }
-    const double on_m3 = load_m3[i] - kept_m3;
-    if (on_m3 <= 0.0) continue;
+    const double gone_m = law.rebound * (static_cast<double>(elevation_m[i]) - land_m[i]);
+    elevation_m[i] = land_m[i];
+    rock_m[i] = static_cast<float>(-gone_m);
+    (gone_m > 0.0 ? work.eroded_m3 : work.on_land_m3) += std::abs(gone_m) * graph.area_m2;
+    load_m3[i] += gone_m * graph.area_m2;
     if (to >= 0 && rivers.distance_m[to] > 0.0F) {
-      load_m3[to] += on_m3;
+      load_m3[to] += load_m3[i];
     } else {
-      sea.take(to, on_m3);
+      sea.take(to, load_m3[i]);
     }
   }
   work.in_sea_m3 = sea.settle();

@@ -20,14 +20,10 @@ std::unique_ptr<Stage> climate_stage_of(std::span<const Parameter> configuration
   land.solves_currents = false;
   land.colder_k = air.colder_k;
   auto stage = make_climate_stage(land);
-  for (const Parameter& parameter : stage->parameters()) {
-    if (const Parameter* outside = find_parameter(configuration, parameter.name)) {
-      parameter.set(outside->value());
-    }
-    if (parameter.name == "climate.resolution_deg") {
-      parameter.set(std::min(parameter.max, air.coarser * std::get<double>(parameter.value())));
-    }
-  }
+  const std::vector<Parameter> settings = stage->parameters();
+  take_values(settings, configuration);
+  const Parameter* spacing = find_parameter(settings, "climate.resolution_deg");
+  spacing->set(std::min(spacing->max, air.coarser * std::get<double>(spacing->value())));
   return stage;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "geo/core/error.hpp"
 #include "hypsography.hpp"
 #include "stages/plates/growth/growth.hpp"
 #include "stages/plates/raster/raster.hpp"
@@ -45,6 +46,10 @@ class PlatesStage final : public Stage {
   }
 
   void run(StageIo& io, Context& context) const override {
+    if (parameters_.landscape == "full" && parameters_.model != "sphere") {
+      throw ConfigurationError(
+          "plates.landscape = \"full\" is of plates that drift: plates.model must be \"sphere\"");
+    }
     if (parameters_.model == "sphere") return drift(parameters_, info(), io, context);
     if (!context.plates.empty() || context.initial_elevation) {
       context.warnings.push_back(

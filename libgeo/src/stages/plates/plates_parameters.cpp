@@ -287,12 +287,25 @@ std::vector<Parameter> sphere_surface_rows(PlatesParameters& p) {
           "continents erode according to their height, and basins below the sea fill up; the same "
           "on land alone; or rivers erode them between the steps and deposit what they carry",
           "cortial2019"),
+      choice(
+          "plates.landscape", p.landscape, {"none", "full"},
+          "whether drifting plates have a climate: rivers that run on its rain, ice, a sea whose "
+          "water stays, and all of that in the frames",
+          "design"),
+      real("plates.sphere.climate_myr", p.climate_myr, "Myr", 0.1, 1000.0,
+           "time between two of these climates", "design"),
       choice("plates.sphere.sea_level", p.sea_level, {"fixed", "ocean"},
              "base level of that erosion: elevation 0, or, in each step, the level below which "
              "planet.ocean_fraction of the surface lies",
              "design"),
       real("plates.sphere.river_erodibility_yr", p.sphere.rivers.erodibility_yr, "yr-1", 0.0, 1.0,
            "erodibility K for the square root of the drained area, with rivers", "whipple1999"),
+      real("plates.sphere.river_deposition", p.sphere.rivers.deposition, "1", 0.0, 1000.0,
+           "deposition G: what rivers deposit, over the mean loss of the land upstream",
+           "davy2009"),
+      real("plates.sphere.accreted_share", p.sphere.accreted_share, "1", 0.0, 1.0,
+           "share of the rivers' sediment on floor that subducts which is scraped off and stays",
+           "vonhuene1991"),
       real("plates.sphere.settling_km", p.sphere.rivers.settling_km, "km", 1.0, 5000.0,
            "length over which most of the rivers' sediment is deposited at sea, with rivers",
            "design"),

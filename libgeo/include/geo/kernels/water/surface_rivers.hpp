@@ -21,6 +21,7 @@ struct SurfaceGraph {
 struct RiverLaw {
   double erodibility_yr = 1e-7;  ///< K, m^(1 - 2m) yr-1
   double area_exponent = 0.5;    ///< m
+  double deposition = 0.0;       ///< G: 0 is detachment-limited
   double dt_yr = 2e6;
   double rebound = 6.6;  ///< rock that goes for each metre by which land sinks: local isostasy
   double settling_km = 300.0;  ///< e-folding length of what the sea carries away from a coast
@@ -35,26 +36,34 @@ struct SurfaceRivers {
   std::vector<std::int32_t> order;           ///< land, each place behind its receiver
   std::vector<std::int32_t> receiver;        ///< of each place; kSink off the land
   std::vector<float> distance_m;             ///< to the receiver
-  std::vector<double> area_m2;               ///< drained, the place itself included
+  std::vector<double> area_m2;               ///< drained, the place itself included, times runoff
 };
 
 /// Steepest descent over filled ground: land is flooded from the coast inland, lowest first (Barnes
 /// et al. 2014); of the neighbours that water has reached before it, a place drains to the one to
 /// which its level falls most steeply, in a lake to that from which the flood came. No cycles, no
-/// place left out. Cost n log n in places of land. Throws Bug unless there is one value per place.
-SurfaceRivers route_rivers(const SurfaceGraph& graph, std::span<const float> elevation_m);
+/// place left out. `runoff` weighs the area of each place, so that area is discharge over a
+/// reference runoff; without it all weigh 1. Cost n log n in places of land. Throws Bug unless
+/// there is one value per place.
+SurfaceRivers route_rivers(const SurfaceGraph& graph, std::span<const float> elevation_m,
+                           std::span<const float> runoff = {});
 
 /// What a step of rivers moved, m3 of rock.
 struct RiverWork {
-  double eroded_m3 = 0.0, in_lakes_m3 = 0.0, in_sea_m3 = 0.0;
+  double eroded_m3 = 0.0, on_land_m3 = 0.0, in_sea_m3 = 0.0;
 };
 
-/// One step of rivers: stream power, dz/dt = -(K / rebound) A^m S, implicit from outlets upwards
-/// (Braun & Willett 2013), unconditionally stable; the sea and the level of lakes are its base.
-/// What is eroded fills lakes up to their level; the rest spreads in the sea away from the coast,
-/// falls by 1/e over settling_km and fills no place above the shelf's depth. What finds no room
-/// settles evenly on all deep floor. Nothing is lost where there is any: eroded = in lakes + in
-/// the sea.
+/// One step of rivers that erode and deposit at once:
+///
+///   dz/dt = -(K / rebound) A^m S + (G / A*) Q,
+///
+/// with Q what leaves a place, as a rate of lowering times area, and A* the area that it comes from
+/// (Davy & Lague 2009; Yuan et al. 2019). Implicit in one sweep down the rivers and one up
+/// (Hergarten 2020), as `incise_and_deposit` for n = 1, unconditionally stable; the sea and the
+/// level of lakes are its base. What rivers bring to lakes fills them up to their level; the rest
+/// spreads in the sea away from the coast, falls by 1/e over settling_km and fills no place above
+/// the shelf's depth. What finds no room settles evenly on all deep floor. Nothing is lost where
+/// there is any: eroded = on land + in the sea.
 ///
 /// `is_rock`: places that rivers erode. `elevation_m` in and out; `rock_m`: change of the thickness
 /// of rock and sediment. Cost linear but for the order of places off the coast, n log n.

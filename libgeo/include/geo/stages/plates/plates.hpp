@@ -57,6 +57,8 @@ struct PlatesParameters {
   std::string uplift_sources = "nearest";
   std::string accretion = "wedge";
   std::string rifting = "any";
+  std::string landscape = "none";
+  double climate_myr = 10.0;
   std::string erosion = "height";
   std::string sea_level = "fixed";
   std::string ocean_floor = "damping";

@@ -25,6 +25,12 @@ double sum_over(std::int32_t count, Value&& value) {
   return sum;
 }
 
+/// Volume of what lies on the samples of a model, km3, by its thickness on each, m.
+template <class Model, class Thickness>
+double samples_km3(const Model& model, Thickness&& thickness_m) {
+  return 1e-3 * model.sample_km2() * sum_over(model.state.crust.size(), thickness_m);
+}
+
 /// Adds to a stored value and tells what it has gained, after rounding: budgets of many steps close
 /// only if they hold that.
 inline double put(float& value, double gain) {

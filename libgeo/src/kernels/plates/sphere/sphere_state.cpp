@@ -11,6 +11,7 @@ void SphereCrust::resize(std::size_t samples) {
   orogeny.assign(samples, 0);
   thickness_m.assign(samples, 0.0F);
   elevation_m.assign(samples, 0.0F);
+  sediment_m.assign(samples, 0.0F);
   age_myr.assign(samples, 0.0F);
   orogeny_age_myr.assign(samples, 0.0F);
   ridge.assign(samples, {});

@@ -85,6 +85,12 @@ void hand_on_trenches(const SphereTectonics& model, int plate,
 void raise_crust(SphereTectonics& model);
 /// Needs margins. Plumes build volcanoes on sea floor.
 void erupt(SphereTectonics& model);
+/// What rivers have done to the crust, m: less than 0 where they took sediment first, then what is
+/// below it.
+void enter_sediment(SphereTectonics& model, const std::vector<float>& rock_m);
+/// Needs margins. Floor that subducts leaves a share of its sediment on what overrides it and takes
+/// the rest down.
+void scrape_sediment(SphereTectonics& model);
 /// Needs margins. Rivers carve and deposit.
 void run_rivers(SphereTectonics& model);
 /// Needs what is hidden. Lets thick crust flow to its sides for a step.

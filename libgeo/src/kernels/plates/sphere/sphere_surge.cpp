@@ -31,7 +31,9 @@ class Surge {
     reach_out();
     lift(radius_for(swallowed_km3_));
     m_.budget.swallowed_km3 += swallowed_km3_;
-    if (reached_.empty()) m_.budget.lost_km3 += swallowed_km3_;
+    if (!reached_.empty()) return;
+    m_.budget.lost_km3 += swallowed_km3_;
+    m_.budget.sediment_subducted_km3 += 1e-3 * m_.sample_km2() * sediment_m_;
   }
 
  private:
@@ -42,6 +44,8 @@ class Surge {
       if (m_.margins.hidden[i] == 0 || above < 0 || crust_.plate[above] != what_.upper) continue;
       const double volume_km3 = m_.sample_km2() * 1e-3 * crust_.thickness_m[i];
       crust_.plate[i] = -1;
+      sediment_m_ += crust_.sediment_m[i];
+      crust_.sediment_m[i] = 0.0F;
       // Where plates are ranked, continents subduct below floor as well.
       if (crust_.continental[above] == 0) {
         m_.budget.lost_km3 += volume_km3;
@@ -110,7 +114,9 @@ class Surge {
                                : (swallowed_km3_ - given_km3) /
                                      (m_.sample_km2() * static_cast<double>(reached_.size()));
     const Vector3 middle = back(m_.frame[what_.upper], what_.centroid);
-    WholeGains gains;
+    WholeGains gains, sediment_gains;
+    const double sediment_m =
+        reached_.empty() ? 0.0 : sediment_m_ / static_cast<double>(reached_.size());
     for (std::size_t k = 0; k < reached_.size(); ++k) {
       const std::int32_t i = reached_[k];
       const double lifted = lifted_km(k, radius_km);
@@ -118,6 +124,7 @@ class Surge {
       const double raised_m = height_after(crust_.elevation_m[i], thicker_m, s_.rebound);
       crust_.elevation_m[i] = static_cast<float>(std::min(1e3 * s_.law.summit_km, raised_m));
       gains.put(crust_.thickness_m[i], thicker_m);
+      sediment_gains.put(crust_.sediment_m[i], sediment_m);
       if (lifted < kFolded_km) continue;
       crust_.orogeny[i] = kHimalayan;
       crust_.orogeny_age_myr[i] = 0.0F;
@@ -132,6 +139,7 @@ class Surge {
   const Collision& what_;
   double reach_km_, height_km_;
   double swallowed_km3_ = 0.0;
+  double sediment_m_ = 0.0;  // of that, added up over samples: it is folded into the mountains
   std::vector<std::int32_t> source_;   // of each sample: the one above the terrane, or -1
   std::vector<std::int32_t> reached_;  // in the order in which they are
   std::vector<double> far_km_;         // of each of these, from its source

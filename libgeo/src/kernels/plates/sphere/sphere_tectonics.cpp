@@ -91,11 +91,13 @@ void derive_followed_plates(SphereTectonics& model) {
 void measure_volume(SphereTectonics& model) {
   const SphereCrust& crust = model.state.crust;
   SphereBudget& budget = model.budget;
-  budget.continental_km3 = 1e-3 * model.sample_km2() * sum_over(crust.size(), [&](std::int32_t i) {
-                             return crust.plate[i] >= 0 && crust.continental[i] != 0
-                                        ? static_cast<double>(crust.thickness_m[i])
-                                        : 0.0;
-                           });
+  budget.continental_km3 = samples_km3(model, [&](std::int32_t i) {
+    return crust.plate[i] >= 0 && crust.continental[i] != 0
+               ? static_cast<double>(crust.thickness_m[i])
+               : 0.0;
+  });
+  budget.sediment_km3 =
+      samples_km3(model, [&](std::int32_t i) { return static_cast<double>(crust.sediment_m[i]); });
   double samples = 0.0;
   budget.plates = 0;
   for (std::size_t p = 0; p < model.state.plates.size(); ++p) {
@@ -114,9 +116,12 @@ void begin_step(SphereTectonics& model) {
 }
 
 void shape_crust(SphereTectonics& model) {
+  keep_water(model);
   raise_crust(model);
   erupt(model);
-  if (model.settings.by_rivers) run_rivers(model);
+  if (!model.settings.by_rivers) return;
+  scrape_sediment(model);
+  run_rivers(model);
 }
 
 void advance(SphereTectonics& model) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include "geo/core/error.hpp"
 #include "geo/kernels/plates/plate_reconstruction.hpp"
@@ -11,6 +12,7 @@
 #include "sphere_checkpoint.hpp"
 #include "sphere_history.hpp"
 #include "sphere_initial_conditions.hpp"
+#include "sphere_landscape.hpp"
 #include "sphere_on_grid.hpp"
 #include "sphere_reconstruction.hpp"
 #include "sphere_timeline.hpp"
@@ -27,11 +29,11 @@ SphereSettings settings_of(const PlatesParameters& p, double radius_km, const Co
   settings.add_uplifts = p.uplift_sources == "all";
   settings.fill_abyss = p.accretion == "abyss";
   settings.rift_largest = p.rifting == "largest";
-  settings.by_rivers = p.erosion == "rivers";
+  settings.by_rivers = p.erosion == "rivers" || p.landscape == "full";
   settings.wears_land_alone = p.erosion == "land";
   settings.force.gravity_m_s2 = context.planet.gravity_m_s2;
   settings.floor_by_age = p.ocean_floor == "age";
-  if (p.sea_level == "ocean") settings.ocean_share = context.planet.ocean_fraction;
+  if (p.sea_level == "ocean" && p.landscape == "none") settings.ocean_share = context.planet.ocean_fraction;
   settings.no_net_rotation = p.no_net_rotation;
   settings.hold_motions = p.given_motions == "held";
   if (context.reconstruction) let_rotations_lead(settings);
@@ -61,6 +63,11 @@ class MassBalance {
     eroded_ += step.eroded_km3;
     deposited_ += step.deposited_km3;
     sea_floor_ += step.sea_floor_km3;
+    scraped_ += step.scraped_km3;
+    laid_ += step.sediment_laid_km3;
+    reworked_ += step.sediment_reworked_km3;
+    subducted_ += step.sediment_subducted_km3;
+    sediment_resampling_ += step.sediment_resampling_km3;
     emerged_km3_ += step.emerged_km3;
     changed_ += step.changed_km3;
     lost_ += step.lost_km3;
@@ -68,7 +75,10 @@ class MassBalance {
     collisions_ += step.collisions;
     rifts_ += step.rifts;
     subduction_initiations_ += step.subduction_initiations;
-    if (first_km3_ < 0.0) first_km3_ = step.continental_km3 - change(step);
+    if (first_km3_ < 0.0) {
+      first_km3_ = step.continental_km3 - change(step);
+      first_sediment_km3_ = step.sediment_km3 - sediment_change(step);
+    }
     last_ = step;
   }
   /// What a step is told by, before the areas of its plates.
@@ -95,7 +105,14 @@ class MassBalance {
             "deposited_km3",
             "sea_floor_km3",
             "erupted_km3",
-            "subduction_initiations"};
+            "subduction_initiations",
+            "scraped_km3",
+            "sediment_km3",
+            "sediment_laid_km3",
+            "sediment_reworked_km3",
+            "sediment_subducted_km3",
+            "sediment_resampling_km3",
+            "sea_level_m"};
   }
   static std::vector<double> row(const SphereTectonics& model) {
     const SphereBudget& b = model.budget;
@@ -121,7 +138,14 @@ class MassBalance {
                             b.deposited_km3,
                             b.sea_floor_km3,
                             b.erupted_km3,
-                            static_cast<double>(b.subduction_initiations)};
+                            static_cast<double>(b.subduction_initiations),
+                            b.scraped_km3,
+                            b.sediment_km3,
+                            b.sediment_laid_km3,
+                            b.sediment_reworked_km3,
+                            b.sediment_subducted_km3,
+                            b.sediment_resampling_km3,
+                            model.state.sea_level_m};
     // By the numbers of plates, which outlast the places where the model keeps them.
     const SphereState& state = model.state;
     const std::vector<double> area_km2 = plate_areas_km2(model);
@@ -148,26 +172,42 @@ class MassBalance {
     budget["continental_eroded_km3"] = eroded_;
     budget["continental_deposited_km3"] = deposited_;
     budget["sea_floor_deposited_km3"] = sea_floor_;
+    budget["continental_scraped_km3"] = scraped_;
     budget["continental_emerged_km3"] = emerged_km3_;
     budget["continental_changed_km3"] = changed_;
     budget["continental_lost_km3"] = lost_;
     budget["continental_resampling_km3"] = resampling_;
     budget["continental_closing_error"] =
-        (last_.continental_km3 - first_km3_ - raised_ + eroded_ - deposited_ - emerged_km3_ -
-         changed_ + lost_ - resampling_) /
+        (last_.continental_km3 - first_km3_ - raised_ + eroded_ - deposited_ - scraped_ -
+         emerged_km3_ - changed_ + lost_ - resampling_) /
         std::max(1.0, last_.continental_km3);
+    if (laid_ <= 0.0) return;
+    budget["sediment_start_km3"] = first_sediment_km3_;
+    budget["sediment_end_km3"] = last_.sediment_km3;
+    budget["sediment_laid_km3"] = laid_;
+    budget["sediment_reworked_km3"] = reworked_;
+    budget["sediment_subducted_km3"] = subducted_;
+    budget["sediment_resampling_km3"] = sediment_resampling_;
+    budget["sediment_drift_closing_error"] = (last_.sediment_km3 - first_sediment_km3_ - laid_ +
+                                              reworked_ + subducted_ - sediment_resampling_) /
+                                             laid_;
   }
 
  private:
   static double change(const SphereBudget& step) {
-    return step.raised_km3 - step.eroded_km3 + step.deposited_km3 + step.emerged_km3 +
-           step.changed_km3 - step.lost_km3 + step.resampling_km3;
+    return step.raised_km3 - step.eroded_km3 + step.deposited_km3 + step.scraped_km3 +
+           step.emerged_km3 + step.changed_km3 - step.lost_km3 + step.resampling_km3;
+  }
+  static double sediment_change(const SphereBudget& step) {
+    return step.sediment_laid_km3 - step.sediment_reworked_km3 - step.sediment_subducted_km3 +
+           step.sediment_resampling_km3;
   }
   double created_ = 0.0, consumed_ = 0.0, buried_ = 0.0, emerged_ = 0.0;
-  double deposited_ = 0.0, sea_floor_ = 0.0;
+  double deposited_ = 0.0, sea_floor_ = 0.0, scraped_ = 0.0;
+  double laid_ = 0.0, reworked_ = 0.0, subducted_ = 0.0, sediment_resampling_ = 0.0;
   double raised_ = 0.0, eroded_ = 0.0, emerged_km3_ = 0.0, changed_ = 0.0, lost_ = 0.0;
   double resampling_ = 0.0;
-  double first_km3_ = -1.0;
+  double first_km3_ = -1.0, first_sediment_km3_ = 0.0;
   int collisions_ = 0, rifts_ = 0, subduction_initiations_ = 0;
   SphereBudget last_;
 };
@@ -252,9 +292,7 @@ class Drift {
   }
   [[nodiscard]] SphereTectonics& crust() { return crust_->model; }
   [[nodiscard]] SphereTectonics& plates() { return leader_ ? leader_->model : crust_->model; }
-  [[nodiscard]] const SphereTectonics* leader() const {
-    return leader_ ? &leader_->model : nullptr;
-  }
+  [[nodiscard]] SphereTectonics* leader() { return leader_ ? &leader_->model : nullptr; }
 
   void begin_step() { leader_ ? begin_step_of_both(crust(), plates()) : geo::begin_step(crust()); }
   void advance() { leader_ ? advance_both(crust(), plates()) : geo::advance(crust()); }
@@ -366,13 +404,20 @@ void finish_to_be_seen(SphereTectonics& model) {
 
 /// Hands out a frame: the crust as a resampling would show it, and the state as it is.
 void show(const PlatesParameters& parameters, Drift& drift, const StageInfo& info, const Grid& grid,
-          const Context& context) {
+          DriftLandscape* landscape, const Context& context) {
   SphereTectonics seen = drift.crust();
   finish_to_be_seen(seen);
+  keep_water(seen);
   Frame frame{State(std::make_shared<const Grid>(grid)), checkpoint_of(drift.crust().state)};
   if (drift.leader() != nullptr) add_leader(drift.leader()->state, frame.checkpoint);
-  StageIo io(frame.fields, info);
+  StageInfo shown = info;
+  if (landscape != nullptr) {
+    const auto more = DriftLandscape::fields();
+    shown.writes.insert(shown.writes.end(), more.begin(), more.end());
+  }
+  StageIo io(frame.fields, shown);
   SphereOnGrid(parameters, seen, io, context).draw(io);
+  if (landscape != nullptr) landscape->draw(drift.crust(), seen, io);
   context.on_frame(std::move(frame));
 }
 
@@ -399,6 +444,12 @@ void drift(const PlatesParameters& parameters, const StageInfo& info, StageIo& i
   };
   drift.spin_up(progress);
   const auto steps = std::lround(parameters.time_myr / settings.law.step_myr);
+  std::optional<DriftLandscape> landscape;
+  if (parameters.landscape == "full") {
+    landscape.emplace(parameters, io.grid(), context);
+    if (model.state.runoff.empty()) landscape->turn_climate(model, drift.leader());
+  }
+  DriftLandscape* const seen_landscape = landscape ? &*landscape : nullptr;
   const bool shows = context.on_frame && parameters.frames_myr > 0.0;
   // Frames that are due after so many steps: each multiple of the interval is shown by the step
   // that reaches or passes it, however the two divide.
@@ -408,7 +459,7 @@ void drift(const PlatesParameters& parameters, const StageInfo& info, StageIo& i
   };
   for (auto k = model.state.steps; k < steps; ++k) {
     const double from_myr = model.state.time_myr;
-    if (shows && k == 0) show(parameters, drift, info, io.grid(), context);
+    if (shows && k == 0) show(parameters, drift, info, io.grid(), seen_landscape, context);
     progress(from_myr);
     drift.begin_step();
     if (context.reconstruction) follow_reconstruction(*context.reconstruction, model, context);
@@ -416,10 +467,13 @@ void drift(const PlatesParameters& parameters, const StageInfo& info, StageIo& i
                   context);
     history.enter(drift.plates());
     drift.advance();
+    if (landscape && landscape->is_due(k, k + 1, settings.law.step_myr)) {
+      landscape->turn_climate(model, drift.leader());
+    }
     balance.enter(model.budget);
     context.steps.rows.push_back(MassBalance::row(model));
     if (shows && frames_due(k + 1) > frames_due(k)) {
-      show(parameters, drift, info, io.grid(), context);
+      show(parameters, drift, info, io.grid(), seen_landscape, context);
     }
   }
   context.advance(0.9);

@@ -34,7 +34,7 @@ Directions directions(const std::vector<float>& values) {
 /// Refuses numbers that nothing could go on from: steps would never reach a time of them.
 void check_numbers(const Checkpoint& from) {
   for (const char* name : {"plate_numbers", "clock", "kept_rotation_rad_myr", "plate_yielding",
-                           "plumes", "volcanoes", "reconstruction_ma", "plate_chances"}) {
+                           "plumes", "volcanoes", "reconstruction_ma", "plate_chances", "water"}) {
     if (!from.arrays.contains(name)) continue;
     for (const double value : from.get<double>(name)) {
       if (!std::isfinite(value)) refuse();
@@ -178,6 +178,7 @@ void put_crust(const SphereCrust& crust, Arrays& to) {
   to["orogeny"] = crust.orogeny;
   to["thickness_m"] = crust.thickness_m;
   to["elevation_m"] = crust.elevation_m;
+  to["sediment_m"] = crust.sediment_m;
   to["age_myr"] = crust.age_myr;
   to["orogeny_age_myr"] = crust.orogeny_age_myr;
   to["ridge"] = flat(crust.ridge);
@@ -196,10 +197,15 @@ SphereCrust get_crust(const Checkpoint& from) {
   crust.ridge = directions(from.get<float>("ridge"));
   crust.fold = directions(from.get<float>("fold"));
   const std::size_t samples = crust.plate.size();
+  if (from.arrays.contains("sediment_m")) {
+    crust.sediment_m = from.get<float>("sediment_m");
+  } else {
+    crust.sediment_m.assign(samples, 0.0F);  // a frame of a version that had none
+  }
   for (const std::size_t size :
        {crust.continental.size(), crust.orogeny.size(), crust.thickness_m.size(),
-        crust.elevation_m.size(), crust.age_myr.size(), crust.orogeny_age_myr.size(),
-        crust.ridge.size(), crust.fold.size()}) {
+        crust.elevation_m.size(), crust.sediment_m.size(), crust.age_myr.size(),
+        crust.orogeny_age_myr.size(), crust.ridge.size(), crust.fold.size()}) {
     if (size != samples) refuse();
   }
   return crust;
@@ -338,6 +344,26 @@ void get_drivers(const Checkpoint& from, SphereState& state) {
   state.reconstruction_ma = start_ma[0];
 }
 
+/// The climate that rivers know and the water of the sea, where there is one.
+void put_landscape(const SphereState& state, Arrays& to) {
+  if (state.runoff.empty()) return;
+  to["runoff"] = state.runoff;
+  to["water"] = std::vector<double>{state.water_km3, state.ice_km3, state.sea_level_m};
+}
+
+void get_landscape(const Checkpoint& from, SphereState& state) {
+  if (!from.arrays.contains("runoff")) return;
+  state.runoff = from.get<float>("runoff");
+  const auto& water = from.get<double>("water");
+  if (state.runoff.size() != state.crust.plate.size() || water.size() != 3) refuse();
+  for (const float share : state.runoff) {
+    if (!(share >= 0.0F && std::isfinite(share))) refuse();
+  }
+  state.water_km3 = water[0];
+  state.ice_km3 = water[1];
+  state.sea_level_m = water[2];
+}
+
 void put_plumes(const SphereState& state, Arrays& to) {
   std::vector<double> plumes, volcanoes;
   for (const SpherePlume& plume : state.plumes) {
@@ -413,6 +439,7 @@ Checkpoint checkpoint_of(const SphereState& state) {
   put_past(state, out.arrays);
   put_chances(state, out.arrays);
   put_drivers(state, out.arrays);
+  put_landscape(state, out.arrays);
   const Vector3& kept = state.kept_rotation_rad_myr;
   out.arrays["kept_rotation_rad_myr"] = std::vector<double>{kept[0], kept[1], kept[2]};
   out.arrays["clock"] =
@@ -437,6 +464,7 @@ SphereState state_of(const Checkpoint& from) {
   state.resampled_myr = clock[2];
   get_later_additions(from, state);
   get_drivers(from, state);
+  get_landscape(from, state);
   get_plumes(from, state);
   if (from.arrays.contains("plate_id")) get_lives(from, state);
   if (from.arrays.contains("plate_past")) {

@@ -23,6 +23,7 @@ struct SphereBudget {
   double eroded_km3 = 0.0;
   double deposited_km3 = 0.0;   ///< laid on continents and their shelves by rivers
   double sea_floor_km3 = 0.0;   ///< laid on ocean floor by rivers
+  double scraped_km3 = 0.0;     ///< sediment of subducting floor that continents have kept
   double emerged_km3 = 0.0;     ///< of arcs when they became continental
   double stretched_km2 = 0.0;   ///< margins that broken continents grew
   double swallowed_km3 = 0.0;   ///< moved by collisions from roots into mountains
@@ -30,6 +31,12 @@ struct SphereBudget {
   double erupted_km3 = 0.0;     ///< that plumes laid on ocean floor
   double lost_km3 = 0.0;        ///< subducted below floor, or from roots that found no room
   double resampling_km3 = 0.0;  ///< what interpolation added or took
+  // Of sediment, on continents and floor.
+  double sediment_km3 = 0.0;             ///< at the end of the step
+  double sediment_laid_km3 = 0.0;        ///< by rivers
+  double sediment_reworked_km3 = 0.0;    ///< that rivers have taken up again
+  double sediment_subducted_km3 = 0.0;   ///< into the mantle
+  double sediment_resampling_km3 = 0.0;  ///< what interpolation added or took
 };
 
 /// A happening worth telling.

@@ -82,7 +82,8 @@ struct SphereSettings {
   /// level of erosion by height, to which arcs emerge; 0: the sea stays at elevation 0.
   double ocean_share = 0.0;
   bool wears_land_alone = false;  ///< erosion by height leaves what lies below the sea as it is
-  RiverLaw rivers;                ///< their step and rebound are the model's
+  RiverLaw rivers{.deposition = 1.0};  ///< their step and rebound are the model's
+  double accreted_share = 0.2;         ///< of the sediment of floor that subducts: scraped off
   bool no_net_rotation = true;
   bool hold_motions = true;  ///< whether a plate goes on turning as it is told to
   std::int64_t least_steps = 10, most_steps = 60;  ///< between resamplings

@@ -12,7 +12,7 @@
 
 namespace geo {
 
-/// Crust data of a sample (Cortial et al. 2019, Table 1), one array each; 48 bytes a sample.
+/// Crust data of a sample (Cortial et al. 2019, Table 1), one array each; 52 bytes a sample.
 /// Samples are those of a Fibonacci sphere and stay where they are in the frame of their plate.
 struct SphereCrust {
   std::vector<std::int16_t> plate;       ///< place in SphereState::plates; -1: consumed
@@ -20,6 +20,7 @@ struct SphereCrust {
   std::vector<std::int8_t> orogeny;      ///< OrogenyType
   std::vector<float> thickness_m;        ///< of ocean floor with what volcanoes have laid on it
   std::vector<float> elevation_m;
+  std::vector<float> sediment_m;            ///< of its thickness: what rivers have laid on it
   std::vector<float> age_myr;               ///< of oceanic crust, since it left its ridge
   std::vector<float> orogeny_age_myr;       ///< of continental crust, since it was last folded
   std::vector<std::array<float, 3>> ridge;  ///< unit vector along the ridge that made it, or zero
@@ -110,6 +111,12 @@ struct SphereState {
   double resampled_myr = 0.0;  ///< time of the last resampling
   /// Common rotation that plates which are not held keep, rad/Myr.
   Vector3 kept_rotation_rad_myr{};
+  /// Climate of a planet whose rivers know one: runoff over that of reference at the places of the
+  /// lattice, in the frame of the planet; empty: 1 everywhere.
+  std::vector<float> runoff;
+  double water_km3 = 0.0;    ///< of the sea and the ice on land, which stays; 0: not known
+  double ice_km3 = 0.0;      ///< what of that is ice
+  double sea_level_m = 0.0;  ///< elevation of the sea's surface
   /// Age in a reconstruction, Ma, at which the drift began; nothing: none drives it.
   std::optional<double> reconstruction_ma;
 

@@ -152,6 +152,8 @@ void rift_plate_along(SphereTectonics& model, int plate, const GreatCircleLine& 
 /// so that coasts bend. Returns the area that changed, km2.
 double change_crust(SphereTectonics& model, const std::function<bool(const Vector3&)>& holds,
                     bool continental, double warp_km = 0.0);
+/// The sea stands where its water has it, if that is known.
+void keep_water(SphereTectonics& model);
 
 // What is asked of it.
 
@@ -161,6 +163,14 @@ double change_crust(SphereTectonics& model, const std::function<bool(const Vecto
 [[nodiscard]] int plate_at(const SphereTectonics& model, const Vector3& place);
 /// Area of each plate with all that it carries, km2; 0 of those that are no more.
 [[nodiscard]] std::vector<double> plate_areas_km2(const SphereTectonics& model);
+
+/// The elevation above which a share of the planet lies, to a metre. Gaps that have opened are sea.
+[[nodiscard]] double level_above(const SphereTectonics& model, double share);
+/// What lies between sea floor and a level, as plates lie; where gaps have opened, from the depth
+/// of floor of that age.
+[[nodiscard]] double sea_volume_km3(const SphereTectonics& model, double level_m);
+/// Area that drains through each sample, km2, times runoff over that of reference; 0 off the land.
+[[nodiscard]] std::vector<double> drained_km2(const SphereTectonics& model);
 
 /// Torques on a plate about the planet's centre, in the frame of the planet.
 struct SphereTorques {

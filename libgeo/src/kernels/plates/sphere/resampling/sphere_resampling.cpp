@@ -145,6 +145,7 @@ class CrustReader {
     now.orogeny[i] = before_.orogeny[top];
     now.thickness_m[i] = reading(before_.thickness_m);
     now.elevation_m[i] = reading(before_.elevation_m);
+    now.sediment_m[i] = reading(before_.sediment_m);
     now.age_myr[i] = reading(before_.age_myr);
     now.orogeny_age_myr[i] = reading(before_.orogeny_age_myr);
     now.ridge[i] = turned(frame, reading(before_.ridge));
@@ -156,6 +157,7 @@ class CrustReader {
     SphereCrust& now = now_.crust;
     const double added_m = before_.thickness_m[found.below];
     now.thickness_m[i] += static_cast<float>(added_m);
+    now.sediment_m[i] += before_.sediment_m[found.below];  // folded into the belt above
     now.elevation_m[i] = static_cast<float>(
         std::min(1e3 * m_.settings.law.summit_km,
                  height_after(now.elevation_m[i], added_m, m_.settings.rebound)));
@@ -363,7 +365,8 @@ void resample(SphereTectonics& model, const std::function<void(SphereTectonics&)
   SphereBudget& budget = model.budget;
   remember_penetration(model);
   measure_volume(model);
-  const double volume_before_km3 = budget.continental_km3, ocean_before_km2 = ocean_km2(model);
+  const double volume_before_km3 = budget.continental_km3;
+  const double sediment_before_km3 = budget.sediment_km3, ocean_before_km2 = ocean_km2(model);
   const double sunk_km3 = sunk_below_floor_km3(model);
   NewCrust now = CrustReader(model).read();
   enter_areas(model, now.owner);
@@ -379,6 +382,7 @@ void resample(SphereTectonics& model, const std::function<void(SphereTectonics&)
   measure_volume(model);
   budget.resampling_km3 =
       budget.continental_km3 - volume_before_km3 + budget.lost_km3 - lost_before_km3;
+  budget.sediment_resampling_km3 += budget.sediment_km3 - sediment_before_km3;
   budget.ocean_change_km2 = ocean_km2(model) - ocean_before_km2;
   budget.ocean_error_km2 = budget.created_km2 - budget.consumed_km2 - budget.ocean_change_km2;
   budget.resampled = true;

@@ -3,8 +3,8 @@
 #include <numbers>
 
 #include "geo/core/random.hpp"
-#include "sphere_flood.hpp"
-#include "sphere_steps.hpp"
+#include "kernels/plates/sphere/sphere_flood.hpp"
+#include "kernels/plates/sphere/sphere_steps.hpp"
 
 namespace geo {
 namespace {

@@ -4,8 +4,8 @@
 
 #include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/crust/ocean_depth.hpp"
-#include "sample_sums.hpp"
-#include "sphere_steps.hpp"
+#include "kernels/plates/sphere/sample_sums.hpp"
+#include "kernels/plates/sphere/sphere_steps.hpp"
 
 namespace geo {
 namespace {
@@ -110,23 +110,6 @@ std::vector<float> summed_uplift_km(const SphereTectonics& model, const TrenchUp
   return uplift_km;
 }
 
-/// The elevation above which a share of the planet lies, to a metre. Gaps that have opened are sea.
-double level_above_which_lies(const SphereTectonics& model, double share) {
-  constexpr int kLowest_m = -12000, kHighest_m = 12000, kBins = kHighest_m - kLowest_m;
-  const SphereCrust& crust = model.state.crust;
-  std::vector<std::int32_t> count(kBins, 0);
-  for (std::int32_t i = 0; i < crust.size(); ++i) {
-    if (crust.plate[i] < 0 || model.margins.hidden[i] != 0) continue;
-    const int bin = static_cast<int>(std::floor(crust.elevation_m[i])) - kLowest_m;
-    ++count[std::clamp(bin, 0, kBins - 1)];
-  }
-  const double wanted = share * crust.size();
-  double above = 0.0;
-  int bin = kBins;
-  while (bin > 0 && above < wanted) above += count[--bin];
-  return bin + kLowest_m;
-}
-
 /// What a step does to crust everywhere: uplift of overriding plates, erosion, damping, accretion,
 /// ageing.
 class CrustStep {
@@ -140,8 +123,8 @@ class CrustStep {
         crust_(model.state.crust),
         nearest_trench_(model.margins.nearest_trench),
         uplift_(model),
-        sea_km_(s_.ocean_share > 0.0 ? 1e-3 * level_above_which_lies(model, 1.0 - s_.ocean_share)
-                                     : 0.0),
+        sea_km_(s_.ocean_share > 0.0 ? 1e-3 * level_above(model, 1.0 - s_.ocean_share)
+                                     : 1e-3 * model.state.sea_level_m),
         step_myr_(static_cast<float>(law_.step_myr)),
         decayed_(share_gone(s_.swell_decay_myr)),
         worn_(share_gone(s_.island_wear_myr)) {

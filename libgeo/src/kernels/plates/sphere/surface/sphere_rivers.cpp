@@ -3,8 +3,8 @@
 
 #include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/water/surface_rivers.hpp"
-#include "sample_sums.hpp"
-#include "sphere_steps.hpp"
+#include "kernels/plates/sphere/sample_sums.hpp"
+#include "kernels/plates/sphere/sphere_steps.hpp"
 
 namespace geo {
 namespace {
@@ -124,39 +124,71 @@ class MovingSurface {
   std::vector<Crossing> crossings_;
 };
 
+/// Runoff over that of reference where each sample lies now; empty where no climate is known.
+std::vector<float> runoff_of_samples(const SphereTectonics& model) {
+  const std::vector<float>& runoff = model.state.runoff;
+  if (runoff.empty()) return {};
+  std::vector<float> found(runoff.size(), 0.0F);
+  const FibonacciSphere& samples = model.mesh->samples();
+#pragma omp parallel for schedule(static)
+  for (std::int32_t i = 0; i < model.mesh->size(); ++i) {
+    const int own = model.state.crust.plate[i];
+    if (own < 0) continue;
+    found[i] = runoff[samples.nearest(times(model.frame[own], samples.position(i)))];
+  }
+  return found;
+}
+
+std::vector<float> heights_above_sea(const SphereTectonics& model) {
+  std::vector<float> height_m = model.state.crust.elevation_m;
+  const auto sea_level_m = static_cast<float>(model.state.sea_level_m);
+  for (float& height : height_m) height -= sea_level_m;
+  return height_m;
+}
+
 }  // namespace
 
+std::vector<double> drained_km2(const SphereTectonics& model) {
+  const SurfaceRivers rivers = route_rivers(MovingSurface(model).graph(), heights_above_sea(model),
+                                            runoff_of_samples(model));
+  std::vector<double> area_km2(rivers.area_m2.size(), 0.0);
+  for (const std::int32_t i : rivers.order) area_km2[i] = 1e-6 * rivers.area_m2[i];
+  return area_km2;
+}
+
 /// Rivers carve what stands above the sea, plates and all as they lie, and deposit what they carry
-/// in lakes, on shelves and on the sea floor.
+/// on plains, in lakes, on shelves and on the sea floor.
 void run_rivers(SphereTectonics& model) {
   SphereCrust& crust = model.state.crust;
   const MovingSurface surface(model);
   RiverLaw law = model.settings.rivers;
   law.dt_yr = 1e6 * model.settings.law.step_myr;
   law.rebound = model.settings.rebound;
-  std::vector<float> rock_m(crust.plate.size());
-  const std::vector<float> before_m = crust.elevation_m;
-  const SurfaceRivers rivers = route_rivers(surface.graph(), crust.elevation_m);
-  geo::run_rivers(surface.graph(), rivers, law, crust.continental, crust.elevation_m, rock_m);
+  std::vector<float> rock_m(crust.plate.size()), above_sea_m = heights_above_sea(model);
+  const std::vector<float> before_m = above_sea_m;
+  const SurfaceRivers rivers = route_rivers(surface.graph(), above_sea_m, runoff_of_samples(model));
+  geo::run_rivers(surface.graph(), rivers, law, crust.continental, above_sea_m, rock_m);
 #pragma omp parallel for schedule(static)
   for (std::int32_t i = 0; i < crust.size(); ++i) {
+    if (rock_m[i] == 0.0F) continue;
+    crust.elevation_m[i] += above_sea_m[i] - before_m[i];
     if (crust.continental[i] != 0) {
       rock_m[i] = static_cast<float>(put(crust.thickness_m[i], rock_m[i]));
     } else {
       // Floor is as much thicker as it stands higher: the rest of what it bears has sunk into it.
-      crust.thickness_m[i] += crust.elevation_m[i] - before_m[i];
+      crust.thickness_m[i] += above_sea_m[i] - before_m[i];
     }
   }
-  const auto volume_km3 = [&](auto&& counts) {
-    return 1e-3 * model.sample_km2() * sum_over(crust.size(), [&](std::int32_t i) {
-             return counts(i) ? static_cast<double>(rock_m[i]) : 0.0;
-           });
+  const auto sum_km3 = [&](auto&& counts) {
+    return samples_km3(
+        model, [&](std::int32_t i) { return counts(i) ? static_cast<double>(rock_m[i]) : 0.0; });
   };
-  model.budget.eroded_km3 -= volume_km3([&](std::int32_t i) { return rock_m[i] < 0.0F; });
+  model.budget.eroded_km3 -= sum_km3([&](std::int32_t i) { return rock_m[i] < 0.0F; });
   model.budget.deposited_km3 +=
-      volume_km3([&](std::int32_t i) { return rock_m[i] > 0.0F && crust.continental[i] != 0; });
+      sum_km3([&](std::int32_t i) { return rock_m[i] > 0.0F && crust.continental[i] != 0; });
   model.budget.sea_floor_km3 +=
-      volume_km3([&](std::int32_t i) { return rock_m[i] > 0.0F && crust.continental[i] == 0; });
+      sum_km3([&](std::int32_t i) { return rock_m[i] > 0.0F && crust.continental[i] == 0; });
+  enter_sediment(model, rock_m);
 }
 
 }  // namespace geo
