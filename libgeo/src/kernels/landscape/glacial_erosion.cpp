@@ -7,6 +7,7 @@
 
 #include "geo/core/error.hpp"
 #include "geo/kernels/water/valley_width.hpp"
+#include "ice_regions.hpp"
 
 namespace geo {
 namespace {
@@ -67,27 +68,15 @@ class Bed {
   std::span<float> z_;
 };
 
-}  // namespace
-
-SparseValues<double> erode_under_ice(const Grid& grid, const GlacialErosion& law, double time_yr,
-                                     const IceSurface& surface, const IceFlux& flux,
-                                     std::span<const IceGround> ground,
-                                     std::span<const float> sunk_m, std::span<float> elevation_m) {
-  const auto size = static_cast<std::size_t>(grid.size());
-  if (elevation_m.size() != size || ground.size() != size || flux.share.cells() != grid.size() ||
-      surface.height_m.cells() != grid.size() || (!sunk_m.empty() && sunk_m.size() != size)) {
-    throw InputError(fmt::format("glacial erosion: fields must have {} values each", size));
-  }
-  SparseValues<double> debris_m3(surface.height_m.set());
-  Bed bed(grid, law, surface, sunk_m, elevation_m);
-  for (const Index cell : surface.order) {
-    const float share = flux.share.of(cell);
-    if (ground[cell] != IceGround::iced || !(share > 0.0F)) continue;
-    debris_m3.of(cell) =
-        grid.area_m2(grid.row(cell)) * bed.cut(cell, flux.through_m3_yr.of(cell), share, time_yr);
-  }
+/// Down the ice of a region. In its cells stays what melts out beyond its till; returns what leaves
+/// it.
+MarginInflow carry_debris(const Grid& grid, const GlacialErosion& law, const IceSurface& surface,
+                          const IceFlux& flux, std::span<const IceGround> ground,
+                          std::span<const Index> cells, std::span<float> elevation_m,
+                          SparseValues<double>& debris_m3) {
+  MarginInflow out;
   const IceOutflow outflow(grid, surface);
-  for (auto at = surface.order.rbegin(); at != surface.order.rend(); ++at) {
+  for (auto at = cells.rbegin(); at != cells.rend(); ++at) {
     const Index cell = *at;
     const double carried = debris_m3.of(cell);
     if (!(carried > 0.0)) continue;
@@ -103,7 +92,43 @@ SparseValues<double> erode_under_ice(const Grid& grid, const GlacialErosion& law
     }
     debris_m3.of(cell) = let_out;
     if (goes_on <= 0.0) continue;
-    outflow.visit(cell, [&](Index to, double part) { debris_m3.of(to) += part * goes_on; });
+    outflow.visit(cell, [&](Index to, double part) {
+      if (ground[to] == IceGround::away) {
+        out.emplace_back(to, part * goes_on);
+      } else {
+        debris_m3.of(to) += part * goes_on;
+      }
+    });
+  }
+  return out;
+}
+
+}  // namespace
+
+SparseValues<double> erode_under_ice(const Grid& grid, const GlacialErosion& law, double time_yr,
+                                     const IceSurface& surface, const IceFlux& flux,
+                                     std::span<const IceGround> ground,
+                                     std::span<const float> sunk_m, std::span<float> elevation_m) {
+  const auto size = static_cast<std::size_t>(grid.size());
+  if (elevation_m.size() != size || ground.size() != size || flux.share.cells() != grid.size() ||
+      surface.height_m.cells() != grid.size() || (!sunk_m.empty() && sunk_m.size() != size)) {
+    throw InputError(fmt::format("glacial erosion: fields must have {} values each", size));
+  }
+  SparseValues<double> debris_m3(surface.height_m.set());
+  Bed bed(grid, law, surface, sunk_m, elevation_m);
+  std::vector<MarginInflow> out(surface.region_begins.size());
+  visit_regions(surface.region_begins, [&](std::size_t region) {
+    const std::span<const Index> cells = cells_of(surface, region);
+    for (const Index cell : cells) {
+      const float share = flux.share.of(cell);
+      if (ground[cell] != IceGround::iced || !(share > 0.0F)) continue;
+      debris_m3.of(cell) =
+          grid.area_m2(grid.row(cell)) * bed.cut(cell, flux.through_m3_yr.of(cell), share, time_yr);
+    }
+    out[region] = carry_debris(grid, law, surface, flux, ground, cells, elevation_m, debris_m3);
+  });
+  for (const MarginInflow& inflow : out) {
+    for (const auto& [to, part_m3] : inflow) debris_m3.of(to) += part_m3;
   }
   return debris_m3;
 }

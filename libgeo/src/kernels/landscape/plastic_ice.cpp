@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "geo/core/error.hpp"
+#include "ice_regions.hpp"
 #include "monotone_queue.hpp"
 
 namespace geo {
@@ -45,24 +46,30 @@ double rise_between(double bed, double a, double dx, double c, double dy, double
 }
 
 /// Cells that are not away, and those beside them.
-std::shared_ptr<const CellSet> reach_of(const Grid& grid, std::span<const IceGround> ground) {
+CellSet cells_within_reach(const Grid& grid, std::span<const IceGround> ground) {
   std::vector<std::uint8_t> within(ground.size(), 0);
-  for (Index cell = 0; cell < grid.size(); ++cell) {
-    if (ground[cell] == IceGround::away) continue;
-    within[cell] = 1;
-    for (int k = 0; k < kDirections; ++k) {
-      const Index beside = grid.neighbour(cell, k);
-      if (beside != kNoCell) within[beside] = 1;
+#pragma omp parallel for schedule(static)
+  for (int j = 0; j < grid.ny(); ++j) {
+    for (int i = 0; i < grid.nx(); ++i) {
+      const Index cell = grid.cell(i, j);
+      bool is_within = ground[cell] != IceGround::away;
+      for (int k = 0; k < kDirections && !is_within; ++k) {
+        const Index beside = grid.neighbour(i, j, k);
+        is_within = beside != kNoCell && ground[beside] != IceGround::away;
+      }
+      within[cell] = is_within ? 1 : 0;
     }
   }
-  return std::make_shared<const CellSet>(grid.size(), [&](Index c) { return within[c] != 0; });
+  return {grid.size(), [&](Index c) { return within[c] != 0; }};
 }
 
 class March {
  public:
   March(const Grid& grid, double k_m, std::span<const float> bed_m,
-        std::span<const IceGround> ground)
-      : grid_(grid), k_m_(k_m), bed_m_(bed_m), ground_(ground), reach_(reach_of(grid, ground)) {
+        std::span<const IceGround> ground, const IceReach& reach)
+      : grid_(grid), k_m_(k_m), bed_m_(bed_m), ground_(ground), reach_(reach.cells) {
+    surface_.order = reach.members;
+    surface_.region_begins = reach.region_begins;
     surface_.height_m = SparseValues<float>(reach_);
     surface_.lowest = SparseValues<Index>(reach_, kNoCell);
     settled_ = SparseValues<std::uint8_t>(reach_);
@@ -77,27 +84,13 @@ class March {
       settle_margin(cell);
       ++margins;
     });
-    surface_.order.reserve(reach_->size() - margins);
     // A world without a margin.
-    if (margins == 0 && reach_->size() == bed_m_.size()) {
+    const bool is_endless = margins == 0 && reach_->size() == bed_m_.size();
+    if (is_endless) {
       const auto lowest = std::min_element(bed_m_.begin(), bed_m_.end()) - bed_m_.begin();
-      surface_.order.push_back(static_cast<Index>(lowest));
       settle_margin(static_cast<Index>(lowest));
     }
-    reach_->visit([&](Index cell) {
-      if (settled_.of(cell) != 0) return;
-      for (int k = 0; k < kDirections; ++k) {
-        const Index margin = grid_.neighbour(cell, k);
-        if (margin != kNoCell && settled_.of(margin) != 0) reach(cell, margin, k);
-      }
-    });
-    while (!front_.empty()) {
-      const auto [height, cell] = front_.pop();
-      if (settled_.of(cell) != 0 || height > surface_.height_m.of(cell)) continue;
-      settled_.of(cell) = 1;
-      surface_.order.push_back(cell);
-      reach_neighbours(cell);
-    }
+    visit_regions(surface_.region_begins, [&](std::size_t region) { march(region, is_endless); });
     return std::move(surface_);
   }
 
@@ -106,23 +99,48 @@ class March {
     surface_.height_m.of(cell) = std::max(bed_m_[cell], 0.0F);
     settled_.of(cell) = 1;
   }
-  void reach_neighbours(Index from) {
+  /// From the margins of a region up. Its cells come into the order in which they are reached.
+  void march(std::size_t region, bool is_endless) {
+    MonotoneQueue front;
+    std::size_t next = surface_.region_begins[region];
+    for (const Index cell : cells_of(surface_, region)) {
+      if (settled_.of(cell) != 0) continue;
+      for (int k = 0; k < kDirections; ++k) {
+        const Index margin = grid_.neighbour(cell, k);
+        if (margin != kNoCell && settled_.of(margin) != 0) reach(cell, margin, k, front);
+      }
+    }
+    if (is_endless) {
+      const auto is_settled = [&](Index cell) { return settled_.of(cell) != 0; };
+      const auto at = std::find_if(surface_.order.begin(), surface_.order.end(), is_settled);
+      std::iter_swap(surface_.order.begin(), at);
+      ++next;
+    }
+    while (!front.empty()) {
+      const auto [height, cell] = front.pop();
+      if (settled_.of(cell) != 0 || height > surface_.height_m.of(cell)) continue;
+      settled_.of(cell) = 1;
+      surface_.order[next++] = cell;
+      reach_neighbours(cell, front);
+    }
+  }
+  void reach_neighbours(Index from, MonotoneQueue& front) {
     const int i = grid_.column(from), j = grid_.row(from);
     for (int k = 0; k < kDirections; ++k) {
       const Index cell = grid_.neighbour(i, j, k);
       if (cell == kNoCell || settled_.of(cell) != 0) continue;
-      reach(cell, from, grid_.back_direction(j, k));
+      reach(cell, from, grid_.back_direction(j, k), front);
     }
   }
   /// From a settled neighbour, which lies in direction k of `cell`.
-  void reach(Index cell, Index from, int k) {
+  void reach(Index cell, Index from, int k, MonotoneQueue& front) {
     const float height =
         std::max(static_cast<float>(rise(cell, from, k)), surface_.height_m.of(from));
     float& now = surface_.height_m.of(cell);
     if (height >= now) return;
     now = height;
     surface_.lowest.of(cell) = from;
-    front_.push(height, cell);
+    front.push(height, cell);
   }
   [[nodiscard]] double rise(Index cell, Index from, int back) const {
     const double bed = bed_m_[cell], below = surface_.height_m.of(from);
@@ -154,19 +172,92 @@ class March {
   std::shared_ptr<const CellSet> reach_;
   IceSurface surface_;
   SparseValues<std::uint8_t> settled_;
-  MonotoneQueue front_;
 };
+
+/// What becomes of the ice of a region.
+struct RegionFlow {
+  double accumulated_m3_yr = 0.0, melted_m3_yr = 0.0;
+  MarginInflow out;
+};
+RegionFlow flow_of(std::size_t region, const Grid& grid, std::span<const float> bed_m,
+                   std::span<const IceGround> ground, const IceSurface& surface,
+                   std::span<const float> balance_m_yr, IceFlux& flux) {
+  RegionFlow flow;
+  const IceOutflow outflow(grid, surface);
+  const std::span<const Index> cells = cells_of(surface, region);
+  for (auto at = cells.rbegin(); at != cells.rend(); ++at) {
+    const Index cell = *at;
+    const double area_m2 = grid.area_m2(grid.row(cell));
+    double& through = flux.through_m3_yr.of(cell);
+    const double own = balance_m_yr[cell] * area_m2;
+    // Over a bed below the sea snow falls on ice that is there: on a grounded divide, which none
+    // flows to, as well.
+    const bool is_land = bed_m[cell] >= 0.0F || through > 0.0 ||
+                         (ground[cell] == IceGround::iced && surface.height_m.of(cell) > 0.0F);
+    if (own > 0.0 && is_land) {
+      through += own;
+      flow.accumulated_m3_yr += own;
+    }
+    if (through <= 0.0) continue;
+    double melt = std::clamp(-own, 0.0, through);
+    flux.share.of(cell) = own < 0.0 ? static_cast<float>(std::min(1.0, through / -own)) : 1.0F;
+    if (surface.lowest.of(cell) == cell) melt = through;  // a world without a margin
+    flux.melted.of(cell) = static_cast<float>(melt / through);
+    flow.melted_m3_yr += melt;
+    const double leaves = through - melt;
+    if (leaves <= 0.0) continue;
+    outflow.visit(cell, [&](Index to, double part) {
+      if (ground[to] == IceGround::away) {
+        flow.out.emplace_back(to, part * leaves);
+      } else {
+        flux.through_m3_yr.of(to) += part * leaves;
+      }
+    });
+  }
+  return flow;
+}
 
 }  // namespace
 
+IceReach ice_reach(const Grid& grid, std::span<const IceGround> ground) {
+  check_shape(grid, ground.size(), "the ground");
+  IceReach reach;
+  reach.cells = std::make_shared<const CellSet>(cells_within_reach(grid, ground));
+  SparseValues<std::uint8_t> seen(reach.cells);
+  const auto add = [&](Index cell) {
+    if (ground[cell] == IceGround::away || seen.of(cell) != 0) return;
+    seen.of(cell) = 1;
+    reach.members.push_back(cell);
+  };
+  reach.cells->visit([&](Index first) {
+    std::size_t at = reach.members.size();
+    add(first);
+    if (at < reach.members.size()) reach.region_begins.push_back(at);
+    for (; at < reach.members.size(); ++at) {
+      const Index cell = reach.members[at];
+      for (int k = 0; k < kDirections; ++k) {
+        const Index beside = grid.neighbour(cell, k);
+        if (beside != kNoCell) add(beside);
+      }
+    }
+  });
+  if (!reach.members.empty()) reach.region_begins.push_back(reach.members.size());
+  return reach;
+}
+
 IceSurface plastic_ice_surface(const Grid& grid, double k_m, std::span<const float> bed_m,
                                std::span<const IceGround> ground) {
+  return plastic_ice_surface(grid, k_m, bed_m, ground, ice_reach(grid, ground));
+}
+
+IceSurface plastic_ice_surface(const Grid& grid, double k_m, std::span<const float> bed_m,
+                               std::span<const IceGround> ground, const IceReach& reach) {
   check_shape(grid, bed_m.size(), "the bed");
   check_shape(grid, ground.size(), "the ground");
   if (!(k_m > 0.0 && std::isfinite(k_m))) {
     throw InputError(fmt::format("ice: stress over weight of {} m, must be positive", k_m));
   }
-  return March(grid, k_m, bed_m, ground).run();
+  return March(grid, k_m, bed_m, ground, reach).run();
 }
 
 IceFlux ice_flux(const Grid& grid, std::span<const float> bed_m, std::span<const IceGround> ground,
@@ -179,33 +270,17 @@ IceFlux ice_flux(const Grid& grid, std::span<const float> bed_m, std::span<const
   flux.through_m3_yr = SparseValues<double>(surface.height_m.set());
   flux.share = SparseValues<float>(surface.height_m.set());
   flux.melted = SparseValues<float>(surface.height_m.set());
-  const IceOutflow outflow(grid, surface);
-  for (auto at = surface.order.rbegin(); at != surface.order.rend(); ++at) {
-    const Index cell = *at;
-    const double area_m2 = grid.area_m2(grid.row(cell));
-    double& through = flux.through_m3_yr.of(cell);
-    const double own = balance_m_yr[cell] * area_m2;
-    // Over a bed below the sea snow falls on ice that is there: on a grounded divide, which none
-    // flows to, as well.
-    const bool is_land = bed_m[cell] >= 0.0F || through > 0.0 ||
-                         (ground[cell] == IceGround::iced && surface.height_m.of(cell) > 0.0F);
-    if (own > 0.0 && is_land) {
-      through += own;
-      flux.accumulated_m3_yr += own;
+  std::vector<RegionFlow> flows(surface.region_begins.size());
+  visit_regions(surface.region_begins, [&](std::size_t region) {
+    flows[region] = flow_of(region, grid, bed_m, ground, surface, balance_m_yr, flux);
+  });
+  for (const RegionFlow& flow : flows) {
+    flux.accumulated_m3_yr += flow.accumulated_m3_yr;
+    flux.melted_m3_yr += flow.melted_m3_yr;
+    for (const auto& [to, part_m3_yr] : flow.out) {
+      flux.through_m3_yr.of(to) += part_m3_yr;
+      (bed_m[to] < 0.0F ? flux.calved_m3_yr : flux.melted_m3_yr) += part_m3_yr;
     }
-    if (through <= 0.0) continue;
-    double melt = std::clamp(-own, 0.0, through);
-    flux.share.of(cell) = own < 0.0 ? static_cast<float>(std::min(1.0, through / -own)) : 1.0F;
-    if (surface.lowest.of(cell) == cell) melt = through;  // a world without a margin
-    flux.melted.of(cell) = static_cast<float>(melt / through);
-    flux.melted_m3_yr += melt;
-    const double leaves = through - melt;
-    if (leaves <= 0.0) continue;
-    outflow.visit(cell, [&](Index to, double part) {
-      flux.through_m3_yr.of(to) += part * leaves;
-      if (ground[to] != IceGround::away) return;
-      (bed_m[to] < 0.0F ? flux.calved_m3_yr : flux.melted_m3_yr) += part * leaves;
-    });
   }
   return flux;
 }

@@ -141,12 +141,13 @@ void IceAge::settle(const LandClimate& climate, const Age& age,
   for (std::size_t c = 0; c < bed_m_.size(); ++c) bed_m_[c] = elevation_m[c] - sunk_m_[c];
   sort_ground(climate, age, elevation_m);
   const Cold cold = cold_cells(climate);
+  const IceReach reach = ice_reach(grid_, next_);
   std::vector<float> balance_m_yr(elevation_m.size());
   for (int round = 0; round < age.rounds; ++round) {
     surface_ = {};
     flux_ = {};
     ground_ = next_;
-    surface_ = plastic_ice_surface(grid_, k_m_, bed_m_, ground_);
+    surface_ = plastic_ice_surface(grid_, k_m_, bed_m_, ground_, reach);
     balance(cold, age, elevation_m, balance_m_yr);
     flux_ = ice_flux(grid_, bed_m_, ground_, surface_, balance_m_yr);
     for (const Index c : cold.cells) {
@@ -202,19 +203,30 @@ void IceAge::sort_ground(const LandClimate& climate, const Age& age,
 
 IceAge::Cold IceAge::cold_cells(const LandClimate& climate) const {
   Cold cold;
-  for (Index c = 0; c < grid_.size(); ++c) {
-    if (next_[c] != IceGround::away) cold.cells.push_back(c);
+  std::vector<std::size_t> first_of_row(static_cast<std::size_t>(grid_.ny()) + 1, 0);
+  for (int j = 0; j < grid_.ny(); ++j) {
+    for (Index c = grid_.cell(0, j); c < grid_.cell(0, j) + grid_.nx(); ++c) {
+      if (next_[c] != IceGround::away) cold.cells.push_back(c);
+    }
+    first_of_row[j + 1] = cold.cells.size();
   }
   const auto gather = [&](const std::vector<float>& field) {
-    LandClimate::Reader reader(climate, grid_, field);
     std::vector<float> values(cold.cells.size());
-    int row = -1;
-    std::span<const float> of_row;
-    for (std::size_t n = 0; n < values.size(); ++n) {
-      const Index c = cold.cells[n];
-      if (grid_.row(c) != row) of_row = reader.row(row = grid_.row(c));
-      values[n] = of_row[grid_.column(c)];
+    ParallelErrors errors;
+#pragma omp parallel
+    {
+      auto reader =
+          errors.make<std::optional<LandClimate::Reader>>(std::in_place, climate, grid_, field);
+#pragma omp for schedule(dynamic, 8)
+      for (int j = 0; j < grid_.ny(); ++j) {
+        if (errors.any() || first_of_row[j] == first_of_row[j + 1]) continue;
+        const auto of_row = reader->row(j);
+        for (std::size_t n = first_of_row[j]; n < first_of_row[j + 1]; ++n) {
+          values[n] = of_row[grid_.column(cold.cells[n])];
+        }
+      }
     }
+    errors.rethrow();
     return values;
   };
   cold.sea_level_temperature_c = gather(climate.sea_level_temperature_c);

@@ -17,12 +17,25 @@ enum class IceGround : std::uint8_t {
   iced,
 };
 
+/// Where ice may come: the cells that are not `away` in regions that touch each other only across
+/// margins, and the margins, cells that are away beside them. It takes memory for these alone.
+struct IceReach {
+  std::shared_ptr<const CellSet> cells;    ///< those of regions, and margins
+  std::vector<Index> members;              ///< those of regions, one region after the other
+  std::vector<std::size_t> region_begins;  ///< where each begins in that, and the end of the last
+};
+
+/// `ground`: one value per cell. Throws InputError otherwise. Cost: linear; rows are shared out to
+/// threads.
+[[nodiscard]] IceReach ice_reach(const Grid& grid, std::span<const IceGround> ground);
+
 /// Surface of ice, and of the ground between, with the order in which it rises. It is known where
 /// cells are not `away` and beside those: mostly a small part of a planet, and so is what it takes.
 struct IceSurface {
   SparseValues<float> height_m;  ///< bed plus ice; on bare ground that which drains to the margin
-  std::vector<Index> order;      ///< cells that are not `away`, lowest first
-  SparseValues<Index> lowest;    ///< neighbour that each cell was reached from; itself where away
+  std::vector<Index> order;      ///< cells that are not `away`: region by region, lowest first
+  std::vector<std::size_t> region_begins;  ///< as in IceReach
+  SparseValues<Index> lowest;  ///< neighbour that each cell was reached from; itself where away
 };
 
 /// Perfectly plastic ice: the shear stress at its base is the yield stress τ everywhere (Nye 1951;
@@ -36,9 +49,15 @@ struct IceSurface {
 /// Cells that are `away` are margins, at their bed or at sea level 0; bare ground is filled as far
 /// as it does not drain to one. On a world without a margin the lowest cell serves as one.
 ///
-/// `bed_m`, `ground`: one value per cell. `k_m` > 0, m. Throws InputError where shapes do not fit
-/// or k is not positive and finite. Cost: n log n in the cells that are not away, for which it
-/// takes memory. One thread; the same bits always.
+/// `bed_m`, `ground`: one value per cell. `k_m` > 0, m. `reach`: of any ground that is away in the
+/// same cells; ice that comes and goes elsewhere leaves it as it is. Throws InputError where shapes
+/// do not fit or k is not positive and finite. Cost: n log n in the cells that are not away, for
+/// which it takes memory. Regions are shared out to threads; the same bits always.
+[[nodiscard]] IceSurface plastic_ice_surface(const Grid& grid, double k_m,
+                                             std::span<const float> bed_m,
+                                             std::span<const IceGround> ground,
+                                             const IceReach& reach);
+/// The same, with the reach of that ground.
 [[nodiscard]] IceSurface plastic_ice_surface(const Grid& grid, double k_m,
                                              std::span<const float> bed_m,
                                              std::span<const IceGround> ground);
@@ -107,7 +126,7 @@ class IceOutflow {
 /// them, or let it calve where their bed lies below the sea.
 ///
 /// `balance_m_yr`: m of ice a year, one per cell, read where the ground is not away. Cost: linear.
-/// One thread; the same bits always.
+/// Regions are shared out to threads; the same bits always.
 [[nodiscard]] IceFlux ice_flux(const Grid& grid, std::span<const float> bed_m,
                                std::span<const IceGround> ground, const IceSurface& surface,
                                std::span<const float> balance_m_yr);
