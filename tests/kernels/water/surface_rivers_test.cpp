@@ -292,8 +292,8 @@ TEST(SphereRivers, KeepTheMassBalanceOfContinents) {
     advance(model);
     const SphereBudget& b = model.budget;
     EXPECT_NEAR(b.continental_km3 - before,
-                b.raised_km3 - b.eroded_km3 + b.deposited_km3 + b.emerged_km3 - b.lost_km3 +
-                    b.resampling_km3,
+                b.raised_km3 - b.eroded_km3 + b.deposited_km3 + b.scraped_km3 + b.emerged_km3 -
+                    b.lost_km3 + b.resampling_km3,
                 1e-6 * b.continental_km3);
     EXPECT_NEAR(b.deposited_km3 + b.sea_floor_km3, b.eroded_km3, 1e-5 * b.eroded_km3);
     before = b.continental_km3;

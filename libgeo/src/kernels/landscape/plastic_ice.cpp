@@ -10,7 +10,7 @@
 
 #include "geo/core/error.hpp"
 #include "ice_regions.hpp"
-#include "monotone_queue.hpp"
+#include "kernels/numerics/monotone_queue.hpp"
 
 namespace geo {
 namespace {

@@ -2,19 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <queue>
 #include <utility>
 
 #include "geo/core/array_sizes.hpp"
+#include "kernels/numerics/monotone_queue.hpp"
 
 namespace geo {
 namespace {
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
-using Step = std::pair<float, std::int32_t>;  // a key and a place: ties go by the place
-using LowestFirst = std::priority_queue<Step, std::vector<Step>, std::greater<>>;
 
 /// Floods land from the coast inland.
 class Flood {
@@ -46,7 +43,7 @@ class Flood {
   void reach(std::int32_t i, float level, std::int32_t from) {
     level_[i] = std::max(z_[i], level);
     from_[i] = from;
-    queue_.emplace(level_[i], i);
+    queue_.push(level_[i], i);
   }
   void spread_from(std::int32_t i) {
     for (std::int32_t k = graph_.first[i]; k < graph_.first[i + 1]; ++k) {
@@ -56,8 +53,7 @@ class Flood {
   }
   void rise() {
     while (!queue_.empty()) {
-      const std::int32_t i = queue_.top().second;
-      queue_.pop();
+      const std::int32_t i = queue_.pop().second;
       settle(i);
       spread_from(i);
     }
@@ -89,7 +85,7 @@ class Flood {
   }
   /// Land that no sea borders drains to its lowest place.
   void seed_enclosed() {
-    std::vector<Step> dry;
+    std::vector<std::pair<float, std::int32_t>> dry;
     for (std::int32_t i = 0; i < graph_.size(); ++i) {
       if (graph_.is_there[i] != 0 && level_[i] == kFar) dry.emplace_back(z_[i], i);
     }
@@ -105,7 +101,7 @@ class Flood {
   std::span<const float> z_;
   std::vector<float> level_;
   std::vector<std::int32_t> from_;
-  LowestFirst queue_;
+  MonotoneQueue queue_;
   SurfaceRivers out_;
 };
 
@@ -251,15 +247,14 @@ class Sea {
   void order_by_way_from_coast() {
     const float farthest = kLengths * static_cast<float>(1e3 * law_.settling_km);
     way_m_.assign(z_.size(), kFar);
-    LowestFirst queue;
+    MonotoneQueue queue;
     for (std::int32_t i = 0; i < graph_.size(); ++i) {
       if (load_m3_[i] <= 0.0) continue;
       way_m_[i] = 0.0F;
-      queue.emplace(0.0F, i);
+      queue.push(0.0F, i);
     }
     while (!queue.empty()) {
-      const auto [way, i] = queue.top();
-      queue.pop();
+      const auto [way, i] = queue.pop();
       if (way > way_m_[i]) continue;
       order_.push_back(i);
       for (std::int32_t k = graph_.first[i]; k < graph_.first[i + 1]; ++k) {
@@ -267,7 +262,7 @@ class Sea {
         const float next = way + graph_.distance_m[k];
         if (z_[j] >= 0.0F || next >= way_m_[j] || next > farthest) continue;
         way_m_[j] = next;
-        queue.emplace(next, j);
+        queue.push(next, j);
       }
     }
   }

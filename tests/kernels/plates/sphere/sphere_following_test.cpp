@@ -47,8 +47,8 @@ struct Led {
     for (int k = 0; k < steps; ++k) {
       advance_both(model, leader);
       const SphereBudget& b = model.budget;
-      const double change_km3 = b.raised_km3 - b.eroded_km3 + b.deposited_km3 + b.emerged_km3 +
-                                b.changed_km3 - b.lost_km3 + b.resampling_km3;
+      const double change_km3 = b.raised_km3 - b.eroded_km3 + b.deposited_km3 + b.scraped_km3 +
+                                b.emerged_km3 + b.changed_km3 - b.lost_km3 + b.resampling_km3;
       if (first_km3 < 0.0) first_km3 = b.continental_km3 - change_km3;
       changed_km3 += change_km3;
       collisions += b.collisions;

@@ -99,8 +99,8 @@ TEST(SphereTectonics, TheMassBalanceOfContinentsClosesToRoundingHoweverLong) {
     for (int k = 0; k < 250; ++k) {
       advance(model);
       const SphereBudget& b = model.budget;
-      change_km3 += b.raised_km3 - b.eroded_km3 + b.deposited_km3 + b.emerged_km3 + b.changed_km3 -
-                    b.lost_km3 + b.resampling_km3;
+      change_km3 += b.raised_km3 - b.eroded_km3 + b.deposited_km3 + b.scraped_km3 + b.emerged_km3 +
+                    b.changed_km3 - b.lost_km3 + b.resampling_km3;
     }
     const double last_km3 = model.budget.continental_km3;
     EXPECT_GT(std::abs(last_km3 - first_km3), 0.01 * first_km3);

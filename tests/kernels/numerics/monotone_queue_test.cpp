@@ -1,4 +1,4 @@
-#include "kernels/landscape/monotone_queue.hpp"
+#include "kernels/numerics/monotone_queue.hpp"
 
 #include <gtest/gtest.h>
 
@@ -39,6 +39,17 @@ TEST(MonotoneQueue, GivesTheOrderOfAnyPriorityQueue) {
     }
     if (expected.size() < 10) push(lowest.first + 1.0F, k);
   }
+}
+
+TEST(MonotoneQueue, BeginsAnewOnceItIsEmpty) {
+  MonotoneQueue queue;
+  queue.push(1000.0F, 1);
+  EXPECT_EQ(queue.pop(), std::pair(1000.0F, 1));
+  queue.push(3.0F, 2);
+  queue.push(2.0F, 3);
+  EXPECT_EQ(queue.pop(), std::pair(2.0F, 3));
+  EXPECT_EQ(queue.pop(), std::pair(3.0F, 2));
+  EXPECT_TRUE(queue.empty());
 }
 
 }  // namespace

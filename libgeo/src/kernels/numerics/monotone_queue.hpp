@@ -13,13 +13,14 @@
 namespace geo {
 
 /// Cells by height, and those of one height by number, where none is put in that is lower than the
-/// last one taken out: a radix heap (Ahuja et al. 1990), whose entries move at most 32 times, from
-/// list to list. Heights are not negative, so that their bits ascend as they do. The order is that
+/// last one taken out, unless it is empty: a radix heap (Ahuja et al. 1990), whose entries move at
+/// most 32 times, from list to list. Heights are not negative, so that their bits ascend as they do. The order is that
 /// of any priority queue of pairs.
 class MonotoneQueue {
  public:
   [[nodiscard]] bool empty() const { return size_ == 0; }
   void push(float height, Index cell) {
+    if (size_ == 0) lowest_ = 0;
     put({std::bit_cast<std::uint32_t>(height + 0.0F), cell});  // -0 is 0
     ++size_;
   }
