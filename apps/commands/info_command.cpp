@@ -4,6 +4,7 @@
 #include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -104,6 +105,13 @@ void add_info_command(CLI::App& program, Action& action) {
       if (!options->run.empty()) return verify(options->run, options->json);
       if (options->file.empty()) {
         throw geo::ConfigurationError("info: which FILE? Give a stage file, such as 04-climate.nc");
+      }
+      std::error_code ignored;
+      if (std::filesystem::is_directory(options->file, ignored)) {
+        throw geo::ConfigurationError(fmt::format(
+            "info: {0} is a folder: give a stage file in it, such as 04-climate.nc; --verify {0} "
+            "checks all of a run's",
+            options->file));
       }
       const auto snapshot = geo::io::read_netcdf(options->file);
       const auto provenance = geo::io::read_provenance(options->file);

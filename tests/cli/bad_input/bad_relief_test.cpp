@@ -103,6 +103,7 @@ const BadInput kReliefs[] = {
        std::ofstream(folder / "note.txt") << "hello\n";
        return Words{"info", folder / "note.txt"};
      }},
+    {"InfoOfAFolder", kConfiguration, {"info: . is a folder", "--verify"}, words({"info", "."})},
     {"InfoOfNothing", kIo, {"nowhere.nc", "No such file"}, words({"info", "nowhere.nc"})},
 };
 

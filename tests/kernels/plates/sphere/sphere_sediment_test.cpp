@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "geo/kernels/plates/sphere/sphere_tectonics.hpp"
+#include "geo/kernels/plates/sphere/surface/sphere_water.hpp"
 #include "geo/kernels/plates/tectonic_laws.hpp"
 #include "hemispheres.hpp"
 #include "kernels/plates/sphere/sphere_steps.hpp"

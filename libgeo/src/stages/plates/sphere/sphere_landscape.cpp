@@ -7,6 +7,7 @@
 #include "geo/core/error.hpp"
 #include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/numerics/area_sum.hpp"
+#include "geo/kernels/plates/sphere/surface/sphere_water.hpp"
 #include "geo/kernels/remapping/resample.hpp"
 #include "geo/kernels/water/water_balance.hpp"
 #include "stages/erosion/climate_of_land.hpp"

@@ -164,14 +164,6 @@ void keep_water(SphereTectonics& model);
 /// Area of each plate with all that it carries, km2; 0 of those that are no more.
 [[nodiscard]] std::vector<double> plate_areas_km2(const SphereTectonics& model);
 
-/// The elevation above which a share of the planet lies, to a metre. Gaps that have opened are sea.
-[[nodiscard]] double level_above(const SphereTectonics& model, double share);
-/// What lies between sea floor and a level, as plates lie; where gaps have opened, from the depth
-/// of floor of that age.
-[[nodiscard]] double sea_volume_km3(const SphereTectonics& model, double level_m);
-/// Area that drains through each sample, km2, times runoff over that of reference; 0 off the land.
-[[nodiscard]] std::vector<double> drained_km2(const SphereTectonics& model);
-
 /// Torques on a plate about the planet's centre, in the frame of the planet.
 struct SphereTorques {
   Matrix3 drag_n_m_s{};   ///< (eta / h) R^4 int f (1 - r r^T) dA, times rotation in rad/s

@@ -4,6 +4,7 @@
 
 #include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/crust/ocean_depth.hpp"
+#include "geo/kernels/plates/sphere/surface/sphere_water.hpp"
 #include "kernels/plates/sphere/sample_sums.hpp"
 #include "kernels/plates/sphere/sphere_steps.hpp"
 

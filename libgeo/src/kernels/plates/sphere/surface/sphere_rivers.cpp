@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "geo/core/parallel_errors.hpp"
+#include "geo/kernels/plates/sphere/surface/sphere_water.hpp"
 #include "geo/kernels/water/surface_rivers.hpp"
 #include "kernels/plates/sphere/sample_sums.hpp"
 #include "kernels/plates/sphere/sphere_steps.hpp"

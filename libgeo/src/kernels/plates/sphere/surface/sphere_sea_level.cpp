@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "geo/kernels/crust/ocean_depth.hpp"
+#include "geo/kernels/plates/sphere/surface/sphere_water.hpp"
 #include "kernels/plates/sphere/sample_sums.hpp"
 #include "kernels/plates/sphere/sphere_steps.hpp"
 
