@@ -364,6 +364,29 @@ TEST(SurfaceRivers, ThatDepositLoseNothing) {
   }
 }
 
+TEST(SurfaceRivers, FillLandlockedSeasUntilTheyAreLand) {
+  const SurfaceGraph graph = row_of(12);
+  // The ocean, a sill, a shallow sea behind it, a mountain.
+  std::vector<float> z{-4000.0F, -4000.0F, -3000.0F, -3000.0F, 50.0F,   -200.0F,
+                       -300.0F,  -200.0F,  10.0F,    900.0F,   2000.0F, 2500.0F};
+  std::vector<float> rock(z.size());
+  const std::vector<std::int8_t> is_rock(z.size(), 1);
+  RiverLaw law;
+  law.erodibility_yr = 1e-6;
+  const SurfaceRivers first = route_rivers(graph, z);
+  EXPECT_EQ(first.receiver[6], 5);
+  EXPECT_EQ(first.receiver[4], 3);
+  for (int step = 0; step < 40; ++step) {
+    run_rivers(graph, route_rivers(graph, z), law, is_rock, z, rock);
+  }
+  for (int i = 5; i < 8; ++i) EXPECT_GE(z[i], 0.0F) << i;
+  // Deep water behind a sill is a sea like any other.
+  z = {-4000.0F, -4000.0F, -3000.0F, -3000.0F, 50.0F,  -200.0F,
+       -1500.0F, -200.0F,  10.0F,    900.0F,   900.0F, 900.0F};
+  EXPECT_EQ(route_rivers(graph, z).receiver[8], 7);
+  EXPECT_EQ(route_rivers(graph, z).receiver[7], SurfaceRivers::kSink);
+}
+
 TEST(SurfaceRivers, AreAsLargeAsTheRunoffOfWhatTheyDrain) {
   const SurfaceGraph graph = row_of(5);
   const std::vector<float> z{-10.0F, 1.0F, 2.0F, 3.0F, 4.0F}, runoff{1.0F, 0.5F, 2.0F, 0.0F, 3.0F};

@@ -13,11 +13,47 @@ namespace {
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
 
+/// Places of the sea: what lies below 0 and is not landlocked. Water is landlocked where no deep
+/// floor, no open side and not most of the water is joined to it.
+std::vector<std::uint8_t> sea_of(const SurfaceGraph& graph, std::span<const float> z) {
+  constexpr float kDeep_m = -1000.0F;
+  const auto is_water = [&](std::int32_t i) { return graph.is_there[i] != 0 && z[i] < 0.0F; };
+  std::vector<std::uint8_t> sea(z.size(), 0), seen(z.size(), 0);
+  std::vector<std::int32_t> water, largest;
+  const auto become_sea = [&](const std::vector<std::int32_t>& places) {
+    for (const std::int32_t i : places) sea[i] = 1;
+  };
+  for (std::int32_t first = 0; first < graph.size(); ++first) {
+    if (seen[first] != 0 || !is_water(first)) continue;
+    water.assign(1, first);
+    seen[first] = 1;
+    bool is_joined = false;
+    for (std::size_t at = 0; at < water.size(); ++at) {
+      const std::int32_t i = water[at];
+      is_joined = is_joined || z[i] < kDeep_m || graph.is_open[i] != 0;
+      for (std::int32_t k = graph.first[i]; k < graph.first[i + 1]; ++k) {
+        const std::int32_t j = graph.neighbour[k];
+        if (seen[j] != 0 || !is_water(j)) continue;
+        seen[j] = 1;
+        water.push_back(j);
+      }
+    }
+    if (is_joined) become_sea(water);
+    if (water.size() > largest.size()) largest = water;
+  }
+  become_sea(largest);
+  return sea;
+}
+
 /// Floods land from the coast inland.
 class Flood {
  public:
   Flood(const SurfaceGraph& graph, std::span<const float> z)
-      : graph_(graph), z_(z), level_(z.size(), kFar), from_(z.size(), SurfaceRivers::kSink) {
+      : graph_(graph),
+        z_(z),
+        sea_(sea_of(graph, z)),
+        level_(z.size(), kFar),
+        from_(z.size(), SurfaceRivers::kSink) {
     out_.receiver.assign(z.size(), SurfaceRivers::kSink);
     out_.distance_m.assign(z.size(), 0.0F);
   }
@@ -25,14 +61,14 @@ class Flood {
   SurfaceRivers run() {
     for (std::int32_t i = 0; i < graph_.size(); ++i) {
       if (graph_.is_there[i] == 0) continue;
-      if (z_[i] < 0.0F) {
+      if (sea_[i] != 0) {
         level_[i] = 0.0F;
       } else if (graph_.is_open[i] != 0) {
         reach(i, 0.0F, SurfaceRivers::kOpen);
       }
     }
     for (std::int32_t i = 0; i < graph_.size(); ++i) {
-      if (graph_.is_there[i] != 0 && z_[i] < 0.0F) spread_from(i);
+      if (sea_[i] != 0) spread_from(i);
     }
     rise();
     seed_enclosed();
@@ -59,7 +95,7 @@ class Flood {
     }
   }
   [[nodiscard]] bool is_settled(std::int32_t i) const {
-    return z_[i] < 0.0F || out_.distance_m[i] > 0.0F;
+    return sea_[i] != 0 || out_.distance_m[i] > 0.0F;
   }
   void settle(std::int32_t i) {
     out_.order.push_back(i);
@@ -99,6 +135,7 @@ class Flood {
 
   const SurfaceGraph& graph_;
   std::span<const float> z_;
+  std::vector<std::uint8_t> sea_;
   std::vector<float> level_;
   std::vector<std::int32_t> from_;
   MonotoneQueue queue_;
@@ -117,8 +154,14 @@ float lowest_neighbour_m(const SurfaceGraph& graph, std::span<const float> z, st
 class LandStep {
  public:
   LandStep(const SurfaceGraph& graph, const SurfaceRivers& rivers, const RiverLaw& law,
-           std::span<const std::int8_t> is_rock, std::span<const float> z)
-      : graph_(graph), rivers_(rivers), law_(law), is_rock_(is_rock), z_(z) {
+           std::span<const std::int8_t> is_rock, std::span<const float> erodibility,
+           std::span<const float> z)
+      : graph_(graph),
+        rivers_(rivers),
+        law_(law),
+        is_rock_(is_rock),
+        erodibility_(erodibility),
+        z_(z) {
     level_m_.assign(z.size(), 0.0F);
     places_.assign(z.size(), 1.0);
     lowering_m_.assign(z.size(), 0.0);
@@ -159,7 +202,8 @@ class LandStep {
   }
   [[nodiscard]] double factor(std::int32_t i) const {
     if (is_rock_[i] == 0) return 0.0;
-    const double per_step = law_.erodibility_yr / law_.rebound * law_.dt_yr;
+    const double of_rock = erodibility_.empty() ? 1.0 : erodibility_[i];
+    const double per_step = of_rock * law_.erodibility_yr / law_.rebound * law_.dt_yr;
     return per_step * std::pow(rivers_.area_m2[i], law_.area_exponent) / rivers_.distance_m[i];
   }
   [[nodiscard]] double room_m(std::int32_t i) const {
@@ -211,7 +255,7 @@ class LandStep {
   const SurfaceRivers& rivers_;
   const RiverLaw& law_;
   std::span<const std::int8_t> is_rock_;
-  std::span<const float> z_;
+  std::span<const float> erodibility_, z_;
   std::vector<float> level_m_;  ///< of the water at each place; that of the sea is 0
   std::vector<double> places_;  ///< that drain through each
   std::vector<double> lowering_m_, follows_;
@@ -340,13 +384,15 @@ SurfaceRivers route_rivers(const SurfaceGraph& graph, std::span<const float> ele
 
 RiverWork run_rivers(const SurfaceGraph& graph, const SurfaceRivers& rivers, const RiverLaw& law,
                      std::span<const std::int8_t> is_rock, std::span<float> elevation_m,
-                     std::span<float> rock_m) {
+                     std::span<float> rock_m, std::span<const float> erodibility) {
   check_sizes("run_rivers", elevation_m.size(),
               {{"receiver", rivers.receiver.size()},
                {"is_rock", is_rock.size()},
-               {"rock_m", rock_m.size()}});
+               {"rock_m", rock_m.size()},
+               {"erodibility", erodibility.size(), ArraySize::May::be_empty}});
   std::fill(rock_m.begin(), rock_m.end(), 0.0F);
-  const std::vector<float> land_m = LandStep(graph, rivers, law, is_rock, elevation_m).solve();
+  const std::vector<float> land_m =
+      LandStep(graph, rivers, law, is_rock, erodibility, elevation_m).solve();
   RiverWork work;
   std::vector<double> load_m3(elevation_m.size(), 0.0);
   Sea sea(graph, law, elevation_m, rock_m);

@@ -294,12 +294,22 @@ std::vector<Parameter> sphere_surface_rows(PlatesParameters& p) {
           "design"),
       real("plates.sphere.climate_myr", p.climate_myr, "Myr", 0.1, 1000.0,
            "time between two of these climates", "design"),
+      real("plates.sphere.freeboard_myr", p.sphere.freeboard_myr, "Myr", 0.0, 10000.0,
+           "time in which the mantle gives and takes water until the sea covers "
+           "planet.ocean_fraction, to 1/e, with landscape = full; 0: the sea's water stays",
+           "wise1974"),
       choice("plates.sphere.sea_level", p.sea_level, {"fixed", "ocean"},
              "base level of that erosion: elevation 0, or, in each step, the level below which "
              "planet.ocean_fraction of the surface lies",
              "design"),
       real("plates.sphere.river_erodibility_yr", p.sphere.rivers.erodibility_yr, "yr-1", 0.0, 1.0,
            "erodibility K for the square root of the drained area, with rivers", "whipple1999"),
+      real("plates.sphere.old_rock_erodibility", p.sphere.old_rock_erodibility, "1", 0.0, 10.0,
+           "erodibility of rock that was folded long ago over that of young belts and of sediment, "
+           "with rivers",
+           "harel2016"),
+      real("plates.sphere.hardening_myr", p.sphere.hardening_myr, "Myr", 1.0, 5000.0,
+           "time in which rock of belts hardens to 1/e of the difference", "harel2016"),
       real("plates.sphere.river_deposition", p.sphere.rivers.deposition, "1", 0.0, 1000.0,
            "deposition G: what rivers deposit, over the mean loss of the land upstream",
            "davy2009"),

@@ -1,6 +1,7 @@
 // What rivers lay on moving plates, and the sea that it is laid in.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numeric>
 
 #include "geo/kernels/plates/sphere/sphere_tectonics.hpp"
@@ -139,6 +140,45 @@ TEST(SphereSea, StandsWhereItsWaterHasIt) {
   for (float& z : model.state.crust.elevation_m) z += z < 0.0F ? 300.0F : 0.0F;
   keep_water(model);
   EXPECT_NEAR(model.state.sea_level_m, 200.0, 0.01);
+}
+
+TEST(SphereSea, ComesBackToItsShareOfThePlanet) {
+  const SampledSphere world(8000);
+  SphereSettings settings = with_rivers();
+  settings.freeboard_myr = 20.0;
+  settings.freeboard_ocean_share = 0.95;  // part of the continent
+  SphereTectonics model(world.mesh, settings, polar_continent(world), 1);
+  exchange_water(model);
+  EXPECT_EQ(model.state.water_km3, 0.0);  // no water is known
+  const double wanted_km3 = sea_volume_km3(model, level_above(model, 0.05));
+  model.state.water_km3 = 0.5 * wanted_km3;
+  const double left = std::exp(-settings.law.step_myr / settings.freeboard_myr);
+  double missing_km3 = 0.5 * wanted_km3;
+  for (int k = 0; k < 5; ++k) {
+    exchange_water(model);
+    missing_km3 *= left;
+    EXPECT_NEAR(wanted_km3 - model.state.water_km3, missing_km3, 1e-9 * wanted_km3);
+  }
+}
+
+TEST(SphereSediment, OldRockErodesLessThanYoungAndThanSediment) {
+  const SampledSphere world(8000);
+  const auto eroded_km3 = [&](double age_myr, double sediment_m) {
+    SphereSettings settings = with_rivers();
+    settings.rivers.erodibility_yr = 1e-9;  // far from base level: as the erodibility
+    settings.old_rock_erodibility = 0.2;
+    settings.hardening_myr = 100.0;
+    SphereState state = polar_continent(world);
+    for (float& age : state.crust.orogeny_age_myr) age = static_cast<float>(age_myr);
+    for (float& thickness : state.crust.sediment_m) thickness = static_cast<float>(sediment_m);
+    SphereTectonics model(world.mesh, settings, std::move(state), 1);
+    run_rivers(model);
+    return model.budget.eroded_km3;
+  };
+  const double young = eroded_km3(0.0, 0.0);
+  EXPECT_NEAR(eroded_km3(2000.0, 0.0) / young, 0.2, 0.01);
+  EXPECT_NEAR(eroded_km3(100.0, 0.0) / young, 0.2 + 0.8 * std::exp(-1.0), 0.01);
+  EXPECT_NEAR(eroded_km3(2000.0, 1000.0) / young, 1.0, 0.01);
 }
 
 TEST(SphereSea, LeavesAShareOfThePlanetAboveALevel) {

@@ -29,7 +29,8 @@ struct RiverLaw {
   double load = 0.35;          ///< by which the sea floor rises for each metre laid on it
 };
 
-/// Drainage on land. Sea is what lies below 0.
+/// Drainage on land. Sea is what lies below 0, but for landlocked water: it is a lake, which
+/// overflows at its sill.
 struct SurfaceRivers {
   static constexpr std::int32_t kOpen = -1;  ///< water goes where no place stands for the sea
   static constexpr std::int32_t kSink = -2;  ///< the lowest place of land that no sea borders
@@ -65,11 +66,11 @@ struct RiverWork {
 /// the shelf's depth. What finds no room settles evenly on all deep floor. Nothing is lost where
 /// there is any: eroded = on land + in the sea.
 ///
-/// `is_rock`: places that rivers erode. `elevation_m` in and out; `rock_m`: change of the thickness
-/// of rock and sediment. Cost linear but for the order of places off the coast, n log n.
+/// `is_rock`: places that rivers erode; `erodibility`: K of each over that of the law, or empty: 1.
+/// `elevation_m` in and out; `rock_m`: change of the thickness of rock and sediment. Cost linear but for the order of places off the coast, n log n.
 /// Arrays have one value per place; Bug otherwise.
 RiverWork run_rivers(const SurfaceGraph& graph, const SurfaceRivers& rivers, const RiverLaw& law,
                      std::span<const std::int8_t> is_rock, std::span<float> elevation_m,
-                     std::span<float> rock_m);
+                     std::span<float> rock_m, std::span<const float> erodibility = {});
 
 }  // namespace geo

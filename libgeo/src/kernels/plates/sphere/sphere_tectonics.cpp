@@ -116,6 +116,7 @@ void begin_step(SphereTectonics& model) {
 }
 
 void shape_crust(SphereTectonics& model) {
+  exchange_water(model);
   keep_water(model);
   raise_crust(model);
   erupt(model);

@@ -34,6 +34,7 @@ SphereSettings settings_of(const PlatesParameters& p, double radius_km, const Co
   settings.force.gravity_m_s2 = context.planet.gravity_m_s2;
   settings.floor_by_age = p.ocean_floor == "age";
   if (p.sea_level == "ocean" && p.landscape == "none") settings.ocean_share = context.planet.ocean_fraction;
+  settings.freeboard_ocean_share = context.planet.ocean_fraction;
   settings.no_net_rotation = p.no_net_rotation;
   settings.hold_motions = p.given_motions == "held";
   if (context.reconstruction) let_rotations_lead(settings);
@@ -112,7 +113,8 @@ class MassBalance {
             "sediment_reworked_km3",
             "sediment_subducted_km3",
             "sediment_resampling_km3",
-            "sea_level_m"};
+            "sea_level_m",
+            "water_km3"};
   }
   static std::vector<double> row(const SphereTectonics& model) {
     const SphereBudget& b = model.budget;
@@ -145,7 +147,8 @@ class MassBalance {
                             b.sediment_reworked_km3,
                             b.sediment_subducted_km3,
                             b.sediment_resampling_km3,
-                            model.state.sea_level_m};
+                            model.state.sea_level_m,
+                            model.state.water_km3};
     // By the numbers of plates, which outlast the places where the model keeps them.
     const SphereState& state = model.state;
     const std::vector<double> area_km2 = plate_areas_km2(model);

@@ -83,7 +83,13 @@ struct SphereSettings {
   double ocean_share = 0.0;
   bool wears_land_alone = false;  ///< erosion by height leaves what lies below the sea as it is
   RiverLaw rivers{.deposition = 1.0};  ///< their step and rebound are the model's
-  double accreted_share = 0.2;         ///< of the sediment of floor that subducts: scraped off
+  double freeboard_myr =
+      0.0;  ///< in which the sea comes to cover that share again, to 1/e; 0: never
+  double freeboard_ocean_share = 0.71;
+  double old_rock_erodibility =
+      1.0;                       ///< of rock that was folded long ago, over that of young belts
+  double hardening_myr = 100.0;  ///< in which rock becomes so, to 1/e
+  double accreted_share = 0.2;   ///< of the sediment of floor that subducts: scraped off
   bool no_net_rotation = true;
   bool hold_motions = true;  ///< whether a plate goes on turning as it is told to
   std::int64_t least_steps = 10, most_steps = 60;  ///< between resamplings

@@ -140,6 +140,25 @@ std::vector<float> runoff_of_samples(const SphereTectonics& model) {
   return found;
 }
 
+/// Of each sample, over that of a belt that is being folded: rock that has come up from the depth
+/// of an old belt is harder, sediment is not.
+std::vector<float> erodibility_of_samples(const SphereTectonics& model) {
+  const SphereSettings& s = model.settings;
+  if (s.old_rock_erodibility == 1.0) return {};
+  constexpr float kCover_m = 100.0F;
+  const SphereCrust& crust = model.state.crust;
+  std::vector<float> erodibility(crust.plate.size());
+#pragma omp parallel for schedule(static)
+  for (std::int32_t i = 0; i < crust.size(); ++i) {
+    const double young = crust.sediment_m[i] > kCover_m
+                             ? 1.0
+                             : std::exp(-crust.orogeny_age_myr[i] / s.hardening_myr);
+    erodibility[i] =
+        static_cast<float>(s.old_rock_erodibility + (1.0 - s.old_rock_erodibility) * young);
+  }
+  return erodibility;
+}
+
 std::vector<float> heights_above_sea(const SphereTectonics& model) {
   std::vector<float> height_m = model.state.crust.elevation_m;
   const auto sea_level_m = static_cast<float>(model.state.sea_level_m);
@@ -168,7 +187,8 @@ void run_rivers(SphereTectonics& model) {
   std::vector<float> rock_m(crust.plate.size()), above_sea_m = heights_above_sea(model);
   const std::vector<float> before_m = above_sea_m;
   const SurfaceRivers rivers = route_rivers(surface.graph(), above_sea_m, runoff_of_samples(model));
-  geo::run_rivers(surface.graph(), rivers, law, crust.continental, above_sea_m, rock_m);
+  geo::run_rivers(surface.graph(), rivers, law, crust.continental, above_sea_m, rock_m,
+                  erodibility_of_samples(model));
 #pragma omp parallel for schedule(static)
   for (std::int32_t i = 0; i < crust.size(); ++i) {
     if (rock_m[i] == 0.0F) continue;

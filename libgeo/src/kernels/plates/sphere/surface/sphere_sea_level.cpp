@@ -51,6 +51,16 @@ double sea_volume_km3(const SphereTectonics& model, double level_m) {
   return 1e-3 * model.sample_km2() * (depths_m + gaps_m);
 }
 
+void exchange_water(SphereTectonics& model) {
+  SphereState& state = model.state;
+  const SphereSettings& s = model.settings;
+  if (state.water_km3 <= 0.0 || s.freeboard_myr <= 0.0) return;
+  const double level_m = level_above(model, 1.0 - s.freeboard_ocean_share);
+  const double steady_km3 = sea_volume_km3(model, level_m) + state.ice_km3;
+  state.water_km3 +=
+      (steady_km3 - state.water_km3) * -std::expm1(-s.law.step_myr / s.freeboard_myr);
+}
+
 void keep_water(SphereTectonics& model) {
   SphereState& state = model.state;
   if (state.water_km3 <= 0.0) return;
