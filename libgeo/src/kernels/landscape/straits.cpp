@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "geo/core/array_sizes.hpp"
+#include "geo/kernels/noise/noise.hpp"
 
 namespace geo {
 namespace {
@@ -86,6 +87,13 @@ class Search {
   // A way over the sea itself costs next to nothing.
   static constexpr double kHeight_m = 20.0, kAtSea = 1e-3;
 
+  /// Of rock, by place: over plains a way that costs least by its height alone is a ruler's.
+  [[nodiscard]] double resistance(Index cell) const {
+    constexpr double kBends = 16.0, kContrast = 3.0;  // 400 km on the Earth
+    constexpr int kOctaves = 4;
+    const auto place = grid_.unit_vector(grid_.column(cell), grid_.row(cell));
+    return std::exp(kContrast * rock_.fbm(place, kBends, kOctaves));
+  }
   bool join(std::int32_t part) {
     seen_.clear();
     heap_.clear();
@@ -110,7 +118,8 @@ class Search {
         const bool land = !(z_[to] < 0.0F);
         const double land_m = here.land_m + (land ? step : 0.0);
         if (land_m > law_.land_m) continue;
-        const double cost = here.cost + step * (land ? kHeight_m + z_[to] : kAtSea);
+        const double cost =
+            here.cost + step * (land ? (kHeight_m + z_[to]) * resistance(to) : kAtSea);
         const auto at = seen_.find(to);
         if (at != seen_.end() && at->second.cost <= cost) continue;
         seen_[to] = {cost, land_m, entry.cell};
@@ -185,6 +194,7 @@ class Search {
   const Grid& grid_;
   const StraitLaw& law_;
   std::span<float> z_;
+  const Noise rock_{0, "straits.rock"};
   std::vector<std::int32_t> part_of_, order_;
   std::vector<Part> parts_;
   std::vector<std::uint8_t> joined_;

@@ -45,11 +45,11 @@ Drainage drain(const Grid& grid, std::span<const float> z, const Bytes& outlets,
 
 /// Where water ends: outlets, and the bottoms of the basins that keep theirs before any depression
 /// is breached. Not those behind what a coarse elevation model has made of a gorge: basins smaller
-/// than `least_m2` when full to their sill, and those that so much water comes to that its valley
-/// would be as deep as the sill is high above the bottom.
+/// than `least_m2` when full to their sill, and those that so much water comes to that its valley,
+/// times `gorge_factor`, would be as deep as the sill is high above the bottom.
 Bytes with_closed_basins(const Grid& grid, std::span<const float> z, Bytes outlets,
                          std::span<const double> runoff, std::span<const float> loss,
-                         double least_m2) {
+                         double least_m2, double gorge_factor) {
   const Drainage d = drain(grid, z, outlets, runoff, loss);
   const auto& depressions = d.hierarchy.depressions;
   // Parents stand behind their children.
@@ -63,7 +63,7 @@ Bytes with_closed_basins(const Grid& grid, std::span<const float> z, Bytes outle
     if (d.lakes.exit_of_leaf[leaf].inside != kNoCell) continue;
     const Depression& basin = depressions[whole[leaf]];
     const double rim_m = basin.sill_m - z[basin.pit];
-    if (basin.area_m2 >= least_m2 && valley_depth(comes_m3_s[whole[leaf]]) < rim_m) {
+    if (basin.area_m2 >= least_m2 && gorge_factor * valley_depth(comes_m3_s[whole[leaf]]) < rim_m) {
       outlets[depressions[leaf].pit] = 1;
     }
   }
@@ -156,9 +156,9 @@ class HydrologyStage final : public Stage {
                                       io.read(field::potential_evapotranspiration), water, loss);
     const double inflow = add_inflow(io.read_optional(field::inflow_discharge), water);
     context.advance(0.1);
-    const Bytes closed =
-        by_area() ? outlets
-                  : with_closed_basins(grid, z, outlets, water, loss, 1e6 * p_.closed_basin_km2);
+    const Bytes closed = by_area() ? outlets
+                                   : with_closed_basins(grid, z, outlets, water, loss,
+                                                        1e6 * p_.closed_basin_km2, p_.gorge_factor);
     const Bytes kept =
         with_scoured_basins(grid, z, io.read_optional(field::glacial_erosion), closed);
     shape_valleys(grid, closed, kept, sea, water, inflow_area,
@@ -321,9 +321,11 @@ std::vector<Parameter> HydrologyParameters::declarations() {
            "area, when full to the sill, from which a basin that keeps its water stays closed, "
            "with rivers = discharge; smaller ones are breached as others are",
            "design"),
-      real("hydrology.gorge_factor", gorge_factor, "1", 0.0, 100.0,
-           "deepest cut by a river through a barrier, over the depth of its valley; 0 cuts none",
-           "leopold1953"),
+      real(
+          "hydrology.gorge_factor", gorge_factor, "1", 0.0, 100.0,
+          "deepest cut by a river through a barrier, over the depth of its valley, where a DEM has "
+          "averaged gorges away; 0 cuts none: rivers of stage erosion have made their sills",
+          "leopold1953"),
       real("hydrology.gorge_length_km", gorge_length_km, "km", 0.0, 1e5,
            "longest barrier that a river cuts through", "design"),
       real("hydrology.channel_area_km2", channel_area_km2, "km2", 0.0, 1e8,

@@ -12,7 +12,7 @@ struct HydrologyParameters {
   double breach_depth_m = 100.0;
   double breach_length_km = 100.0;
   double closed_basin_km2 = 5000.0;
-  double gorge_factor = 1.0;
+  double gorge_factor = 0.0;
   double gorge_length_km = 450.0;
   double channel_area_km2 = 5000.0;
   std::string rivers = "discharge";
