@@ -258,6 +258,10 @@ TEST_F(Scenario, ItsLandscapeIsInFramesAndFilms) {
       EXPECT_TRUE(fs::exists(films / theme / time)) << theme << time;
     }
   }
+  const Outcome exported = terrane(
+      {"export", out_.string(), "--format", "gplates", "-o", (folder_ / "gplates").string()});
+  ASSERT_EQ(exported.code, 0) << exported.err;
+  EXPECT_TRUE(fs::exists(folder_ / "gplates" / "coastlines.geojson"));
   run("island-and-supercontinent.toml",
       {"--overwrite", "--set", "plates.sphere.time_myr=10", "--set", "plates.sphere.frames_myr=0"});
   const Outcome none = terrane({"maps", out_.string(), "--frames"});

@@ -275,7 +275,11 @@ void add_layers(const GplatesRun& run, const GplatesFrame& frame, GplatesLayers&
       fields, today, gplates::kContinent, "Continental crust",
       [&](Index cell) { return fields.is_continent(cell); },
       crossing_of(fields.of(field::continental_fraction), kShelf), layers.continents);
-  if (const auto* elevation_m = fields.find(field::crust_elevation)) {
+  // Frames with a landscape know where the sea stands.
+  const auto* above_sea_m = fields.find(field::elevation);
+  const auto* elevation_m =
+      above_sea_m != nullptr ? above_sea_m : fields.find(field::crust_elevation);
+  if (elevation_m != nullptr) {
     add_regions(
         fields, today, gplates::kCoast, "Land",
         [&](Index cell) { return (*elevation_m)[cell] > 0.0F; }, crossing_of(*elevation_m, 0.0),

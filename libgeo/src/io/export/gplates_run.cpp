@@ -36,6 +36,7 @@ bool is_wanted(const FieldSpec& spec) {
                                                                &field::boundary_type,
                                                                &field::subduction_polarity,
                                                                &field::crust_elevation,
+                                                               &field::elevation,
                                                                &field::crust_age,
                                                                &field::continental_fraction,
                                                                &field::plate_velocity_east,

@@ -35,10 +35,16 @@ class IceAndAir {
     resample_raster(fine_, elevation_m, raster_, ground_m_, grid.figure());
   }
 
-  void follow(double colder_k, double warmer_k, int rounds) {
-    ice_.follow(climate(colder_k), warmer_k, rounds, ground_m_);
-    ice_m_.assign(ice_.thickness_m().begin(), ice_.thickness_m().end());
+  /// Ice of the last cold time, and what the warmest since has left of it.
+  void live(const ErosionParameters& parameters) {
+    if (parameters.glacial_share > 0.0 && parameters.glacial_time_yr > 0.0) {
+      for (int turn = 0; turn < kColdTurns; ++turn) {
+        follow(kForcedShare * parameters.glacial_cooling_k, 0.0, kGrowing);
+      }
+    }
+    for (int turn = 0; turn < kWarmTurns; ++turn) follow(0.0, kWarmest_k, kShrinking);
   }
+  [[nodiscard]] std::vector<float> take_ice_m() { return std::move(ice_m_); }
   [[nodiscard]] LandClimate today() const {
     LandClimate climate_now = climate(0.0);
     climate_now.between = std::make_shared<const RowResampling>(raster_, fine_, grid_->figure());
@@ -46,6 +52,10 @@ class IceAndAir {
   }
 
  private:
+  void follow(double colder_k, double warmer_k, int rounds) {
+    ice_.follow(climate(colder_k), warmer_k, rounds, ground_m_);
+    ice_m_.assign(ice_.thickness_m().begin(), ice_.thickness_m().end());
+  }
   [[nodiscard]] LandClimate climate(double colder_k) const {
     return climate_of_surface(grid_, ice_.surface_m(ground_m_), ice_m_, {kCoarser, colder_k},
                               context_);
@@ -59,24 +69,33 @@ class IceAndAir {
   IceAge ice_;
 };
 
+double turn_seconds(std::span<const Parameter> configuration) {
+  constexpr double kFields_s = 0.15;  // on the grid of climates, whatever that of the air
+  return kFields_s + climate_of_land_seconds(configuration, {.coarser = kCoarser});
+}
+
 }  // namespace
 
 LandClimate icy_climate(const ErosionParameters& parameters, const Grid& grid,
                         std::span<const float> elevation_m, Context& context) {
   IceAndAir both(parameters, grid, elevation_m, context);
-  if (parameters.glacial_share > 0.0 && parameters.glacial_time_yr > 0.0) {
-    for (int turn = 0; turn < kColdTurns; ++turn) {
-      both.follow(kForcedShare * parameters.glacial_cooling_k, 0.0, kGrowing);
-    }
-  }
-  for (int turn = 0; turn < kWarmTurns; ++turn) both.follow(0.0, kWarmest_k, kShrinking);
+  both.live(parameters);
   return both.today();
 }
 
+std::vector<float> living_ice_m(const ErosionParameters& parameters, const Grid& grid,
+                                std::span<const float> elevation_m, Context& context) {
+  IceAndAir both(parameters, grid, elevation_m, context);
+  both.live(parameters);
+  return both.take_ice_m();
+}
+
 double icy_climate_seconds(std::span<const Parameter> configuration) {
-  constexpr double kFields_s = 0.15;  // on the grid of climates, whatever that of the air
-  return (kColdTurns + kWarmTurns + 1) *
-         (kFields_s + climate_of_land_seconds(configuration, {.coarser = kCoarser}));
+  return (kColdTurns + kWarmTurns + 1) * turn_seconds(configuration);
+}
+
+double warm_ice_seconds(std::span<const Parameter> configuration) {
+  return kWarmTurns * turn_seconds(configuration);
 }
 
 }  // namespace geo

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "geo/core/stage.hpp"
 #include "geo/stages/erosion/drainage.hpp"
@@ -15,7 +16,12 @@ namespace geo {
 /// climate_grid, with air thrice as coarse as the run's.
 [[nodiscard]] LandClimate icy_climate(const ErosionParameters& parameters, const Grid& grid,
                                       std::span<const float> elevation_m, Context& context);
-/// What that takes, as in StageCost, with the climate's settings in `configuration`.
+/// That ice alone, m, mean of each cell of climate_grid.
+[[nodiscard]] std::vector<float> living_ice_m(const ErosionParameters& parameters, const Grid& grid,
+                                              std::span<const float> elevation_m, Context& context);
+/// What these take, as in StageCost, with the climate's settings in `configuration`; the ice alone
+/// without cold times.
 [[nodiscard]] double icy_climate_seconds(std::span<const Parameter> configuration);
+[[nodiscard]] double warm_ice_seconds(std::span<const Parameter> configuration);
 
 }  // namespace geo

@@ -8,6 +8,7 @@
 #include "stages/plates/growth/growth.hpp"
 #include "stages/plates/raster/raster.hpp"
 #include "stages/plates/sphere/sphere.hpp"
+#include "stages/plates/sphere/sphere_landscape.hpp"
 
 namespace geo {
 namespace {
@@ -27,14 +28,23 @@ class PlatesStage final : public Stage {
     return parameters_.initial_elevation == "hypsography" ? kStarting : kDrifting;
   }
   [[nodiscard]] std::vector<Parameter> parameters() override { return parameters_.declarations(); }
-  [[nodiscard]] StageCost cost(std::span<const Parameter> /*configuration*/) const override {
+  [[nodiscard]] StageCost cost(std::span<const Parameter> configuration) const override {
     constexpr double kMesh_s = 0.45;     // plates that grow, on a mesh of their own
-    constexpr double kDrift_ns = 190.0;  // per sample and million years
+    constexpr double kDrift_ns = 136.0;  // per sample and million years
+    constexpr double kRivers_ns = 120.0;
     constexpr double kRaster_s = 3.0;
-    constexpr double kSample_bytes = 285.0;
+    constexpr double kSample_bytes = 290.0;
     const std::string& model = parameters_.model;
+    const bool is_full = parameters_.landscape == "full";
+    const double step_ns =
+        kDrift_ns + (is_full || parameters_.erosion == "rivers" ? kRivers_ns : 0.0);
+    const double climates = is_full && find_parameter(configuration, "climate.model") != nullptr
+                                ? 1.0 + parameters_.time_myr / parameters_.climate_myr
+                                : 0.0;
     const double drift_s =
-        1e-9 * kDrift_ns * static_cast<double>(parameters_.samples) * parameters_.time_myr;
+        1e-9 * step_ns * static_cast<double>(parameters_.samples) *
+            (parameters_.time_myr + parameters_.spin_up_myr) +
+        (climates > 0.0 ? climates * DriftLandscape::climate_seconds(configuration) : 0.0);
     return {.per_cell_ns = 500.0,
             .fixed_s = model == "sphere"   ? drift_s
                        : model == "raster" ? kRaster_s

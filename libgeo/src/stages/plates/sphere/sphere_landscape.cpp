@@ -49,6 +49,11 @@ std::vector<const FieldSpec*> DriftLandscape::fields() {
           &field::precipitation, &field::temperature,        &field::ice_thickness};
 }
 
+double DriftLandscape::climate_seconds(std::span<const Parameter> configuration) {
+  return warm_ice_seconds(configuration) +
+         climate_of_land_seconds(configuration, {.coarser = kCoarser});
+}
+
 DriftLandscape::DriftLandscape(const PlatesParameters& parameters, const Grid& grid,
                                Context& context)
     : interval_myr_(parameters.climate_myr),
@@ -105,7 +110,7 @@ std::vector<float> DriftLandscape::surface_m(const SphereTectonics& model) const
 LandClimate DriftLandscape::climate_of(const SphereTectonics& model) {
   const std::vector<float> ground_m = surface_m(model);
   std::vector<float> ice_m;
-  if (land_.freezes()) ice_m = icy_climate(land_, *grid_, ground_m, context_).ice_m;
+  if (land_.freezes()) ice_m = living_ice_m(land_, *grid_, ground_m, context_);
   std::vector<float> top_m = ground_m;
   for (std::size_t c = 0; c < ice_m.size(); ++c) top_m[c] += ice_m[c];
   LandClimate climate = climate_of_surface(grid_, top_m, ice_m, {kCoarser}, context_);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "geo/core/stage.hpp"
@@ -20,6 +21,9 @@ class DriftLandscape {
  public:
   /// What frames have because of it.
   static std::vector<const FieldSpec*> fields();
+
+  /// What one climate takes, as in StageCost, with the climate's settings in `configuration`.
+  static double climate_seconds(std::span<const Parameter> configuration);
 
   /// `grid`: that of the run, whose frame the climate's shares.
   DriftLandscape(const PlatesParameters& parameters, const Grid& grid, Context& context);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "geo/core/error.hpp"
 #include "geo/core/place.hpp"
@@ -67,10 +68,17 @@ void cut_out(const LaterPlate& plate, const PlateReconstruction& given, SphereTe
     return;
   }
   const std::int32_t driver = model.state.plates[whole].driver;
+  const std::int16_t id = model.state.plates[whole].id;
   const auto parts = split_plate(model, whole, within);
   if (!parts) return;
-  model.state.plates[parts->first].driver = driver;
-  model.state.plates[parts->second].driver = plate.number;
+  SpherePlate& rest = model.state.plates[parts->first];
+  SpherePlate& part = model.state.plates[parts->second];
+  rest.driver = driver;
+  part.driver = plate.number;
+  // The number stays with the rotations, however much of the plate goes.
+  if (rest.id == id) return;
+  std::swap(rest.id, part.id);
+  std::swap(rest.born_myr, part.born_myr);
 }
 
 }  // namespace
