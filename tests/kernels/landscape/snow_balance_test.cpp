@@ -16,6 +16,17 @@ TEST(SnowBalance, DegreeDaysOfScatterAloneAreExact) {
   EXPECT_NEAR(year.snow_share, 0.5, 1e-12);
 }
 
+TEST(SnowBalance, OfOneMonthIsThatOfTheNormalDistribution) {
+  const SnowLaw law;
+  for (double t = -10.0; t < 10.0; t += 0.00173) {
+    const FrostOfYear year = frost_of_year(law, t * law.scatter_k, 0.0);
+    const double density = std::exp(-0.5 * t * t) / std::sqrt(2.0 * std::numbers::pi);
+    const double above = 0.5 * std::erfc(-t / std::numbers::sqrt2);
+    EXPECT_NEAR(year.snow_share, 1.0 - above, 1e-11) << t;
+    EXPECT_NEAR(year.degree_days, law.year_d * law.scatter_k * (density + t * above), 1e-7) << t;
+  }
+}
+
 TEST(SnowBalance, DegreeDaysMatchAQuadratureOverDays) {
   const SnowLaw law;
   for (const auto& [mean, range] : {std::pair{-12.0, 30.0}, std::pair{2.0, 10.0}}) {

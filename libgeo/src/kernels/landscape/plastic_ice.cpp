@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -67,7 +68,12 @@ class March {
  public:
   March(const Grid& grid, double k_m, std::span<const float> bed_m,
         std::span<const IceGround> ground, const IceReach& reach)
-      : grid_(grid), k_m_(k_m), bed_m_(bed_m), ground_(ground), reach_(reach.cells) {
+      : grid_(grid),
+        k_m_(k_m),
+        bed_m_(bed_m),
+        ground_(ground),
+        reach_(reach.cells),
+        offsets_(grid.offsets()) {
     surface_.order = reach.members;
     surface_.region_begins = reach.region_begins;
     surface_.height_m = SparseValues<float>(reach_);
@@ -126,11 +132,17 @@ class March {
   }
   void reach_neighbours(Index from, MonotoneQueue& front) {
     const int i = grid_.column(from), j = grid_.row(from);
+    const bool is_interior = grid_.is_interior(i, j);
     for (int k = 0; k < kDirections; ++k) {
-      const Index cell = grid_.neighbour(i, j, k);
+      const Index cell = beside(from, i, j, k, is_interior);
       if (cell == kNoCell || settled_.of(cell) != 0) continue;
-      reach(cell, from, grid_.back_direction(j, k), front);
+      const int back =
+          is_interior ? (k + kDirections / 2) % kDirections : grid_.back_direction(j, k);
+      reach(cell, from, back, front);
     }
+  }
+  [[nodiscard]] Index beside(Index cell, int i, int j, int k, bool is_interior) const {
+    return is_interior ? cell + offsets_[k] : grid_.neighbour(i, j, k);
   }
   /// From a settled neighbour, which lies in direction k of `cell`.
   void reach(Index cell, Index from, int k, MonotoneQueue& front) {
@@ -146,6 +158,7 @@ class March {
     const double bed = bed_m_[cell], below = surface_.height_m.of(from);
     if (ground_[cell] == IceGround::bare) return std::max(bed, below);
     const int i = grid_.column(cell), j = grid_.row(cell);
+    const bool is_interior = grid_.is_interior(i, j);
     const auto& distance = grid_.distances_m(j);
     const double along = rise_along(bed, below, k_m_ * distance[back]);
     if (back % 2 != 0) return along;  // diagonal
@@ -153,7 +166,7 @@ class March {
     const auto lower = [&](int first, int second) {
       double best = kUnreached, apart = 1.0;
       for (const int side : {first, second}) {
-        const Index to = grid_.neighbour(i, j, side);
+        const Index to = beside(cell, i, j, side, is_interior);
         if (to == kNoCell || settled_.of(to) == 0) continue;
         const float height = surface_.height_m.of(to);
         if (height < best) best = height, apart = distance[side];
@@ -172,6 +185,7 @@ class March {
   std::shared_ptr<const CellSet> reach_;
   IceSurface surface_;
   SparseValues<std::uint8_t> settled_;
+  std::array<Index, kDirections> offsets_;
 };
 
 /// What becomes of the ice of a region.

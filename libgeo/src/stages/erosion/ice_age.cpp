@@ -176,9 +176,11 @@ void IceAge::sort_ground(const LandClimate& climate, const Age& age,
       if (stands) {
         const double mean_c =
             temperature_c[i] - cooling - kLapse_K_m * std::max(0.0F, elevation_m[c]);
-        // The mean alone has so many degree-days.
+        // The mean alone has so many degree-days, twelve warmest months no more than these.
+        const double most_c = std::max(0.0, mean_c + 0.5 * range_k[i]) + 0.4 * snow_.scatter_k;
         const bool may_be = snow_.year_d * mean_c <= warmest;
-        if (may_be && frost_of_year(snow_, mean_c, range_k[i]).degree_days <= warmest) {
+        if (may_be && (snow_.year_d * most_c <= warmest ||
+                       frost_of_year(snow_, mean_c, range_k[i]).degree_days <= warmest)) {
           if (next_[c] == IceGround::away) next_[c] = IceGround::bare;
           continue;
         }

@@ -31,7 +31,7 @@ class PlatesStage final : public Stage {
   [[nodiscard]] StageCost cost(std::span<const Parameter> configuration) const override {
     constexpr double kMesh_s = 0.45;     // plates that grow, on a mesh of their own
     constexpr double kDrift_ns = 136.0;  // per sample and million years
-    constexpr double kRivers_ns = 120.0;
+    constexpr double kRivers_ns = 225.0;
     constexpr double kRaster_s = 3.0;
     constexpr double kSample_bytes = 290.0;
     const std::string& model = parameters_.model;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -75,12 +76,14 @@ struct IceFlux {
 /// was.
 class IceOutflow {
  public:
-  IceOutflow(const Grid& grid, const IceSurface& surface) : grid_(grid), surface_(surface) {}
+  IceOutflow(const Grid& grid, const IceSurface& surface)
+      : grid_(grid), surface_(surface), offsets_(grid.offsets()) {}
 
   /// Calls `visit(neighbour, share)`; shares add up to 1 but for rounding.
   template <class Visit>
   void visit(Index cell, Visit&& visit) const {
     const int i = grid_.column(cell), j = grid_.row(cell);
+    const bool is_interior = grid_.is_interior(i, j);
     const float s = surface_.height_m.of(cell);
     const auto& distance = grid_.distances_m(j);
     Index to[5];
@@ -96,7 +99,7 @@ class IceOutflow {
     bool straight = false;
     const Index lowest = surface_.lowest.of(cell);
     for (const int k : {kNorth, kEast, kSouth, kWest}) {
-      const Index neighbour = grid_.neighbour(i, j, k);
+      const Index neighbour = is_interior ? cell + offsets_[k] : grid_.neighbour(i, j, k);
       if (neighbour == kNoCell) continue;
       straight = straight || neighbour == lowest;
       const double face_m = k == kEast || k == kWest ? grid_.face_east_m(j)
@@ -117,6 +120,7 @@ class IceOutflow {
  private:
   const Grid& grid_;
   const IceSurface& surface_;
+  std::array<Index, kDirections> offsets_;
 };
 
 /// Steady flux of ice down a surface: every cell passes on what comes and what snow adds, less what
