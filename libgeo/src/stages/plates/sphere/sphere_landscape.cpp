@@ -30,7 +30,7 @@ ErosionParameters land_of(const Context& context) {
   return land;
 }
 
-/// The column and the row of a grid of one degree that hold a place (unit vector in its frame).
+/// The cell of a whole planet that holds a place (unit vector in the frame of its noise).
 Index cell_at(const Grid& grid, const Vector3& place) {
   constexpr double kDegrees = 57.29577951308232;
   const Vector3 at = grid.to_axis(place);
