@@ -14,8 +14,8 @@ namespace geo {
 
 /// Cells by height, and those of one height by number, where none is put in that is lower than the
 /// last one taken out, unless it is empty: a radix heap (Ahuja et al. 1990), whose entries move at
-/// most 32 times, from list to list. Heights are not negative, so that their bits ascend as they do. The order is that
-/// of any priority queue of pairs.
+/// most 32 times, from list to list. Heights are not negative, so that their bits ascend as they
+/// do. The order is that of any priority queue of pairs.
 class MonotoneQueue {
  public:
   [[nodiscard]] bool empty() const { return size_ == 0; }

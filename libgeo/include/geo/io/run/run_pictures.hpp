@@ -48,8 +48,8 @@ std::vector<std::filesystem::path> draw_view(const RunFolder& folder, const MapV
                                              const std::filesystem::path& pictures);
 
 /// Draws the maps of each frame of a run through time, THEME/0050.00.png below `pictures`: films of
-/// elevation, plates, ages and, where frames have a landscape, rain and warmth. Returns their paths.
-/// Throws ConfigurationError where the run has no frames, InputError, IoError.
+/// elevation, plates, ages and, where frames have a landscape, rain and warmth. Returns their
+/// paths. Throws ConfigurationError where the run has no frames, InputError, IoError.
 std::vector<std::filesystem::path> draw_frames(const RunFolder& folder, const MapView& view,
                                                const std::filesystem::path& pictures);
 

@@ -85,8 +85,8 @@ void hand_on_trenches(const SphereTectonics& model, int plate,
 void raise_crust(SphereTectonics& model);
 /// Needs margins. Plumes build volcanoes on sea floor.
 void erupt(SphereTectonics& model);
-/// Needs what is hidden. The mantle gives and takes water so that in time the freeboard of continents
-/// is what it was (Wise 1974).
+/// Needs what is hidden. The mantle gives and takes water so that in time the freeboard of
+/// continents is what it was (Wise 1974).
 void exchange_water(SphereTectonics& model);
 /// What rivers have done to the crust, m: less than 0 where they took sediment first, then what is
 /// below it.

@@ -33,7 +33,8 @@ SphereSettings settings_of(const PlatesParameters& p, double radius_km, const Co
   settings.wears_land_alone = p.erosion == "land";
   settings.force.gravity_m_s2 = context.planet.gravity_m_s2;
   settings.floor_by_age = p.ocean_floor == "age";
-  if (p.sea_level == "ocean" && p.landscape == "none") settings.ocean_share = context.planet.ocean_fraction;
+  if (p.sea_level == "ocean" && p.landscape == "none")
+    settings.ocean_share = context.planet.ocean_fraction;
   settings.freeboard_ocean_share = context.planet.ocean_fraction;
   settings.no_net_rotation = p.no_net_rotation;
   settings.hold_motions = p.given_motions == "held";
