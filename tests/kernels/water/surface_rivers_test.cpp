@@ -387,6 +387,31 @@ TEST(SurfaceRivers, FillLandlockedSeasUntilTheyAreLand) {
   EXPECT_EQ(route_rivers(graph, z).receiver[7], SurfaceRivers::kSink);
 }
 
+TEST(SurfaceRivers, DrainLandWithoutASeaIntoTheLakeOnIt) {
+  // Two rows that nothing joins: an ocean with a coast, and land about a shallow hollow below 0.
+  SurfaceGraph graph = row_of(14);
+  graph.distance_m.assign(graph.neighbour.size(), 1000.0F);
+  const auto part = [&](std::int32_t from, std::int32_t to) {
+    for (std::int32_t k = graph.first[from]; k < graph.first[from + 1]; ++k) {
+      if (graph.neighbour[k] == to) graph.neighbour[k] = from == 6 ? 5 : 8;
+    }
+  };
+  part(6, 7);
+  part(7, 6);
+  std::vector<float> z{-4000.0F, -4000.0F, -4000.0F, -4000.0F, 10.0F,  20.0F, 30.0F,
+                       300.0F,   100.0F,   -20.0F,   -30.0F,   -10.0F, 50.0F, 200.0F};
+  std::vector<float> rock(z.size());
+  const std::vector<std::int8_t> is_rock(z.size(), 1);
+  const SurfaceRivers rivers = route_rivers(graph, z);
+  EXPECT_EQ(rivers.order, (std::vector<std::int32_t>{4, 5, 6, 10, 9, 11, 12, 8, 13, 7}));
+  EXPECT_EQ(rivers.receiver[10], SurfaceRivers::kSink);
+  EXPECT_EQ(rivers.receiver[7], 8);
+  EXPECT_EQ(rivers.receiver[13], 12);
+  EXPECT_EQ(rivers.area_m2[10], 7e6);
+  const auto work = run_rivers(graph, rivers, {}, is_rock, z, rock);
+  EXPECT_NEAR(work.on_land_m3 + work.in_sea_m3, work.eroded_m3, 1e-9 * work.eroded_m3);
+}
+
 TEST(SurfaceRivers, AreAsLargeAsTheRunoffOfWhatTheyDrain) {
   const SurfaceGraph graph = row_of(5);
   const std::vector<float> z{-10.0F, 1.0F, 2.0F, 3.0F, 4.0F}, runoff{1.0F, 0.5F, 2.0F, 0.0F, 3.0F};

@@ -119,7 +119,7 @@ class Flood {
     out_.receiver[i] = to;
     out_.distance_m[i] = way_m;
   }
-  /// Land that no sea borders drains to its lowest place.
+  /// Land that no sea borders drains to its lowest place, landlocked water on it stands at 0.
   void seed_enclosed() {
     std::vector<std::pair<float, std::int32_t>> dry;
     for (std::int32_t i = 0; i < graph_.size(); ++i) {
@@ -128,7 +128,7 @@ class Flood {
     std::sort(dry.begin(), dry.end());
     for (const auto& [level, i] : dry) {
       if (level_[i] != kFar) continue;
-      reach(i, level, SurfaceRivers::kSink);
+      reach(i, std::max(level, 0.0F), SurfaceRivers::kSink);
       rise();
     }
   }
