@@ -247,7 +247,16 @@ void* operator new(std::size_t size) {
     throw std::bad_alloc();
   }
 }
+/// Sanitizers have their own of this, whose blocks would not be ours.
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  try {
+    return ::operator new(size);
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
+}
 void operator delete(void* block) noexcept {
   if (!terrane::free_capped_block(block)) std::free(block);
 }
 void operator delete(void* block, std::size_t) noexcept { ::operator delete(block); }
+void operator delete(void* block, const std::nothrow_t&) noexcept { ::operator delete(block); }
