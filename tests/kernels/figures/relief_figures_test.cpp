@@ -25,27 +25,6 @@ TEST(LocalRelief, OfAnEvenSlopeIsTwoStepsAndOfACoastThatOfItsLand) {
   EXPECT_THROW(local_relief_m(grid, std::vector<float>(3)), InputError);
 }
 
-TEST(PartsOfSea, AreJoinedOverTheSeamThePolesAndCorners) {
-  const Grid grid = Grid::sphere(16, 8);
-  std::vector<float> z(grid.size(), 100.0F);
-  z[grid.cell(0, 3)] = -10.0F;  // one over the seam
-  z[grid.cell(15, 3)] = -20.0F;
-  z[grid.cell(2, 7)] = -30.0F;  // one over the pole
-  z[grid.cell(10, 7)] = -5000.0F;
-  z[grid.cell(6, 4)] = -1.0F;  // one corner to corner
-  z[grid.cell(7, 5)] = -2.0F;
-  z[grid.cell(8, 6)] = -3.0F;
-  const auto parts = parts_of_sea(grid, z);
-  ASSERT_EQ(parts.size(), 3U);
-  EXPECT_EQ(parts[0].deepest_m, -3.0);
-  EXPECT_EQ(parts[1].deepest_m, -20.0);
-  EXPECT_EQ(parts[2].deepest_m, -5000.0);
-  EXPECT_NEAR(parts[1].area_m2, 2.0 * grid.area_m2(3), 1.0);
-  EXPECT_EQ(count_landlocked(parts, 3000.0, 1e20), 1);
-  EXPECT_EQ(count_landlocked(parts, 3000.0, 1.9 * grid.area_m2(3)), 2);
-  EXPECT_EQ(count_landlocked({}, 3000.0, 1.0), 0);
-}
-
 TEST(ReliefFigures, SoundsAreSeaBetweenLandWithinReach) {
   const Grid grid = Grid::sphere(360, 180);
   std::vector<float> z(grid.size(), -100.0F);

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "geo/kernels/figures/relief_figures.hpp"
+#include "geo/kernels/water/sea_parts.hpp"
 
 namespace geo {
 namespace {

@@ -11,63 +11,28 @@
 
 #include "geo/core/array_sizes.hpp"
 #include "geo/kernels/noise/noise.hpp"
+#include "geo/kernels/water/sea_parts.hpp"
 
 namespace geo {
 namespace {
-
-struct Part {
-  double area_m2 = 0.0;
-  double depth_m = 0.0;
-  Index first = kNoCell;
-};
-
-/// Parts of the sea by number, the largest first; -1 on land.
-std::vector<Part> label_seas(const Grid& grid, std::span<const float> z,
-                             std::vector<std::int32_t>& part_of) {
-  std::vector<Part> parts;
-  part_of.assign(z.size(), -1);
-  std::vector<Index> front;
-  for (Index start = 0; start < grid.size(); ++start) {
-    if (!(z[start] < 0.0F) || part_of[start] >= 0) continue;
-    const auto number = static_cast<std::int32_t>(parts.size());
-    parts.push_back({0.0, 0.0, start});
-    const auto reach = [&](Index cell) {
-      if (cell == kNoCell || !(z[cell] < 0.0F) || part_of[cell] >= 0) return;
-      part_of[cell] = number;
-      front.push_back(cell);
-    };
-    reach(start);
-    while (!front.empty()) {
-      const Index cell = front.back();
-      front.pop_back();
-      parts[number].area_m2 += grid.area_m2(grid.row(cell));
-      parts[number].depth_m = std::max(parts[number].depth_m, -static_cast<double>(z[cell]));
-      for (int k = 0; k < kDirections; ++k) reach(grid.neighbour(cell, k));
-    }
-  }
-  return parts;
-}
 
 class Search {
  public:
   Search(const Grid& grid, const StraitLaw& law, std::span<float> z)
       : grid_(grid), law_(law), z_(z) {
-    parts_ = label_seas(grid, z, part_of_);
-    order_.resize(parts_.size());
-    for (std::size_t n = 0; n < order_.size(); ++n) order_[n] = static_cast<std::int32_t>(n);
-    std::stable_sort(order_.begin(), order_.end(), [&](std::int32_t a, std::int32_t b) {
-      return parts_[a].area_m2 > parts_[b].area_m2;
-    });
+    NumberedSeas seas = number_seas(grid, z);
+    parts_ = std::move(seas.parts);
+    part_of_ = std::move(seas.part_of_cell);
     joined_.assign(parts_.size(), 0);
   }
 
   int run() {
-    if (order_.empty()) return 0;
-    joined_[order_.front()] = 1;
+    if (parts_.empty()) return 0;
+    joined_.front() = 1;
     int ways = 0;
-    for (const std::int32_t part : order_) {
+    for (std::size_t part = 0; part < parts_.size(); ++part) {
       if (parts_[part].area_m2 < law_.least_m2) break;
-      if (joined_[part] == 0 && join(part)) ++ways;
+      if (joined_[part] == 0 && join(static_cast<std::int32_t>(part))) ++ways;
     }
     return ways;
   }
@@ -98,7 +63,7 @@ class Search {
     seen_.clear();
     heap_.clear();
     add_part(part);
-    const double sill_m = std::max(law_.sill_m, law_.drawdown * parts_[part].depth_m);
+    const double sill_m = std::max(law_.sill_m, -law_.drawdown * parts_[part].deepest_m);
     while (!heap_.empty()) {
       std::pop_heap(heap_.begin(), heap_.end(), std::greater<>());
       const Entry entry = heap_.back();
@@ -195,8 +160,8 @@ class Search {
   const StraitLaw& law_;
   std::span<float> z_;
   const Noise rock_{0, "straits.rock"};
-  std::vector<std::int32_t> part_of_, order_;
-  std::vector<Part> parts_;
+  std::vector<std::int32_t> part_of_;  ///< -1 on land
+  std::vector<SeaPart> parts_;         ///< the largest first
   std::vector<std::uint8_t> joined_;
   std::unordered_map<Index, Seen> seen_;
   std::vector<Entry> heap_;

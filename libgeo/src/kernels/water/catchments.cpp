@@ -5,6 +5,7 @@
 #include <atomic>
 #include <limits>
 
+#include "disjoint_sets.hpp"
 #include "geo/core/parallel_errors.hpp"
 #include "kernels/numerics/wide.hpp"
 
@@ -150,29 +151,6 @@ void sort_keys(std::vector<PassKey>& keys) {
   }
 }
 
-/// Disjoint sets with path halving. The sea is element 0, leaf l is l + 1.
-class Sets {
- public:
-  explicit Sets(std::size_t leaves) : parent_(leaves + 1) {
-    for (std::size_t s = 0; s < parent_.size(); ++s) parent_[s] = static_cast<std::int32_t>(s);
-  }
-  std::int32_t find(std::int32_t s) {
-    while (parent_[s] != s) s = parent_[s] = parent_[parent_[s]];
-    return s;
-  }
-  bool join(std::int32_t a, std::int32_t b) {
-    a = find(a);
-    b = find(b);
-    if (a == b) return false;
-    // The larger number hangs under the smaller: the sea, 0, stays a root.
-    parent_[std::max(a, b)] = std::min(a, b);
-    return true;
-  }
-
- private:
-  std::vector<std::int32_t> parent_;
-};
-
 }  // namespace
 
 Catchments find_catchments(const Grid& grid, std::span<const std::uint8_t> outlets,
@@ -246,7 +224,7 @@ std::vector<Pass> spanning_passes(const Grid& grid, std::span<const float> eleva
 
   std::vector<Pass> passes;
   passes.reserve(catchments.pits.size());
-  Sets sets(catchments.pits.size());
+  DisjointSets sets(catchments.pits.size() + 1);  // the sea is 0, leaf l is l + 1
   const auto slope = [&](PassKey key) {
     const Index cell = higher_cell(key);
     const int k = direction_down(key);

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geo/kernels/figures/relief_figures.hpp"
 #include "geo/kernels/landscape/straits.hpp"
 #include "geo/kernels/numerics/area_sum.hpp"
 #include "geo/kernels/numerics/quantiles.hpp"
+#include "geo/kernels/water/sea_parts.hpp"
 
 namespace geo {
 
@@ -24,13 +24,11 @@ bool join_seas(const ErosionParameters& p, const Grid& grid, std::span<float> el
 std::vector<std::uint8_t> landlocked_cells(const ErosionParameters& p, const Grid& grid,
                                            std::span<const float> elevation_m) {
   if (p.strait_sill_m <= 0.0 || grid.topology() == Topology::plane) return {};
-  const std::vector<std::int32_t> part = number_seas(grid, elevation_m);
-  if (std::none_of(part.begin(), part.end(), [](std::int32_t number) { return number > 1; })) {
-    return {};
-  }
-  std::vector<std::uint8_t> cells(part.size());
-  std::transform(part.begin(), part.end(), cells.begin(),
-                 [](std::int32_t number) { return static_cast<std::uint8_t>(number > 1); });
+  const NumberedSeas seas = number_seas(grid, elevation_m);
+  if (seas.parts.size() < 2) return {};
+  std::vector<std::uint8_t> cells(elevation_m.size());
+#pragma omp parallel for schedule(static)
+  for (std::size_t c = 0; c < cells.size(); ++c) cells[c] = seas.part_of_cell[c] > 0 ? 1 : 0;
   return cells;
 }
 
