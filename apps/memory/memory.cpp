@@ -147,13 +147,8 @@ std::string want_of_memory() {
 
 }  // namespace terrane
 
-#ifdef TERRANE_SANITIZED  // by a sanitizer, whose heap ends the program by itself
-
-namespace {
-void* allocate(std::size_t size) { return std::malloc(size); }
-}  // namespace
-
-#else
+// A sanitizer has a heap of its own, which ends the program by itself.
+#ifndef TERRANE_SANITIZED
 
 extern "C" {
 // The C library's own, under the names that it keeps for those who put theirs in front.
@@ -228,8 +223,6 @@ extern "C" int pthread_create(pthread_t* thread, const pthread_attr_t* attribute
   terrane::end_at_once(text.data(), static_cast<int>(geo::ErrorKind::configuration));
 }
 
-#endif
-
 /// What every container of the program allocates with. The array forms come here too.
 void* operator new(std::size_t size) {
   while (true) {
@@ -247,16 +240,9 @@ void* operator new(std::size_t size) {
     throw std::bad_alloc();
   }
 }
-/// Sanitizers have their own of this, whose blocks would not be ours.
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  try {
-    return ::operator new(size);
-  } catch (const std::bad_alloc&) {
-    return nullptr;
-  }
-}
 void operator delete(void* block) noexcept {
   if (!terrane::free_capped_block(block)) std::free(block);
 }
 void operator delete(void* block, std::size_t) noexcept { ::operator delete(block); }
-void operator delete(void* block, const std::nothrow_t&) noexcept { ::operator delete(block); }
+
+#endif
