@@ -311,6 +311,11 @@ TEST(ArraySizes, OfClimateAreChecked) {
     Doubles heat(n(cells()));
     ocean_heat(grid, {}, false, latitude, land, heat);
   });
+  expect_refused("open_channels", 2, [&](Lengths& n) {
+    const Doubles latitude(n(rows()));
+    const Floats land(n(cells()));
+    static_cast<void>(open_channels(grid, latitude, land));
+  });
   expect_refused("solve_energy_balance", 4, [&](Lengths& n) {
     const Doubles latitude(n(rows()));
     const Floats land(n(cells())), height(n(cells())), ice(n(cells()));

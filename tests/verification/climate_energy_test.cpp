@@ -231,6 +231,55 @@ TEST(EnergyBalance, RangesKeepWarmGroundFromCold) {
   EXPECT_GT(contrast_k(range), 1.3 * contrast_k(flat));
 }
 
+/// A planet of sea from which a wall of land rises along one meridian, from 80 S to `end_deg`.
+std::vector<float> wall(const Grid& grid, double end_deg) {
+  std::vector<float> land(grid.size(), 0.0F);
+  for (int j = 0; j < grid.ny(); ++j) {
+    if (grid.latitude_deg(j) > -80.0 && grid.latitude_deg(j) < end_deg)
+      land[grid.cell(3, j)] = 1.0F;
+  }
+  return land;
+}
+
+TEST(OceanHeat, ChannelsAreWhereNoCoastBarsTheWayRound) {
+  const Grid grid = Grid::sphere(60, 90);
+  std::vector<double> latitude;
+  for (int j = 0; j < grid.ny(); ++j) latitude.push_back(grid.latitude_deg(j));
+  const auto behind_wall = open_channels(grid, latitude, wall(grid, 58.0));
+  const auto at_sea = open_channels(grid, latitude, std::vector<float>(grid.size(), 0.0F));
+  for (int j = 0; j < grid.ny(); ++j) {
+    const double degrees = latitude[j];
+    if (std::abs(degrees) > 51.0) {
+      EXPECT_NEAR(at_sea[j], 1.0, 1e-12) << degrees;
+    }
+    if (std::abs(degrees) < 30.0) {
+      EXPECT_EQ(at_sea[j], 0.0) << degrees;
+    }
+    if (degrees > -76.0 && degrees < 55.0) {
+      EXPECT_EQ(behind_wall[j], 0.0) << degrees;
+    }
+    if (degrees > 62.0) {
+      EXPECT_NEAR(behind_wall[j], 1.0, 1e-12) << degrees;
+    }
+  }
+}
+
+// As round Antarctica, without gyres the sea keeps its warmth from the pole.
+TEST(EnergyBalance, PolarSeaBehindAChannelIsCold) {
+  const Grid grid = Grid::sphere(60, 90);
+  std::vector<double> latitude;
+  for (int j = 0; j < grid.ny(); ++j) latitude.push_back(grid.latitude_deg(j));
+  EnergyBalance model = constant_albedo();
+  const std::vector<float> flat(grid.size(), 0.0F);
+  const auto pole_c = [&](double channel_share, double end_deg) {
+    model.channel_share = channel_share;
+    return solve_energy_balance(grid, model, false, latitude, wall(grid, end_deg), flat)
+        .mean_c(static_cast<std::size_t>(grid.cell(30, grid.ny() - 1)));
+  };
+  EXPECT_NEAR(pole_c(0.0, 50.0), pole_c(0.0, 88.0), 0.2) << "a wall takes hardly any room";
+  EXPECT_LT(pole_c(0.5, 50.0), pole_c(0.5, 88.0) - 3.0);
+}
+
 /// A northern polar continent, and the year on it with and without ice.
 struct PolarContinent {
   static constexpr int kCoast = 25;  ///< first row of land, 60 N

@@ -87,6 +87,55 @@ TEST(SeasonalClimate, RainBeltComesLaterWhereTheTroughLags) {
             rain_belt_deg(continent, prompt.precipitation_mm[kNovember]) + 0.2);
 }
 
+TEST(SeasonalClimate, MonsoonComesLaterWhereHeatLowsLag) {
+  const Continent continent;
+  SeasonalClimate model;
+  model.heat_low_lag_month = 0.0;
+  const SeasonalFields prompt = continent.solve(model);
+  model.heat_low_lag_month = 1.0;
+  const SeasonalFields late = continent.solve(model);
+  // Of the rain that the northern subtropics of the continent have before and after midsummer.
+  const auto early_share = [&](const SeasonalFields& fields) {
+    double early = 0.0, all = 0.0;
+    for (Index c = 0; c < continent.grid.size(); ++c) {
+      const double latitude = continent.latitude_deg[continent.grid.row(c)];
+      if (continent.land[c] < 1.0F || latitude < 10.0 || latitude > 35.0) continue;
+      for (const int m : {3, 4, 5, 7, 8, 9}) {
+        all += fields.precipitation_mm[m][c];
+        if (m < 6) early += fields.precipitation_mm[m][c];
+      }
+    }
+    return early / all;
+  };
+  EXPECT_LT(early_share(late), early_share(prompt) - 0.02);
+}
+
+// Snow in the polar night lies under air that is warmer; summers and the tropics know nothing of
+// it.
+TEST(SeasonalClimate, SnowOfThePolarNightIsColderThanItsAir) {
+  const Continent continent;
+  SeasonalClimate model, without = model;
+  model.energy.inversion_k = 4.0;
+  model.energy.inversion_growth = 0.2;
+  without.energy.inversion_k = without.energy.inversion_growth = 0.0;
+  const SeasonalFields with = continent.solve(model), plain = continent.solve(without);
+  for (Index c = 0; c < continent.grid.size(); ++c) {
+    const double latitude = continent.latitude_deg[continent.grid.row(c)];
+    const auto colder_k = [&](int m) {
+      return plain.temperature_c[m][c] - with.temperature_c[m][c];
+    };
+    if (continent.land[c] > 0.0F && latitude > 64.0) {
+      EXPECT_GT(colder_k(0), 3.0) << latitude;
+    }
+    if (continent.land[c] == 0.0F || latitude > 50.0) {
+      EXPECT_NEAR(colder_k(6), 0.0, 0.1);
+    }
+    if (std::abs(latitude) < 20.0) {
+      EXPECT_NEAR(colder_k(0), 0.0, 0.01);
+    }
+  }
+}
+
 // Without what ascent adds, where and how fast air rises makes no difference.
 TEST(SeasonalClimate, AscentAddsNoMoreThanItsBound) {
   const Continent continent;

@@ -121,7 +121,8 @@ class Surface {
         model_(model),
         land_(land_fraction),
         height_m_(height_m),
-        glacier_(glacier_fraction) {
+        glacier_(glacier_fraction),
+        channel_(open_channels(grid, latitude_deg, land_fraction)) {
     for (int j = 0; j < grid.ny(); ++j) {
       insolation_.push_back(
           monthly_insolation_w_m2(latitude_deg[j], model.orbit, model.solar_constant_w_m2));
@@ -207,8 +208,9 @@ class Surface {
     const auto moist = [&](double temperature_c) {
       return 1.0 + model_.moist_transport * latent_to_sensible_slope(temperature_c);
     };
-    return model_.diffusivity_w_m2_k * open_to_heat(model_, height_m_[cell]) *
-           moist(annual_mean_c) / moist(15.0);
+    const double in_channel = (1.0 - land_[cell]) * channel_[grid_.row(cell)];
+    return model_.diffusivity_w_m2_k * (1.0 - model_.channel_share * in_channel) *
+           open_to_heat(model_, height_m_[cell]) * moist(annual_mean_c) / moist(15.0);
   }
 
  private:
@@ -242,6 +244,7 @@ class Surface {
   const Grid& grid_;
   const EnergyBalance& model_;
   std::span<const float> land_, height_m_, glacier_;
+  std::vector<double> channel_;
   std::vector<Months> insolation_;
   std::vector<double> bare_;
 };

@@ -1,5 +1,6 @@
 #include "geo/kernels/climate/ocean_heat.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -7,6 +8,7 @@
 
 #include "geo/core/array_sizes.hpp"
 #include "geo/kernels/numerics/area_sum.hpp"
+#include "kernels/climate/zonal.hpp"
 
 namespace geo {
 namespace {
@@ -134,6 +136,24 @@ void ocean_heat(const Grid& grid, const EnergyBalance& model, bool retrograde,
     }
   }
   close_budget(grid, land_fraction, heat_w_m2);
+}
+
+std::vector<double> open_channels(const Grid& grid, std::span<const double> latitude_deg,
+                                  std::span<const float> land_fraction) {
+  check_sizes("open_channels", grid.ny(), {{"latitude_deg", latitude_deg.size()}});
+  check_sizes("open_channels", grid.size(), {{"land_fraction", land_fraction.size()}});
+  constexpr double kReach_deg = 3.0, kGyres_deg = 30.0, kNoGyres_deg = 50.0;
+  std::vector<double> open(latitude_deg.size());
+  for (int j = 0; j < grid.ny(); ++j) {
+    const auto row = land_fraction.subspan(grid.cell(0, j), grid.nx());
+    open[j] = std::none_of(row.begin(), row.end(), [](float land) { return land > 0.5F; });
+  }
+  open = smooth_rows(latitude_deg, open, kReach_deg);
+  for (int j = 0; j < grid.ny(); ++j) {
+    open[j] *= std::clamp((std::abs(latitude_deg[j]) - kGyres_deg) / (kNoGyres_deg - kGyres_deg),
+                          0.0, 1.0);
+  }
+  return open;
 }
 
 }  // namespace geo

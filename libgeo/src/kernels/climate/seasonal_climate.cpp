@@ -251,6 +251,19 @@ double SeasonalYear::dryness(const AirOfMonth& month, std::size_t cell) const {
   return land_[cell] * std::max(0.0, 1.0 - month.soil_evaporation_mm_d[cell] / potential / kMoist);
 }
 
+/// By how much snow-covered ground is colder than the air above it: without the sun it radiates
+/// what no warmer air replaces, the more so the colder and drier that is.
+double SeasonalYear::inversion_k(const AirOfMonth& month, std::size_t cell) const {
+  constexpr double kSnow_c = -5.0, kSnowWidth_k = 2.5, kDry_c = -10.0;
+  const EnergyBalance& energy = model_.energy;
+  const double sun_w_m2 = month.sun_w_m2[grid_.row(static_cast<Index>(cell))];
+  const double night = std::max(0.0, 1.0 - sun_w_m2 / energy.inversion_below_w_m2);
+  const double air_c = month.temperature_c[cell] - energy.lapse_k_m * height_m_[cell];
+  const double snow = 1.0 / (1.0 + std::exp((air_c - kSnow_c) / kSnowWidth_k));
+  return land_[cell] * night * snow *
+         (energy.inversion_k + energy.inversion_growth * std::max(0.0, kDry_c - air_c));
+}
+
 SeasonalFields SeasonalYear::fields() const {
   SeasonalFields fields;
   fields.water = water();
@@ -261,7 +274,8 @@ SeasonalFields SeasonalYear::fields() const {
       const double sun_w_m2 = month.sun_w_m2[grid_.row(static_cast<Index>(cell))];
       fields.temperature_c[m][cell] +=
           static_cast<float>(dryness(month, cell) * model_.energy.dry_warming_k_m2_w *
-                             (sun_w_m2 - model_.energy.dry_warming_from_w_m2));
+                                 (sun_w_m2 - model_.energy.dry_warming_from_w_m2) -
+                             inversion_k(month, cell));
     }
     fields.wind_east[m] = month.wind_east;
     fields.wind_north[m] = month.wind_north;

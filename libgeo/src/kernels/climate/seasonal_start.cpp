@@ -79,13 +79,17 @@ void SeasonalYear::begin_month(int m, const TemperatureCycle& temperature) {
   }
   const std::vector<double> zonal_c = row_means<float>(grid_, month.temperature_c);
   month.zonal_wind_m_s = thermal_wind_m_s(grid_, model_.circulation, latitude_deg_, zonal_c);
-  std::vector<float> trough_c(size_);  // as warm as some time ago
-  for (std::size_t cell = 0; cell < size_; ++cell) {
-    const double before_c = temperature.month_c(cell, (m + kMonths - 1) % kMonths);
-    trough_c[cell] = static_cast<float>(
-        month.temperature_c[cell] + model_.itcz_lag_month * (before_c - month.temperature_c[cell]));
-  }
-  press(month, trough_c, row_means<double>(grid_, annual_c));
+  const auto some_time_ago = [&](double months) {
+    std::vector<float> late_c(size_);
+    for (std::size_t cell = 0; cell < size_; ++cell) {
+      const double before_c = temperature.month_c(cell, (m + kMonths - 1) % kMonths);
+      late_c[cell] = static_cast<float>(month.temperature_c[cell] +
+                                        months * (before_c - month.temperature_c[cell]));
+    }
+    return late_c;
+  };
+  press(month, some_time_ago(model_.itcz_lag_month), some_time_ago(model_.heat_low_lag_month),
+        row_means<double>(grid_, annual_c));
   stir(month, zonal_c);
   moisten(month);
 }
@@ -104,8 +108,10 @@ void SeasonalYear::clear(AirOfMonth& month) const {
   month.rain_mm_d.assign(size_, 0.0);
 }
 
-/// Pressure of the three cells about the trough, and of heat lows and cold highs.
+/// Pressure of the three cells about the trough, and of heat lows and cold highs. Both are as deep
+/// as the troposphere, which warms and cools later than the ground.
 void SeasonalYear::press(AirOfMonth& month, std::span<const float> trough_c,
+                         std::span<const float> low_c,
                          std::span<const double> annual_mean_c) const {
   const std::vector<double> trough_deg = trough_latitudes_deg(
       grid_, latitude_deg_, trough_c, row_means<float>(grid_, trough_c), model_.itcz_locality);
@@ -115,7 +121,7 @@ void SeasonalYear::press(AirOfMonth& month, std::span<const float> trough_c,
     month.pressure_hpa[cell] = static_cast<float>(
         three_cell_pressure_hpa(latitude_deg_[row], model_.circulation,
                                 model_.itcz_share * trough_deg[grid_.column(here)]) +
-        thermal_pressure_hpa(month.temperature_c[cell] - annual_mean_c[row]));
+        thermal_pressure_hpa(low_c[cell] - annual_mean_c[row]));
   }
 }
 

@@ -64,7 +64,7 @@ class SeasonalYear {
                   std::span<float> east, std::span<float> north) const;
   void begin_month(int m, const TemperatureCycle& temperature);
   void clear(AirOfMonth& month) const;
-  void press(AirOfMonth& month, std::span<const float> trough_c,
+  void press(AirOfMonth& month, std::span<const float> trough_c, std::span<const float> low_c,
              std::span<const double> annual_mean_c) const;
   void stir(AirOfMonth& month, std::span<const double> zonal_c) const;
   void moisten(AirOfMonth& month) const;
@@ -74,6 +74,7 @@ class SeasonalYear {
   [[nodiscard]] std::vector<float> convective_excess_k(const AirOfMonth& month) const;
   void evaporate_cell(std::size_t cell);
   [[nodiscard]] AirWater water() const;
+  [[nodiscard]] double inversion_k(const AirOfMonth& month, std::size_t cell) const;
   [[nodiscard]] double dryness(const AirOfMonth& month, std::size_t cell) const;
   template <class Do>
   void for_months(const Do& act) {

@@ -7,7 +7,7 @@
 
 namespace geo {
 
-/// Union-find with path halving (Tarjan & van Leeuwen 1984). The lowest element of a set is its
+/// Union-find with path halving (Tarjan et al. 1984). The lowest element of a set is its
 /// root, whatever the order in which sets were joined.
 class DisjointSets {
  public:

@@ -16,10 +16,11 @@ namespace geo {
 struct EnergyBalance {
   double solar_constant_w_m2 = 1361.0;
   Orbit orbit;
-  double outgoing_w_m2 = 191;              ///< A at 0 degC
-  double outgoing_slope_w_m2_k = 2.4;      ///< B
-  double diffusivity_w_m2_k = 0.634;       ///< D at 15 degC, on the unit sphere
-  double moist_transport = 1.28;           ///< share of latent heat in D's change with temperature
+  double outgoing_w_m2 = 191;          ///< A at 0 degC
+  double outgoing_slope_w_m2_k = 2.4;  ///< B
+  double diffusivity_w_m2_k = 0.634;   ///< D at 15 degC, on the unit sphere
+  double channel_share = 0.0;     ///< of D that is missing where a channel runs round the planet
+  double moist_transport = 1.28;  ///< share of latent heat in D's change with temperature
   double advected_heat_j_m2_k = 6.66e+06;  ///< of the air that winds move
   double coalbedo = 0.664;                 ///< mean absorbed share without snow and ice
   double coalbedo_p2 = -0.121;             ///< its second Legendre coefficient in latitude
@@ -51,6 +52,9 @@ struct EnergyBalance {
   double upwelling_reach_km = 2.78e+03;  ///< to the west of a coast, over which that falls by e
   double dry_warming_k_m2_w = 0.0245;  ///< by which dry ground is warmer for each W m-2 of sunlight
   double dry_warming_from_w_m2 = 202;  ///< above this
+  double inversion_k = 0.0;            ///< by which snow is colder than the air above at night
+  double inversion_growth = 0.0;       ///< more for each kelvin that it is colder than -10 degC
+  double inversion_below_w_m2 = 150.0;  ///< less sunlight than this counts as a part of a night
 };
 
 /// Share of the heat carried over level ground that passes over a cell of a mean height:
@@ -94,13 +98,14 @@ using HeatWinds =
 ///   C_s dT_s/dt = (1 - s) Q (1 - albedo) - g (T_s - T),
 /// T_s the temperature of the mixed layer, s the share of sunlight that the air absorbs, g the
 /// exchange of heat and vapour, which grows with the annual mean of T (Haney 1971). T_s is
-/// eliminated. By harmonics: for each a sparse linear system with the annual and zonal
-/// mean of u, in whose source all else is found by iteration: the albedo of the months' snow and
-/// ice, which is never below that of what they lie on, the heat that ice at sea and on land takes
-/// as it melts in summer and gives as it freezes in winter, that of the ground's water likewise,
-/// and what the winds of each month carry besides, which sums to zero over the planet. F is the
-/// advected heat; without `winds` nothing is carried. Throws Bug if a solver does not converge.
-/// Threads: one for each harmonic; the same bits for any number of them.
+/// eliminated. Where a channel runs round the planet (open_channels) D over the sea is less. By
+/// harmonics: for each a sparse linear system with the annual and zonal mean of u, in whose source
+/// all else is found by iteration: the albedo of the months' snow and ice, which is never below
+/// that of what they lie on, the heat that ice at sea and on land takes as it melts in summer and
+/// gives as it freezes in winter, that of the ground's water likewise, and what the winds of each
+/// month carry besides, which sums to zero over the planet. F is the advected heat; without `winds`
+/// nothing is carried. Throws Bug if a solver does not converge. Threads: one for each harmonic;
+/// the same bits for any number of them.
 ///
 /// @param latitude_deg      per row
 /// @param land_fraction     0..1 per cell

@@ -23,10 +23,11 @@ struct SeasonalClimate {
   OceanCurrents currents;
   MoistureBudget moisture;
   SoilMoisture soil;
-  double itcz_share = 1;         ///< of the thermal equator's excursion that the cells follow
-  double itcz_lag_month = 1;     ///< by which the trough follows the warmth of the air
-  double itcz_locality = 0;      ///< how far the trough follows its meridian's warmest latitude
-  double sensible_w_m2_k = 2.9;  ///< heating of the air over ground warmer than its parallel
+  double itcz_share = 1;          ///< of the thermal equator's excursion that the cells follow
+  double itcz_lag_month = 1;      ///< by which the trough follows the warmth of the air
+  double heat_low_lag_month = 0;  ///< by which heat lows and cold highs follow the ground's warmth
+  double itcz_locality = 0;       ///< how far the trough follows its meridian's warmest latitude
+  double sensible_w_m2_k = 2.9;   ///< heating of the air over ground warmer than its parallel
   double base_diffusivity_m2_s = 2.9e+06;
   double eddy_diffusivity_m2_s = 2e+05;  ///< at the reference temperature gradient
   double eddy_rain = 0.15;  ///< rain-out by eddies there, whether the mean air rises or sinks
