@@ -63,7 +63,7 @@ void SteepestDescentAndAccumulation(benchmark::State& state) {  // on a surface 
     FlowGraph graph;
     graph.receiver.resize(z.size());
     steepest_receivers(grid, z, outlets, graph.receiver);
-    graph.order = downstream_order(graph.receiver);
+    graph.put_in_order();
     auto area = areas;
     graph.accumulate(area);
     benchmark::DoNotOptimize(area.data());

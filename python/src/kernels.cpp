@@ -44,7 +44,7 @@ geo::FlowGraph graph_of(const Grid& grid, const Array<Index>& receiver) {
   geo::FlowGraph graph;
   graph.receiver.assign(given.begin(), given.end());
   try {
-    graph.order = geo::downstream_order(graph.receiver);
+    graph.put_in_order();
   } catch (const geo::Bug&) {
     throw geo::InputError(
         "receiver: water goes round in a circle: every cell must drain to a root");

@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include <algorithm>
 #include <cmath>
@@ -86,10 +87,60 @@ TEST(Water, OrderHoldsForAnyNumberOfDonors) {
 }
 
 TEST(Water, CyclesAreFound) {
+  FlowGraph large;
+  large.receiver.resize(600'000);
+  for (Index cell = 0; cell < 600'000; ++cell) large.receiver[cell] = (cell + 1) % 600'000;
+  EXPECT_THROW(large.put_in_order(), Bug);
   EXPECT_THROW(downstream_order(std::vector<Index>{1, 2, 0}), Bug);
   std::vector<Index> star(1000, 0);
   star[0] = 1;  // and 1 drains to 0
   EXPECT_THROW(downstream_order(star), Bug);
+}
+
+/// A million cells of hills and hollows.
+struct ManyCells {
+  Grid grid = Grid::sphere(1440, 720);
+  FlowGraph graph;
+  ManyCells() {
+    const auto z = test::random_terrain(grid, 3);
+    graph = route_water(grid, z, find_outlets(grid, z)).graph;
+  }
+};
+
+TEST(Water, PartsOfTheOrderDrainIntoNoOther) {
+  const ManyCells land;
+  const FlowGraph& graph = land.graph;
+  const auto parts = static_cast<int>(graph.part_begins.size()) - 1;
+  ASSERT_GT(parts, 4);
+  std::vector<int> part_of(graph.order.size(), parts);
+  std::vector<std::size_t> position(graph.order.size(), graph.order.size());
+  for (int part = 0; part < parts; ++part) {
+    for (Index at = graph.part_begins[part]; at < graph.part_begins[part + 1]; ++at) {
+      part_of[graph.order[at]] = part;
+    }
+  }
+  for (std::size_t at = 0; at < graph.order.size(); ++at) position[graph.order[at]] = at;
+  for (Index cell = 0; cell < land.grid.size(); ++cell) {
+    const Index to = graph.receiver[cell];
+    if (to == cell) continue;
+    ASSERT_LT(position[cell], position[to]);
+    ASSERT_TRUE(part_of[to] == part_of[cell] || part_of[to] == parts);
+  }
+  EXPECT_GT(graph.part_begins.back(), 0.8 * land.grid.size()) << "most of the work is in parts";
+}
+
+TEST(Water, OrderAndSumsDependOnNoNumberOfThreads) {
+  const auto drained = [](int threads) {
+    const int before = omp_get_max_threads();
+    omp_set_num_threads(threads);
+    const ManyCells land;
+    std::vector<double> area_m2(land.grid.size());
+    for (Index c = 0; c < land.grid.size(); ++c) area_m2[c] = land.grid.area_m2(land.grid.row(c));
+    land.graph.accumulate(area_m2);
+    omp_set_num_threads(before);
+    return std::pair{land.graph.order, area_m2};
+  };
+  EXPECT_EQ(drained(1), drained(4));
 }
 
 TEST(Water, EveryCellReachesAnOutletWithoutClimbingTheFilledSurface) {

@@ -192,7 +192,7 @@ Routing route_unordered(const Grid& grid, std::span<const float> elevation_m,
 Routing route_water(const Grid& grid, std::span<const float> elevation_m,
                     std::span<const std::uint8_t> outlets, bool want_filled) {
   Routing routing = route_unordered(grid, elevation_m, outlets, want_filled);
-  routing.graph.order = downstream_order(routing.graph.receiver);
+  routing.graph.put_in_order();
   return routing;
 }
 

@@ -1,11 +1,13 @@
 #include "geo/kernels/water/flow_graph.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <limits>
 
 #include "geo/core/array_sizes.hpp"
 #include "geo/core/error.hpp"
+#include "geo/core/parallel_errors.hpp"
 
 namespace geo {
 
@@ -51,12 +53,125 @@ std::vector<Index> downstream_order(std::span<const Index> receiver) {
   return order;
 }
 
+namespace {
+
+/// An order in parts of consecutive cells. Donors are counted in bytes: false where one does not
+/// hold those of a cell.
+class OrderInParts {
+ public:
+  OrderInParts(std::span<const Index> receiver, int parts, std::vector<Index>& order)
+      : receiver_(receiver),
+        order_(order),
+        parts_(parts),
+        waiting_(receiver.size(), 0),
+        crossings_(parts),
+        placed_(parts, 0) {}
+
+  /// Where parts begin, and the last one ends; empty where bytes do not hold the donors.
+  std::vector<Index> run() {
+    order_.resize(receiver_.size());
+    ParallelErrors errors;
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int part = 0; part < parts_; ++part) errors.guard([&] { count_donors(part); });
+    errors.rethrow();
+    for (const auto& cells : crossings_) {
+      for (const Index cell : cells) count(receiver_[cell]);
+    }
+    if (has_too_many_) return {};
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int part = 0; part < parts_; ++part) order_part(part);
+    std::vector<Index> begins = close_ranks();
+    order_rest(begins.back());
+    return begins;
+  }
+
+ private:
+  static constexpr std::uint8_t kDone = std::numeric_limits<std::uint8_t>::max();
+
+  [[nodiscard]] Index begin(int part) const {
+    return static_cast<Index>(static_cast<std::int64_t>(receiver_.size()) * part / parts_);
+  }
+  void count(Index to) {
+    if (++waiting_[to] == kDone) has_too_many_ = true;
+  }
+  void count_donors(int part) {
+    const Index first = begin(part), end = begin(part + 1);
+    for (Index cell = first; cell < end; ++cell) {
+      const Index to = receiver_[cell];
+      if (to == cell) continue;
+      if (to < first || to >= end) {
+        crossings_[part].push_back(cell);
+      } else if (++waiting_[to] == kDone) {
+        has_too_many_ = true;
+      }
+    }
+  }
+  /// Walks downstream from each source of a part as far as the last donor has been seen, and as the
+  /// part goes. Cells that leave it wait for the rest.
+  void order_part(int part) {
+    const Index first = begin(part), end = begin(part + 1);
+    Index next = first;
+    for (Index source = first; source < end; ++source) {
+      for (Index cell = source; waiting_[cell] == 0;) {
+        const Index to = receiver_[cell];
+        if (to < first || to >= end) break;
+        waiting_[cell] = kDone;
+        order_[next++] = cell;
+        if (to == cell || --waiting_[to] != 0) break;
+        cell = to;
+      }
+    }
+    placed_[part] = next - first;
+  }
+  std::vector<Index> close_ranks() {
+    std::vector<Index> begins{0};
+    for (int part = 0; part < parts_; ++part) {
+      const auto from = order_.begin() + begin(part);
+      std::move(from, from + placed_[part], order_.begin() + begins.back());
+      begins.push_back(begins.back() + placed_[part]);
+    }
+    return begins;
+  }
+  void order_rest(Index next) {
+    for (const auto& cells : crossings_) {
+      for (const Index source : cells) {
+        for (Index cell = source; waiting_[cell] == 0;) {
+          waiting_[cell] = kDone;
+          order_[next++] = cell;
+          const Index to = receiver_[cell];
+          if (to == cell || --waiting_[to] != 0) break;
+          cell = to;
+        }
+      }
+    }
+    if (next != static_cast<Index>(receiver_.size())) throw Bug("flow routing has a cycle");
+  }
+
+  std::span<const Index> receiver_;
+  std::vector<Index>& order_;
+  int parts_;
+  std::vector<std::uint8_t> waiting_;  ///< donors that have not been seen yet, or kDone
+  std::vector<std::vector<Index>> crossings_;
+  std::vector<Index> placed_;
+  std::atomic<bool> has_too_many_ = false;
+};
+
+}  // namespace
+
+void FlowGraph::put_in_order() {
+  constexpr std::size_t kLeast = std::size_t{1} << 17, kMost = 32;
+  const auto parts = static_cast<int>(std::min(kMost, receiver.size() / kLeast));
+  part_begins.clear();
+  if (parts > 1) part_begins = OrderInParts(receiver, parts, order).run();
+  if (part_begins.empty()) order = downstream_order(receiver);
+}
+
 void FlowGraph::accumulate(std::span<double> values) const {
   check_sizes("accumulate", receiver.size(), {{"order", order.size()}, {"values", values.size()}});
-  for (const Index cell : order) {
+  walk_downstream(*this, [&](Index cell) {
     const Index to = receiver[cell];
     if (to != cell) values[to] += values[cell];
-  }
+  });
 }
 
 std::vector<std::int32_t> number_basins(const Grid& grid, const FlowGraph& graph,

@@ -107,7 +107,7 @@ void drain(const ErosionParameters& p, const Grid& grid, std::span<const float> 
   Routing routing = route_unordered(grid, elevation_m, outlets, spread);
   graph = std::move(routing.graph);
   for (std::size_t c = 0; c < inflow_area_m2.size(); ++c) area_m2[c] += inflow_area_m2[c];
-  const auto put_in_order = [&] { graph.order = downstream_order(graph.receiver); };
+  const auto put_in_order = [&] { graph.put_in_order(); };
   if (spread) {
     accumulate_flow(grid, routing.filled_m, graph.receiver, {FlowMethod::multiple, p.flow_exponent},
                     area_m2, put_in_order);

@@ -243,11 +243,11 @@ void ErosionRun::drain_surface(bool iced) {
 /// be arms of the sea now, which it reaches once.
 void ErosionRun::write_sediment_flux(std::vector<float>& carried_m3_yr) const {
   carried_m3_yr.resize(grid_.size(), 0.0F);
-  for (const Index cell : drainage_.graph.order) {
+  walk_downstream(drainage_.graph, [&](Index cell) {
     carried_m3_yr[cell] = std::max(0.0F, carried_m3_yr[cell]);
     const Index to = drainage_.graph.receiver[cell];
     if (to != cell) carried_m3_yr[to] += carried_m3_yr[cell];
-  }
+  });
   io_.write(field::sediment_flux, std::move(carried_m3_yr));
 }
 

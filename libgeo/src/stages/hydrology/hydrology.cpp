@@ -39,7 +39,7 @@ Drainage drain(const Grid& grid, std::span<const float> z, const Bytes& outlets,
   d.hierarchy = build_depression_hierarchy(grid, z, outlets, d.graph.receiver);
   d.lakes = balance_lakes(grid, z, d.hierarchy, runoff, loss);
   connect_lakes(d.lakes, d.graph.receiver);
-  d.graph.order = downstream_order(d.graph.receiver);
+  d.graph.put_in_order();
   return d;
 }
 

@@ -23,12 +23,12 @@ std::vector<std::uint8_t> flooded_cells(const FlowGraph& graph, std::span<const 
               {{"order", graph.order.size()}, {"elevation_m", elevation_m.size()}});
   std::vector<std::uint8_t> flooded(elevation_m.size(), 0);
   std::vector<float> surface_m(elevation_m.size());
-  for (auto at = graph.order.rbegin(); at != graph.order.rend(); ++at) {
-    const Index cell = *at, to = graph.receiver[cell];
+  walk_upstream(graph, [&](Index cell) {
+    const Index to = graph.receiver[cell];
     const auto ground_m = static_cast<float>(value_of(elevation_m[cell]));
     surface_m[cell] = to == cell ? ground_m : std::max(ground_m, surface_m[to]);
     flooded[cell] = surface_m[cell] > ground_m ? 1 : 0;
-  }
+  });
   return flooded;
 }
 
@@ -60,8 +60,8 @@ std::vector<std::uint8_t> flooded_cells(const FlowGraph& graph, std::span<const 
 /// What is taken equals what is laid and what arrives at roots, to the rounding of Z
 /// (sediment_outflow). `area_m2`, `erodibility`: as for `incise`. `flooded`: one byte per cell, or
 /// empty. `elevation_m` in and out. Derivatives (core/numeric.hpp) are those of the step along
-/// these receivers. Cost: linear; in double, not threaded, the same bits always.
-/// Throws Bug where sizes differ.
+/// these receivers. Cost: linear; in double, threaded over the parts of the order, the same bits
+/// for any number of threads. Throws Bug where sizes differ.
 template <class K, class Z>
 void incise_and_deposit(const Grid& grid, const FlowGraph& graph, std::span<const double> area_m2,
                         std::span<const K> erodibility, const BasicStreamPower<Arithmetic<Z>>& law,
@@ -83,13 +83,13 @@ std::vector<Arithmetic<Z>> sediment_outflow(const Grid& grid, const FlowGraph& g
                {"after_m", after_m.size()}});
   using Number = Arithmetic<Z>;
   std::vector<Number> volume_m3(before_m.size(), Number(0.0));
-  for (const Index cell : graph.order) {
+  walk_downstream(graph, [&](Index cell) {
     const Index to = graph.receiver[cell];
-    if (to == cell) continue;
+    if (to == cell) return;
     volume_m3[cell] +=
         grid.area_m2(grid.row(cell)) * (Number(before_m[cell]) - Number(after_m[cell]));
     volume_m3[to] += volume_m3[cell];
-  }
+  });
   return volume_m3;
 }
 
@@ -151,12 +151,12 @@ class SedimentSweeps {
   }
   void find_lake_levels() {
     lake_level_m_.resize(z_.size());
-    for (auto at = graph_.order.rbegin(); at != graph_.order.rend(); ++at) {
-      const Index cell = *at, to = graph_.receiver[cell];
+    walk_upstream(graph_, [&](Index cell) {
+      const Index to = graph_.receiver[cell];
       lake_level_m_[cell] = is_flooded(cell) && to != cell
                                 ? Z(greater(Number(z_[cell]), Number(lake_level_m_[to])))
                                 : z_[cell];
-    }
+    });
   }
 
   /// Donors first: e = lowering + follows e_receiver. Until its turn a cell holds what its donors
@@ -165,9 +165,9 @@ class SedimentSweeps {
   void eliminate(const Factor& factor) {
     std::fill(lowering_m_.begin(), lowering_m_.end(), Number(0.0));
     std::fill(follows_.begin(), follows_.end(), Number(0.0));
-    for (const Index cell : graph_.order) {
+    walk_downstream(graph_, [&](Index cell) {
       const Index to = graph_.receiver[cell];
-      if (to == cell) continue;
+      if (to == cell) return;
       const double area_m2 = grid_.area_m2(grid_.row(cell));
       const Number brought = lowering_m_[cell], more = follows_[cell];
       if (is_flooded(cell)) {
@@ -176,7 +176,7 @@ class SedimentSweeps {
         lowering_m_[cell] = -laid / area_m2;
         follows_[cell] = Number(0.0);
         lowering_m_[to] += brought - laid;
-        continue;
+        return;
       }
       const Number settles = deposition_ / source_m2_[cell];
       const Number f = factor(cell);
@@ -187,24 +187,24 @@ class SedimentSweeps {
       follows_[cell] = with_receiver;
       lowering_m_[to] += brought + (more + area_m2) * e;
       follows_[to] += (more + area_m2) * with_receiver;
-    }
+    });
   }
 
   /// Receivers first.
   template <class Factor>
   void substitute(const Factor& factor) {
-    for (auto at = graph_.order.rbegin(); at != graph_.order.rend(); ++at) {
-      const Index cell = *at, to = graph_.receiver[cell];
+    walk_upstream(graph_, [&](Index cell) {
+      const Index to = graph_.receiver[cell];
       if (to == cell) {
         lowering_m_[cell] = Number(0.0);
-        continue;
+        return;
       }
-      if (is_flooded(cell)) continue;
+      if (is_flooded(cell)) return;
       Number& e = lowering_m_[cell];
       if (moves(to)) e += follows_[cell] * lowering_m_[to];
       const Number s = drop(cell);
       if (value_of(s) < 0.0) e = lesser(Number(e - factor(cell) * s), Number(0.0));
-    }
+    });
   }
 
   const Grid& grid_;

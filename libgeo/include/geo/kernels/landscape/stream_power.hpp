@@ -151,15 +151,15 @@ void incise(const Grid& grid, const FlowGraph& graph, std::span<const double> ar
   using Number = Arithmetic<Z>;
   const auto factor = detail::incision_factors(grid, graph, area_m2, erodibility, law);
   const Index* receiver = graph.receiver.data();
-  for (auto at = graph.order.rbegin(); at != graph.order.rend(); ++at) {
-    const Index cell = *at, to = receiver[cell];
-    if (to == cell) continue;
+  walk_upstream(graph, [&](Index cell) {
+    const Index to = receiver[cell];
+    if (to == cell) return;
     const Number base = greater(Number(elevation_m[to]), Number(law.sea_level_m));
     const Number drop = Number(elevation_m[cell]) - base;
-    if (!(value_of(drop) > 0.0)) continue;
+    if (!(value_of(drop) > 0.0)) return;
     elevation_m[cell] =
         static_cast<Z>(base + implicit_drop(drop, Number(factor[cell]), law.slope_exponent));
-  }
+  });
 }
 
 }  // namespace geo

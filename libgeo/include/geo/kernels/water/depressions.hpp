@@ -56,7 +56,8 @@ struct Routing {
 /// Arrays have one value per cell (`check_sizes`); Bug otherwise.
 Routing route_water(const Grid& grid, std::span<const float> elevation_m,
                     std::span<const std::uint8_t> outlets, bool want_filled = false);
-/// The same receivers, and filled elevations, with the order left to be made (downstream_order).
+/// The same receivers, and filled elevations, with the order left to be made
+/// (FlowGraph::put_in_order).
 Routing route_unordered(const Grid& grid, std::span<const float> elevation_m,
                         std::span<const std::uint8_t> outlets, bool want_filled = true);
 

@@ -41,10 +41,7 @@ void Landscape<V>::let_ice_work(const FlowGraph& graph, const IceWork& ice,
     records_.crust_change_m[cell] += Number(z_[cell]) - Number(before_[cell]);
   }
   if (deposits()) {
-    for (const Index cell : graph.order) {
-      const Index to = graph.receiver[cell];
-      if (to != cell) let_out_m3[to] += let_out_m3[cell];
-    }
+    graph.accumulate(let_out_m3);
     std::vector<double> volume_m3 = outflow(graph, before_rivers, before_);
 #pragma omp parallel for schedule(static)
     for (Index cell = 0; cell < grid_.size(); ++cell) volume_m3[cell] += let_out_m3[cell];
