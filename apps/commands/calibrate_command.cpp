@@ -9,6 +9,7 @@
 
 #include "apps/configuration.hpp"
 #include "apps/log.hpp"
+#include "apps/memory_option.hpp"
 #include "apps/signals.hpp"
 #include "apps/thread_count.hpp"
 #include "calibration/calibrate.hpp"
@@ -25,6 +26,7 @@ namespace fs = std::filesystem;
 struct CalibrateOptions {
   std::string config, preset, target, folder = "calibration", threads;
   std::vector<std::string> assignments;
+  MemoryOption memory;
   bool resume = false, overwrite = false, allow_other_build = false, quiet = false,
        log_json = false;
 };
@@ -94,6 +96,7 @@ void run(const CalibrateOptions& options) {
         "--target is missing: must be earth, earth-statistical, a CSV file or a NetCDF DEM");
   }
   use_threads(options.threads);
+  const auto cap = options.memory.cap(options.folder);
   Configuration configuration;
   const std::string name = configure(configuration, options);
   Log log(configuration.calibration);
@@ -160,6 +163,7 @@ void add_calibrate_command(CLI::App& program, Action& action) {
   command->add_flag("--overwrite", o.overwrite, "Replace the calibration that the folder holds");
   command->add_option("--threads", o.threads, "Threads (default: as many as there are cores)")
       ->type_name("N");
+  add_memory_options(*command, o.memory, "the fit");
   command->add_flag("--quiet", o.quiet, "Say nothing but warnings and errors");
   command->add_flag("--log-json", o.log_json, "Log one JSON object a line");
   command->callback([&action, options] { action = [options] { run(*options); }; });

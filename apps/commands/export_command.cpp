@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "apps/memory_option.hpp"
 #include "apps/thread_count.hpp"
 #include "commands.hpp"
 #include "geo/core/error.hpp"
@@ -18,6 +19,7 @@ namespace {
 /// An export as it was typed.
 struct ExportOptions {
   geo::io::ExportRequest request;
+  MemoryOption memory;
   std::string format, layout, range, masks, tiles, nside, exaggeration;
 };
 
@@ -81,6 +83,7 @@ void write(const ExportOptions& options) {
     request.masks.push_back(options.masks.substr(from, to - from));
     from = to + 1;
   }
+  const auto cap = options.memory.cap(".");
   for (const auto& path : geo::io::export_field(request)) fmt::print("{}\n", path.string());
 }
 
@@ -134,6 +137,7 @@ void add_export_command(CLI::App& program, Action& action) {
       ->add_option("--exaggeration", o.exaggeration,
                    "glb: how many times a planet's heights are raised (default: 15)")
       ->type_name("TIMES");
+  add_memory_options(*command, o.memory, "the export");
   command->footer(
       "The paths of the files are printed. Beside height maps a JSON of the same name says their\n"
       "range, offset and scale: value = offset + scale * sample.");

@@ -9,6 +9,7 @@
 
 #include "apps/configuration.hpp"
 #include "apps/log.hpp"
+#include "apps/memory_option.hpp"
 #include "apps/progress.hpp"
 #include "apps/signals.hpp"
 #include "apps/thread_count.hpp"
@@ -22,6 +23,7 @@ namespace {
 
 struct IslandOptions {
   std::string folder, center, size, cell, detail, exemplars;
+  MemoryOption memory;
   bool no_maps = false, allow_other_build = false;
   bool quiet = false;
 };
@@ -52,6 +54,7 @@ void make_island(const IslandOptions& options) {
     throw geo::ConfigurationError(
         fmt::format("island: {} holds no run: give the folder of one", options.folder));
   }
+  const auto cap = options.memory.cap(options.folder);
   Configuration configuration;
   geo::io::apply_config_file(folder.config(), configuration.parameters(),
                              &configuration.settings.events);
@@ -109,6 +112,7 @@ void add_island_command(CLI::App& program, Action& action) {
   command->add_flag("--allow-other-build", options->allow_other_build,
                     "Cut it from a planet that another build of terrane made; the manifest keeps "
                     "that it was allowed");
+  add_memory_options(*command, options->memory, "the island");
   command->add_flag("--no-maps", options->no_maps, "Draw no maps");
   command->add_flag("--quiet", options->quiet, "Say nothing but warnings and errors");
   command->callback([&action, options] { action = [options] { make_island(*options); }; });

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "apps/configuration.hpp"
+#include "apps/memory_option.hpp"
 #include "apps/thread_count.hpp"
 #include "commands.hpp"
 #include "geo/core/error.hpp"
@@ -22,6 +23,7 @@ namespace {
 struct MapsOptions {
   std::string folder, width, projection, center, box, stage, output;
   std::vector<std::string> fields;
+  MemoryOption memory;
   bool frames = false;
 
   [[nodiscard]] bool is_other_view() const {
@@ -71,6 +73,7 @@ void draw_maps(const MapsOptions& options) {
     throw geo::ConfigurationError(
         fmt::format("--stage {}: goes with --field, which it is drawn of", options.stage));
   }
+  const auto cap = options.memory.cap(options.folder);
   Configuration configuration;
   geo::io::apply_config_file(folder.config(), configuration.parameters(),
                              &configuration.settings.events);
@@ -141,6 +144,7 @@ void add_maps_command(CLI::App& program, Action& action) {
                  "Draws the frames of a run through time instead, for films: frames/THEME/TIME.png")
       ->excludes("--field");
   command->add_option("-o,--output", options->output, "Folder for the pictures")->type_name("DIR");
+  add_memory_options(*command, options->memory, "the pictures");
   command->footer(footer());
   command->callback([&action, options] { action = [options] { draw_maps(*options); }; });
 }

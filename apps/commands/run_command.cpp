@@ -13,7 +13,7 @@
 #include "apps/log.hpp"
 #include "apps/memory/memory.hpp"
 #include "apps/memory/memory_cap.hpp"
-#include "apps/memory/memory_size.hpp"
+#include "apps/memory_option.hpp"
 #include "apps/progress.hpp"
 #include "apps/signals.hpp"
 #include "apps/thread_count.hpp"
@@ -29,7 +29,8 @@ namespace fs = std::filesystem;
 /// The command line of `run` as it was typed.
 struct RunOptions {
   ConfigurationSources sources;
-  std::string folder = "out", from, to, threads, memory, scratch;
+  std::string folder = "out", from, to, threads;
+  MemoryOption memory;
   bool resume = false, allow_other_build = false, overwrite = false, dry_run = false;
   bool quiet = false, log_json = false, json_progress = false, no_vtk = false, no_maps = false;
 };
@@ -50,23 +51,18 @@ bool configure(Configuration& configuration, const RunOptions& options) {
   return takes_kept;
 }
 
-/// Where the scratch file of `--memory` lies.
-const std::string& scratch_folder(const RunOptions& options) {
-  return options.scratch.empty() ? options.folder : options.scratch;
-}
-
 void print_prediction(const geo::io::RunSession& session, const RunOptions& options, int threads) {
   const auto prediction = session.prediction(geo::io::measure_machine(threads));
   const auto& grid = session.grid();
   fmt::print("grid    {} x {}, {} cells\n", grid.nx(), grid.ny(), grid.size());
   fmt::print("stages  {}\n", fmt::join(session.stages_to_run(), " "));
-  if (options.memory.empty()) {
+  if (!options.memory.is_given()) {
     fmt::print("memory  about {}\n", shown_bytes(prediction.memory_bytes));
   } else {
-    const auto taken = memory_under_cap(parse_memory_size(options.memory), prediction.memory_bytes);
+    const auto taken = memory_under_cap(options.memory.bytes(), prediction.memory_bytes);
     fmt::print("memory  about {}\n", shown_bytes(taken.resident_bytes));
     fmt::print("scratch about {} in {}\n", shown_bytes(taken.scratch_bytes),
-               scratch_folder(options));
+               options.memory.scratch_folder(options.folder));
   }
   fmt::print("time    about {} on {} thread{}\n", shown_seconds(prediction.seconds), threads,
              threads == 1 ? "" : "s");
@@ -106,14 +102,8 @@ void refuse_beyond_memory(const geo::io::RunSession& session) {
 void run(const RunOptions& options) {
   set_log_style({.json = options.log_json || options.json_progress, .quiet = options.quiet});
   const int threads = use_threads(options.threads);
-  std::unique_ptr<MemoryCap> cap;
-  if (options.memory.empty() && !options.scratch.empty()) {
-    throw geo::ConfigurationError("--scratch needs --memory, whose scratch file lies there");
-  }
-  if (!options.memory.empty()) {
-    const double bytes = parse_memory_size(options.memory);
-    if (!options.dry_run) cap = std::make_unique<MemoryCap>(bytes, scratch_folder(options));
-  }
+  const auto cap = options.dry_run ? nullptr : options.memory.cap(options.folder);
+  if (options.dry_run) static_cast<void>(options.memory.bytes());
   Configuration configuration;
   const bool folders_configuration = configure(configuration, options);
   geo::io::RunSession session(configuration.run(), configuration.stage_numbers(),
@@ -127,7 +117,7 @@ void run(const RunOptions& options) {
                                .threads = threads});
   session.prepare();
   if (options.dry_run) print_prediction(session, options, threads);
-  if (options.memory.empty()) refuse_beyond_memory(session);
+  if (!options.memory.is_given()) refuse_beyond_memory(session);
   if (options.dry_run) return;
 
   Progress progress(options.json_progress               ? ProgressStyle::json
@@ -233,15 +223,7 @@ void add_stage_options(CLI::App& command, RunOptions& o) {
 void add_manner_options(CLI::App& command, RunOptions& o) {
   command.add_option("--threads", o.threads, "Threads (default: as many as there are cores)")
       ->type_name("N");
-  command
-      .add_option("--memory", o.memory,
-                  "Keep the run within so much memory, such as 16GiB or 500MB: what does not fit "
-                  "waits in a scratch file; same bits")
-      ->type_name("SIZE");
-  command
-      .add_option("--scratch", o.scratch,
-                  "With --memory: folder of the scratch file (default: that of the run)")
-      ->type_name("DIR");
+  add_memory_options(command, o.memory, "the run");
   command.add_flag("--no-vtk", o.no_vtk, "Write no files for ParaView");
   command.add_flag("--no-maps", o.no_maps, "Draw no maps and no report");
   command.add_flag("--dry-run", o.dry_run,

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "apps/memory_option.hpp"
 #include "apps/thread_count.hpp"
 #include "commands.hpp"
 #include "geo/core/error.hpp"
@@ -62,6 +63,7 @@ void print_json(const std::string& place, const geo::State& state, const geo::io
 void add_score_command(CLI::App& program, Action& action) {
   struct Options {
     std::string place;
+    MemoryOption memory;
     bool json = false;
   };
   CLI::App* command =
@@ -70,6 +72,7 @@ void add_score_command(CLI::App& program, Action& action) {
   command->add_option("DIR_OR_FILE", options->place,
                       "Folder of a run, a stage file, or an elevation NetCDF FILE[:VARIABLE]");
   command->add_flag("--json", options->json, "As JSON");
+  add_memory_options(*command, options->memory, "the measuring");
   command->callback([&action, options] {
     action = [options] {
       if (options->place.empty()) {
@@ -77,6 +80,7 @@ void add_score_command(CLI::App& program, Action& action) {
             "score: which planet? Give the folder of a run or an elevation file");
       }
       use_threads();
+      const auto cap = options->memory.cap(".");
       const auto state = geo::io::read_planet_or_dem(options->place, geo::io::scorecard_fields());
       const auto card = geo::io::score_planet(state);
       options->json ? print_json(options->place, state, card) : print_table(card);

@@ -122,6 +122,41 @@ TEST(MemoryCap, WithoutAPlaceForTheScratchFileIsToldInOneLine) {
                  "--scratch needs --memory");
 }
 
+// Pictures, exports and figures of a run that was kept within little memory fit into it too.
+TEST(MemoryCap, IsKeptByWhatIsMadeOfARun) {
+#ifdef TERRANE_SANITIZED
+  GTEST_SKIP() << "a sanitizer has memory of its own";
+#endif
+  const TemporaryFolder folder;
+  const fs::path run = folder / "run";
+  ASSERT_EQ(terrane(large_run(run)).code, 0);
+  const auto with_and_without = [&](std::vector<std::string> arguments) {
+    const Outcome plain = terrane(arguments);
+    EXPECT_EQ(plain.code, 0) << plain.err;
+    arguments.insert(arguments.end(), {"--memory", "200MB", "--scratch", folder / "scratch"});
+    const Outcome capped = terrane(arguments);
+    EXPECT_EQ(capped.code, 0) << capped.err;
+    EXPECT_LT(capped.peak_bytes, kCap_bytes);
+    EXPECT_EQ(capped.out, plain.out);
+  };
+  with_and_without({"score", run, "--json"});
+  const fs::path picture = run / "maps" / "elevation.png", heights = folder / "heights.png";
+  with_and_without({"export", run, "--format", "png16", "-o", heights});
+  with_and_without({"maps", run});
+  const std::string drawn = text_of(picture);
+  fs::remove(picture);
+  ASSERT_EQ(terrane({"maps", run, "--memory", "200MB"}).code, 0);
+  EXPECT_EQ(text_of(picture), drawn);
+  for (const char* command : {"maps", "island", "export", "score", "calibrate"}) {
+    SCOPED_TRACE(command);
+    std::vector<std::string> arguments{command, run, "--memory", "16"};
+    if (std::string(command) == "export") arguments.insert(arguments.end(), {"--format", "png16"});
+    if (std::string(command) == "calibrate")
+      arguments = {command, "--target", "earth", "--memory", "16"};
+    expect_refusal(terrane(arguments), 2, "must be a size such as 16GiB or 500MB");
+  }
+}
+
 TEST(MemoryCap, OfNoSizeOrTooSmallIsRefused) {
   const TemporaryFolder folder;
   for (const char* size :
