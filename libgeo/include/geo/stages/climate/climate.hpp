@@ -19,7 +19,7 @@ struct ClimateParameters {
   double latitude_deg = 45.0;
   std::string surroundings = "edge";
   double lift_reach_km = 40.0;
-  double lift_height_m = 1.75e+03;
+  double lift_height_m = 1.95e+03;
   double temperature_noise_k = 0.0;
   double precipitation_noise_mm_yr = 0.0;
   double noise_wavelength_km = 500.0;
