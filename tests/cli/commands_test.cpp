@@ -199,7 +199,8 @@ TEST_F(FinishedRun, MapsAreDrawnAgain) {
 }
 
 TEST_F(FinishedRun, EveryFieldOfEveryStageIsDrawn) {
-  for (const auto& stage : manifest_of(run_).at("stages")) {
+  const auto manifest = manifest_of(run_);
+  for (const auto& stage : manifest.at("stages")) {
     std::vector<std::string> arguments{"maps", run_,      "--width",
                                        "300",  "--stage", stage.at("name").get<std::string>()};
     for (const auto& [name, field] : stage.at("fields").items()) {

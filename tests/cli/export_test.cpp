@@ -169,7 +169,8 @@ TEST_F(Export, ComesInAgainAsAFieldByItsJsonOrByTheRangeThatIsGiven) {
   EXPECT_THAT(untold.err, HasSubstr("give --dem-range MIN,MAX"));
   const Outcome told = uplift_of({"--dem-range=0,0.002"});
   ASSERT_EQ(told.code, 0) << told.err;
-  for (const auto& stage : manifest_of(folder / "out").at("stages")) {
+  const auto manifest = manifest_of(folder / "out");
+  for (const auto& stage : manifest.at("stages")) {
     if (stage.at("name") != "erosion") continue;
     EXPECT_NEAR(stage.at("fields").at("uplift_rate").at("max").get<double>(), 0.002, 2e-4);
   }

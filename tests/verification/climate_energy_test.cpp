@@ -111,6 +111,7 @@ EnergyBalance constant_albedo() {
   model.outgoing_slope_w_m2_k = 2.0;
   model.diffusivity_w_m2_k = 0.55;
   model.moist_transport = 0.0;
+  model.channel_share = 0.0;
   model.coalbedo = 0.7;
   model.coalbedo_p2 = 0.0;
   model.ice_width_k = 0.0;
@@ -324,6 +325,7 @@ TEST(EnergyBalance, IceOnLandMakesSummersColdAndFarClimatesHardly) {
 TEST(EnergyBalance, MeltingHoldsSummersOverIceNearFreezing) {
   const PolarContinent planet;
   EnergyBalance model;
+  model.channel_share = 0.0;
   model.glacier_coalbedo = 0.6;  // dark enough to melt
   model.melt_w_m2_k = 0.0;
   const double unmelted_c = warmest_c(planet.year(model, true), planet.inland());

@@ -85,6 +85,9 @@ TEST(MemoryCap, GoesOnWithAndWithoutFromWhatTheOtherLeft) {
 }
 
 TEST(MemoryCap, LeavesNothingInTheScratchFolderWhenKilled) {
+#ifdef TERRANE_SANITIZED
+  GTEST_SKIP() << "a sanitizer has memory of its own";
+#endif
   const TemporaryFolder folder;
   fs::create_directories(folder / "scratch");
   Running running(Call{.arguments = large_run(
@@ -102,6 +105,9 @@ TEST(MemoryCap, LeavesNothingInTheScratchFolderWhenKilled) {
 }
 
 TEST(MemoryCap, WithAFullDiskForTheScratchFileIsToldInOneLine) {
+#ifdef TERRANE_SANITIZED
+  GTEST_SKIP() << "a sanitizer has memory of its own";
+#endif
   const TemporaryFolder folder;
   const Outcome outcome =
       terrane(Call{.arguments = large_run(folder / "out", {"--memory", "200MB", "--quiet"}),

@@ -9,7 +9,8 @@
 namespace geo {
 namespace {
 
-/// A low continent from 60 S to 70 N, 120 degrees wide, on a planet of sea.
+/// A low continent from 60 S to 70 N, 30 degrees wide, on a planet of sea: rain comes all the way
+/// in.
 struct Continent {
   Continent() : land(size()), height_m(size(), 0.0F) {
     for (int j = 0; j < grid.ny(); ++j) latitude_deg.push_back(grid.latitude_deg(j));
@@ -26,7 +27,7 @@ struct Continent {
   }
   [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(grid.size()); }
 
-  static constexpr int kWest = 24, kEast = 48;
+  static constexpr int kWest = 33, kEast = 39;
   Grid grid = Grid::sphere(72, 36);
   std::vector<double> latitude_deg;
   std::vector<float> land, height_m;

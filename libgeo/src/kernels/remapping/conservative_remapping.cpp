@@ -31,7 +31,8 @@ int even(double count) { return 2 * static_cast<int>(std::lround(0.5 * count)); 
 Grid coarser_grid(const Grid& fine, double spacing_m) {
   const double middle_dx_m = fine.spacing_east_m(fine.ny() / 2), dy_m = fine.face_east_m(0);
   const auto fewer = [&](int cells, double size_m) {
-    return std::clamp(static_cast<int>(std::lround(cells * size_m / spacing_m)), 4, cells);
+    const int wanted = static_cast<int>(std::lround(cells * size_m / spacing_m));
+    return std::min(std::max(wanted, 4), cells);
   };
   const int nx = fewer(fine.nx(), middle_dx_m);
   const int ny = std::min(fine.ny(), std::max(3, fewer(fine.ny(), dy_m)));
