@@ -17,8 +17,8 @@ struct WaveMode {
 /// Constants of the response of an atmosphere to stationary heating and mountains.
 struct StationaryWave {
   /// What heating sets up: the first baroclinic mode, whose winds turn with height.
-  WaveMode internal{50.2, 1.08, 24.5, 0};
-  double heating_m4_s3_w = 5.4e-05;  ///< fall of the lower geopotential by 1 W m-2
+  WaveMode internal{50.2, 1.08, 23, 0};
+  double heating_m4_s3_w = 5.6e-05;  ///< fall of the lower geopotential by 1 W m-2
   /// What mountains set up: the external mode, nearly the same at all heights.
   WaveMode external{200.0, 15.0, 20.0, 1.5};
   double mountain_share = 0;    ///< of the height of mountains that the flow goes over
