@@ -142,7 +142,7 @@ std::vector<double> open_channels(const Grid& grid, std::span<const double> lati
                                   std::span<const float> land_fraction) {
   check_sizes("open_channels", grid.ny(), {{"latitude_deg", latitude_deg.size()}});
   check_sizes("open_channels", grid.size(), {{"land_fraction", land_fraction.size()}});
-  constexpr double kReach_deg = 3.0, kGyres_deg = 30.0, kNoGyres_deg = 50.0;
+  constexpr double kReach_deg = 8.0, kGyres_deg = 30.0, kNoGyres_deg = 50.0;
   std::vector<double> open(latitude_deg.size());
   for (int j = 0; j < grid.ny(); ++j) {
     const auto row = land_fraction.subspan(grid.cell(0, j), grid.nx());

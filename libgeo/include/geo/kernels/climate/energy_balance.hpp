@@ -19,7 +19,7 @@ struct EnergyBalance {
   double outgoing_w_m2 = 190;          ///< A at 0 degC
   double outgoing_slope_w_m2_k = 2.4;  ///< B
   double diffusivity_w_m2_k = 0.649;   ///< D at 15 degC, on the unit sphere
-  double channel_share = 0.479;    ///< of D that is missing where a channel runs round the planet
+  double channel_share = 0.62;     ///< of D that is missing where a channel runs round the planet
   double moist_transport = 0.653;  ///< share of latent heat in D's change with temperature
   double advected_heat_j_m2_k = 7.07e+06;  ///< of the air that winds move
   double coalbedo = 0.662;                 ///< mean absorbed share without snow and ice

@@ -33,9 +33,10 @@ void ocean_heat(const Grid& grid, const EnergyBalance& model, bool retrograde,
 
 /// How far each parallel is a channel that runs round the whole planet, 0 to 1: where no coast
 /// stands in the way of a zonal current no gyre crosses the parallel, and the sea carries little
-/// heat polewards (Toggweiler & Bjornsson 2000; Enderton & Marshall 2009). 1 where no cell within 3
-/// deg of latitude is more land than water; within 50 deg of the equator less and less, for there
-/// the trades drive water polewards without gyres, 0 within 30 deg.
+/// heat polewards (Toggweiler & Bjornsson 2000; Enderton & Marshall 2009). The share of the
+/// parallels within 8 deg, half a circumpolar current's width, on which no cell is more land than
+/// water; within 50 deg of the equator less and less, for there the trades drive water polewards
+/// without gyres, 0 within 30 deg.
 /// Per row; `land_fraction`: one value per cell, Bug otherwise.
 [[nodiscard]] std::vector<double> open_channels(const Grid& grid,
                                                 std::span<const double> latitude_deg,
