@@ -10,9 +10,9 @@
 #include "geo/kernels/figures/hypsometry_figures.hpp"
 #include "geo/kernels/figures/profile_figures.hpp"
 #include "geo/kernels/figures/relief_figures.hpp"
-#include "geo/kernels/water/sea_parts.hpp"
 #include "geo/kernels/numerics/quantiles.hpp"
 #include "geo/kernels/numerics/spectrum.hpp"
+#include "geo/kernels/water/sea_parts.hpp"
 #include "score_figures.hpp"
 #include "score_grid.hpp"
 

@@ -52,7 +52,7 @@ struct EnergyBalance {
   double upwelling_reach_km = 3.63e+03;  ///< to the west of a coast, over which that falls by e
   double dry_warming_k_m2_w = 0.0282;  ///< by which dry ground is warmer for each W m-2 of sunlight
   double dry_warming_from_w_m2 = 201;  ///< above this
-  double inversion_k = 1.74;           ///< by which snow is colder than the air above at night
+  double inversion_k = 1.74;           ///< by which snow is colder than the air in polar nights
   double inversion_growth = 0.128;     ///< more for each kelvin that it is colder than -10 degC
   double inversion_below_w_m2 = 193;   ///< less sunlight than this counts as a part of a night
 };

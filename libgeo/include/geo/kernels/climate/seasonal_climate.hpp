@@ -71,7 +71,11 @@ using TerrainAscent = std::function<std::vector<float>(std::span<const float> wi
                                                        std::span<const float> wind_north)>;
 
 /// Twelve months of climate of a sphere or torus from its topography. Temperature at sea level
-/// comes from the energy balance; pressure from the meridional cells about the thermal equator,
+/// comes from the energy balance; land is warmer where its soil is dry, and snow in the polar night
+/// colder than the air above it (Connolley 1996), by
+///   max(0, 1 - Q / Q_mixed) snow(T) (k + g max(0, -10 degC - T)),
+/// Q the insolation, T the air's temperature at the ground, k, g and Q_mixed the inversion's
+/// constants of EnergyBalance. Pressure comes from the meridional cells about the thermal equator,
 /// heat lows and the stationary waves that latent heat and warm land set up. Winds balance it with
 /// friction. Evaporation from the sea grows with the speed of the wind, and where that comes from
 /// the cold. Winds carry moisture, and so do eddies, which are strongest where temperature

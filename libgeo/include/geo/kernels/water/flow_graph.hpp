@@ -50,7 +50,7 @@ template <class Visit>
 void walk_downstream(const FlowGraph& graph, const Visit& visit) {
   const auto& begins = graph.part_begins;
   const auto parts = static_cast<int>(begins.size()) - 1;
-#pragma omp parallel for schedule(dynamic, 1)
+#pragma omp parallel for schedule(dynamic, 1) if (parts > 0)
   for (int part = 0; part < parts; ++part) {
     for (Index at = begins[part]; at < begins[part + 1]; ++at) visit(graph.order[at]);
   }
@@ -65,7 +65,7 @@ void walk_upstream(const FlowGraph& graph, const Visit& visit) {
   const auto parts = static_cast<int>(begins.size()) - 1;
   const Index end = parts > 0 ? begins[parts] : 0;
   for (auto at = static_cast<Index>(graph.order.size()); at-- > end;) visit(graph.order[at]);
-#pragma omp parallel for schedule(dynamic, 1)
+#pragma omp parallel for schedule(dynamic, 1) if (parts > 0)
   for (int part = 0; part < parts; ++part) {
     for (Index at = begins[part + 1]; at-- > begins[part];) visit(graph.order[at]);
   }
