@@ -193,12 +193,12 @@ TEST(Frame, WithOtherArraysThanWereWrittenIsRefused) {
 }
 
 /// A file that says it holds far more than it does.
-void write_huge_claim(const std::filesystem::path& path) {
+void write_huge_claim(const std::filesystem::path& path, std::size_t rows, std::size_t columns) {
   int id = 0, variable = 0;
   std::array<int, 2> dimensions{};
   ASSERT_EQ(nc_create(path.c_str(), NC_NETCDF4, &id), NC_NOERR);
-  nc_def_dim(id, "lat", 20'000, dimensions.data());
-  nc_def_dim(id, "lon", 20'000, dimensions.data() + 1);
+  nc_def_dim(id, "lat", rows, dimensions.data());
+  nc_def_dim(id, "lon", columns, dimensions.data() + 1);
   nc_def_var(id, "elevation", NC_FLOAT, 2, dimensions.data(), &variable);
   nc_put_att_text(id, variable, "units", 1, "m");
   for (const auto& [name, text] :
@@ -213,9 +213,17 @@ void write_huge_claim(const std::filesystem::path& path) {
 
 TEST(StageFile, SizesAreCheckedBeforeMemoryIsAskedFor) {
   const TemporaryFolder folder;
-  write_huge_claim(folder / "a.nc");
+  write_huge_claim(folder / "a.nc", 20'000, 20'000);
   EXPECT_THAT(message_of(ErrorKind::input, [&] { read_netcdf(folder / "a.nc"); }),
               HasSubstr("claims 400000000 values"));
+}
+
+TEST(StageFile, SizesOfGridsAreCheckedThoughNoFieldIsWanted) {
+  const TemporaryFolder folder;
+  write_huge_claim(folder / "a.nc", 50'000'000, 4);
+  const auto none = [](const FieldSpec&) { return false; };
+  EXPECT_THAT(message_of(ErrorKind::input, [&] { read_netcdf(folder / "a.nc", none); }),
+              HasSubstr("claims 200000000 values"));
 }
 
 TEST(StageFile, SameContentGivesTheSameBytes) {

@@ -276,6 +276,7 @@ Grid read_grid(const nc::File& file) {
   const bool latitude_longitude = *topology == "sphere" || *topology == "window";
   const int ny = dimension_size(file, latitude_longitude ? "lat" : "y");
   const int nx = dimension_size(file, latitude_longitude ? "lon" : "x");
+  file.check_cells(nx, ny);  // a grid takes memory for each of its rows
   const Ellipsoid figure{required_numbers(file, kRadius, 1)[0],
                          required_numbers(file, kFlattening, 1)[0]};
   constexpr double kLargest_m = 1e12;

@@ -181,4 +181,8 @@ void File::check_size(int group, int variable) const {
   check_packed_size(values, sizeof(double), static_cast<double>(bytes_));
 }
 
+void File::check_cells(int nx, int ny) const {
+  check_packed_size(static_cast<double>(nx) * ny, sizeof(float), static_cast<double>(bytes_));
+}
+
 }  // namespace geo::io::nc
