@@ -224,6 +224,10 @@ TEST(StageFile, SizesOfGridsAreCheckedThoughNoFieldIsWanted) {
   const auto none = [](const FieldSpec&) { return false; };
   EXPECT_THAT(message_of(ErrorKind::input, [&] { read_netcdf(folder / "a.nc", none); }),
               HasSubstr("claims 200000000 values"));
+  // What is not told by the size of the file is told by its axes.
+  write_huge_claim(folder / "b.nc", 4'000'000, 4);
+  EXPECT_THAT(message_of(ErrorKind::input, [&] { read_netcdf(folder / "b.nc", none); }),
+              HasSubstr("claims 4000004 rows and columns"));
 }
 
 TEST(StageFile, SameContentGivesTheSameBytes) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <hdf5.h>
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -182,7 +183,16 @@ void File::check_size(int group, int variable) const {
 }
 
 void File::check_cells(int nx, int ny) const {
-  check_packed_size(static_cast<double>(nx) * ny, sizeof(float), static_cast<double>(bytes_));
+  const auto bytes = static_cast<double>(bytes_);
+  check_packed_size(static_cast<double>(nx) * ny, sizeof(float), bytes);
+  // Coordinates differ from each other, and are not packed to less than a bit.
+  constexpr double kBits = 8.0, kFew = 1 << 20;
+  const double coordinates = static_cast<double>(nx) + ny;
+  if (coordinates > std::max(kFew, kBits * bytes)) {
+    throw InputError(
+        fmt::format("truncated or damaged: claims {:.0f} rows and columns in {:.0f} bytes",
+                    coordinates, bytes));
+  }
 }
 
 }  // namespace geo::io::nc

@@ -91,7 +91,7 @@ class File {
   /// than its file can hold however well they are packed, or than there is memory for.
   void check_size(int variable) const { check_size(id_, variable); }
   void check_size(int group, int variable) const;
-  /// The same of cells that its fields have a value for each of.
+  /// The same of cells that its fields have a value for each of, and rows and columns a coordinate.
   void check_cells(int nx, int ny) const;
 
  private:
