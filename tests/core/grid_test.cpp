@@ -74,4 +74,9 @@ TEST(Grid, RefusesWhatItCannotRepresent) {
 }
 
 }  // namespace
+TEST(Grid, RowsAreLimitedAsEachTakesMemoryOfItsOwn) {
+  EXPECT_EQ(Grid::torus(4, 1 << 12, 1e3, 1e3).ny(), 1 << 12);
+  EXPECT_THROW(Grid::torus(4, (1 << 24) + 1, 1e3, 1e3), ConfigurationError);
+}
+
 }  // namespace geo

@@ -27,6 +27,12 @@ void check_size(int nx, int ny) {
     throw ConfigurationError("grid of " + std::to_string(nx) + " x " + std::to_string(ny) +
                              " cells is too large: at most 536870912 cells");
   }
+  // A row has its own geometry, which then takes more memory than fields do.
+  constexpr int kMostRows = 1 << 24;
+  if (ny > kMostRows) {
+    throw ConfigurationError("grid of " + std::to_string(nx) + " x " + std::to_string(ny) +
+                             " cells has too many rows: at most 16777216");
+  }
 }
 
 /// Beyond these areas, distances and what is counted by them leave the numbers' range or precision.
