@@ -82,6 +82,50 @@ TEST(Pipeline, AStageReleasesNothingThatItWritesOrDoesNotDeclare) {
   EXPECT_TRUE(state.has(field::crust_age));
 }
 
+TEST(Pipeline, ParksAFieldThatTheNextStageDoesNotRead) {
+  // The third stage reads an age that the second releases, and warmth that it never reads.
+  std::vector<std::string> there_between, fetched;
+  const Pipeline pipeline = pipeline_of(
+      stage({.name = "first", .writes = {&field::crust_age, &field::temperature}},
+            [](StageIo& io, Context&) {
+              io.write(field::crust_age)[0] = 7.0F;
+              io.write(field::temperature)[0] = 9.0F;
+            }),
+      stage({.name = "second", .reads = {&field::crust_age}, .writes = {&field::elevation}},
+            [](StageIo& io, Context&) {
+              io.write(field::elevation)[0] = io.read(field::crust_age)[0];
+              io.release(field::crust_age);
+              EXPECT_TRUE(io.read_optional(field::crust_age).empty());
+            }),
+      stage({.name = "third",
+             .reads = {&field::crust_age, &field::elevation},
+             .optional = {&field::temperature},
+             .writes = {&field::slope}},
+            [](StageIo& io, Context&) {
+              io.write(field::slope)[0] = io.read(field::crust_age)[0] +
+                                          io.read_optional(field::temperature)[0] +
+                                          io.read(field::elevation)[0];
+            }));
+  State state = empty_state();
+  Context context;
+  Pipeline::Observer observer;
+  observer.before = [&](int at) {
+    if (at != 1) return;
+    for (const FieldSpec* spec : state.present()) there_between.emplace_back(spec->name);
+  };
+  observer.can_park = [](const FieldSpec& spec) { return &spec != &field::elevation; };
+  observer.fetch = [&](const FieldSpec& spec, State& to) {
+    fetched.emplace_back(spec.name);
+    std::vector<float> values(static_cast<std::size_t>(to.grid().size()));
+    values[0] = &spec == &field::crust_age ? 7.0F : 9.0F;
+    to.set(spec, values);
+  };
+  pipeline.run(state, context, 0, 2, observer);
+  EXPECT_THAT(there_between, ElementsAre("crust_age"));
+  EXPECT_THAT(fetched, testing::UnorderedElementsAre("crust_age", "temperature"));
+  EXPECT_EQ(state.read(field::slope)[0], 23.0F);
+}
+
 TEST(Pipeline, DropsAFieldThatALaterStageMakesAnewUnread) {
   // The second stage makes elevation anew and reads the age alone.
   std::vector<std::string> there;

@@ -90,6 +90,24 @@ TEST(Scorecard, MeasuresEveryRowOfTheTableWhenAllFieldsAreThere) {
   }
 }
 
+TEST(Scorecard, EachPartNeedsItsOwnFieldsAlone) {
+  const State state = whole_planet(1024);
+  ScoreInParts score;
+  for (const auto part : {ScoreInParts::Part::surface, ScoreInParts::Part::crust}) {
+    State held(state.shared_grid());
+    for (const FieldSpec* spec : ScoreInParts::fields(part)) {
+      if (state.has(*spec)) held.share(*spec, state.values(*spec));
+    }
+    score.measure(part, held);
+  }
+  const Scorecard whole = score_planet(state), card = score.card();
+  ASSERT_EQ(card.lines.size(), whole.lines.size());
+  for (std::size_t k = 0; k < card.lines.size(); ++k) {
+    EXPECT_EQ(card.lines[k].value, whole.lines[k].value) << card.lines[k].name;
+  }
+  EXPECT_EQ(card.left_out, whole.left_out);
+}
+
 TEST(Scorecard, FiguresAreInTheUnitsOfTheTable) {
   const State state = whole_planet();
   const auto card = score_planet(state);

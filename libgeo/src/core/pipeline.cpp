@@ -26,7 +26,7 @@ void StageIo::release(const FieldSpec& spec) {
   if (lists(info_.writes, spec)) {
     throw Bug(fmt::format("stage {} releases {}, which it writes", info_.name, spec.name));
   }
-  if (wanted_later_ && !wanted_later_(spec)) state_.erase(spec);
+  if (stays_ && !stays_(spec)) state_.erase(spec);
 }
 
 void StageIo::hand_over(State result) {
@@ -88,28 +88,42 @@ void Pipeline::check(std::span<const FieldSpec* const> initial, int first, int l
   }
 }
 
-bool Pipeline::is_read_after(const FieldSpec& spec, int at, int last) const {
+int Pipeline::next_reader(const FieldSpec& spec, int at, int last) const {
   for (int later = at + 1; later <= last; ++later) {
     const StageInfo& info = stages_[later]->info();
-    if (lists(info.reads, spec) || lists(info.optional, spec)) return true;
-    if (!info.own_grid && lists(info.writes, spec)) return false;  // made anew
+    if (lists(info.reads, spec) || lists(info.optional, spec)) return later;
+    if (!info.own_grid && lists(info.writes, spec)) return kNever;  // made anew
   }
-  return false;
+  return kNever;
 }
 
 void Pipeline::run(State& state, Context& context, int first, int last,
                    const Observer& observer) const {
   check(state.present(), first, last);
   context.configuration = parameters();
+  std::set<const FieldSpec*> parked;
   for (int at = first; at <= last; ++at) {
     const StageInfo& info = stages_[at]->info();
+    // Whether a field stays in memory once the stage has done with it.
+    const auto stays = [&](const FieldSpec& spec) {
+      const int reader = next_reader(spec, at, last);
+      if (reader == kNever) return false;
+      if (reader == at + 1 || !observer.can_park || !observer.can_park(spec)) return true;
+      parked.insert(&spec);
+      return false;
+    };
     if (observer.before) observer.before(at);
+    std::erase_if(parked, [&](const FieldSpec* spec) {
+      if (!lists(info.reads, *spec) && !lists(info.optional, *spec)) return false;
+      observer.fetch(*spec, state);
+      return true;
+    });
     context.budget.clear();
     context.steps = {};
     context.tables.clear();
     context.event_records.clear();
     context.advance(0.0);
-    StageIo io(state, info, [&](const FieldSpec& spec) { return is_read_after(spec, at, last); });
+    StageIo io(state, info, stays);
     stages_[at]->run(io, context);
     for (const FieldSpec* spec : info.writes) {
       if (!io.result().has(*spec)) {
@@ -119,7 +133,7 @@ void Pipeline::run(State& state, Context& context, int first, int last,
     context.advance(1.0);
     if (observer.after) observer.after(at, io.result(), context);
     for (const FieldSpec* spec : state.present()) {
-      if (!is_read_after(*spec, at, last)) state.erase(*spec);
+      if (!stays(*spec)) state.erase(*spec);
     }
   }
 }

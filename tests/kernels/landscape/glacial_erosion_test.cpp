@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "geo/core/random.hpp"
+#include "support/ice.hpp"
 #include "support/terrain.hpp"
 
 namespace geo {
@@ -24,7 +25,7 @@ Glaciation glaciate(const Grid& grid, const std::vector<float>& z, std::vector<I
                     const std::vector<float>& balance) {
   Glaciation ice{std::move(ground), {}, {}};
   ice.surface = plastic_ice_surface(grid, kIce_m, z, ice.ground);
-  ice.flux = ice_flux(grid, z, ice.ground, ice.surface, balance);
+  ice.flux = ice_flux(grid, z, ice.ground, ice.surface, test::of_surface(ice.surface, balance));
   return ice;
 }
 

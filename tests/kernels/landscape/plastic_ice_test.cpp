@@ -13,6 +13,7 @@
 #include "geo/kernels/landscape/stream_power.hpp"
 #include "geo/kernels/numerics/area_sum.hpp"
 #include "geo/kernels/water/depressions.hpp"
+#include "support/ice.hpp"
 #include "support/terrain.hpp"
 
 namespace geo {
@@ -175,7 +176,7 @@ TEST(PlasticIce, SnowMeltAndCalvingCloseOnAnyRelief) {
         balance[c] = static_cast<float>(random.normal(c));
       }
       const IceSurface surface = plastic_ice_surface(grid, kIce_m, z, ground);
-      const IceFlux flux = ice_flux(grid, z, ground, surface, balance);
+      const IceFlux flux = ice_flux(grid, z, ground, surface, test::of_surface(surface, balance));
       double snow = 0.0;
       for (Index c = 0; c < grid.size(); ++c) {
         if (z[c] >= 0.0F) snow += std::max(0.0F, balance[c]) * grid.area_m2(grid.row(c));
@@ -197,10 +198,13 @@ TEST(PlasticIce, SeaFloorMakesNoIceOfItsOwn) {
   }
   const std::vector<float> snow(grid.size(), 1.0F);
   const IceSurface surface = plastic_ice_surface(grid, kIce_m, bed, ground);
-  EXPECT_EQ(ice_flux(grid, bed, ground, surface, snow).accumulated_m3_yr, 0.0);
+  EXPECT_EQ(ice_flux(grid, bed, ground, surface, test::of_surface(surface, snow)).accumulated_m3_yr,
+            0.0);
   bed[grid.cell(29, 15)] = 10.0F;  // an island feeds it
   const IceSurface with_island = plastic_ice_surface(grid, kIce_m, bed, ground);
-  EXPECT_GT(ice_flux(grid, bed, ground, with_island, snow).calved_m3_yr, 0.0);
+  EXPECT_GT(
+      ice_flux(grid, bed, ground, with_island, test::of_surface(with_island, snow)).calved_m3_yr,
+      0.0);
 }
 
 TEST(PlasticIce, AGroundedSheetKeepsItsDivideOverABedBelowTheSea) {
@@ -216,7 +220,7 @@ TEST(PlasticIce, AGroundedSheetKeepsItsDivideOverABedBelowTheSea) {
   }
   const std::vector<float> snow(grid.size(), 0.2F);
   const IceSurface surface = plastic_ice_surface(grid, kIce_m, bed, ground);
-  const IceFlux flux = ice_flux(grid, bed, ground, surface, snow);
+  const IceFlux flux = ice_flux(grid, bed, ground, surface, test::of_surface(surface, snow));
   double fallen_m3_yr = 0.0;
   for (Index c = 0; c < grid.size(); ++c) {
     if (ground[c] == IceGround::away) continue;
@@ -320,7 +324,7 @@ TEST(PlasticIce, ValleyGlaciersScaleAsThoseOfTheEarth) {
       for (Index c = 0; c < grid.size(); ++c) {
         balance[c] = std::min(2.0F, 0.006F * (surface.height_m[c] - float(line) * top));
       }
-      flux = ice_flux(grid, z, ground, surface, balance);
+      flux = ice_flux(grid, z, ground, surface, test::of_surface(surface, balance));
       for (Index c = 0; c < grid.size(); ++c) {
         if (ground[c] == IceGround::away) continue;
         ground[c] = flux.share[c] > 0.02F ? IceGround::iced : IceGround::bare;

@@ -30,15 +30,21 @@ class Pipeline {
   struct Observer {
     std::function<void(int position)> before;
     std::function<void(int position, const State&, const Context&)> after;
+    /// Whether a field that the next stage does not read, but a later one does, may leave memory
+    /// until then: it can be had again. Empty: all stay.
+    std::function<bool(const FieldSpec&)> can_park{};
+    /// Puts such a field into the state again, before the stage that reads it.
+    std::function<void(const FieldSpec&, State&)> fetch{};
   };
   /// Runs first..last. `after` gets what the stage made: the state, or that of its own grid. After
-  /// each stage, fields that no later stage in the span reads leave the state. Checks that a stage
-  /// wrote what it declared (Bug otherwise).
+  /// each stage, fields that no later stage in the span reads leave the state, and those that are
+  /// parked until then. Checks that a stage wrote what it declared (Bug otherwise).
   void run(State& state, Context& context, int first, int last, const Observer& observer) const;
 
  private:
-  /// Whether a stage behind `at` reads the values that the field has now.
-  [[nodiscard]] bool is_read_after(const FieldSpec& spec, int at, int last) const;
+  static constexpr int kNever = -1;
+  /// The first stage behind `at` that reads the values that the field has now, or kNever.
+  [[nodiscard]] int next_reader(const FieldSpec& spec, int at, int last) const;
 
   std::vector<std::unique_ptr<Stage>> stages_;
 };

@@ -125,11 +125,10 @@ struct Context {
 /// A stage's only door to the state. Reading or writing what the stage did not declare throws Bug.
 class StageIo {
  public:
-  /// `wanted_later`: whether somebody reads the values that a field has now once the stage has run;
-  /// empty: fields stay.
-  StageIo(State& state, const StageInfo& info,
-          std::function<bool(const FieldSpec&)> wanted_later = {})
-      : state_(state), info_(info), wanted_later_(std::move(wanted_later)) {}
+  /// `stays`: whether a field that the stage is done with stays in the state, as others read it;
+  /// empty: all do.
+  StageIo(State& state, const StageInfo& info, std::function<bool(const FieldSpec&)> stays = {})
+      : state_(state), info_(info), stays_(std::move(stays)) {}
 
   [[nodiscard]] const Grid& grid() const noexcept { return state_.grid(); }
 
@@ -157,7 +156,7 @@ class StageIo {
     check_writable(spec);
     state_.set(spec, std::move(values));
   }
-  /// The stage reads a field no more: it leaves memory at once unless it is wanted later. What
+  /// The stage reads a field no more: it leaves memory at once unless it has to stay. What
   /// `read` gave of it ends. Throws Bug where the stage writes it.
   void release(const FieldSpec& spec);
   /// The result of a stage with a grid of its own. Throws Bug unless it holds exactly the fields
@@ -172,7 +171,7 @@ class StageIo {
   void check_writable(const FieldSpec& spec) const;
   State& state_;
   const StageInfo& info_;
-  std::function<bool(const FieldSpec&)> wanted_later_;
+  std::function<bool(const FieldSpec&)> stays_;
   std::optional<State> handed_over_;
 };
 

@@ -4,10 +4,13 @@
 #include <bit>
 #include <cmath>
 #include <cstdlib>
+#include <memory>
 #include <numeric>
 #include <optional>
 #include <span>
 #include <unordered_map>
+
+#include "geo/core/cell_set.hpp"
 
 namespace geo::io {
 namespace {
@@ -23,11 +26,9 @@ constexpr int kBins = 1 << 12;
 int bin_of(float value) { return static_cast<int>(std::bit_cast<std::uint32_t>(value) >> 19U); }
 float value_of(int bin) { return std::bit_cast<float>(static_cast<std::uint32_t>(bin) << 19U); }
 
-std::vector<float> flow_of(const State& state) {
-  if (state.has(field::discharge)) {
-    const auto discharge = state.read(field::discharge);
-    return {discharge.begin(), discharge.end()};
-  }
+/// What rivers are drawn by where there is no discharge.
+std::vector<float> flow_by_area(const State& state) {
+  if (state.has(field::discharge)) return {};
   const auto area = state.read(field::drainage_area);
   return {area.begin(), area.end()};
 }
@@ -61,7 +62,8 @@ class Tracer {
       : frame_(frame),
         grid_(frame.grid()),
         receiver_(state.read(field::flow_receiver)),
-        flow_(flow_of(state)),
+        area_flow_(flow_by_area(state)),
+        flow_(area_flow_.empty() ? state.read(field::discharge) : area_flow_),
         // Lines of small maps are relatively wider and need more room.
         pixel_m_(frame.pixel_m() * map_unit(frame.width())) {
     if (state.has(field::drainage_area)) area_m2_ = state.read(field::drainage_area);
@@ -77,9 +79,9 @@ class Tracer {
     least_rank_ = least_rank();
     find_main_donors();
     std::vector<GridLine> lines;
-    for (Index i = 0; i < grid_.size(); ++i) {
-      if (is_drawn(i) && main_donor_[i] == kNoCell) follow(i, lines);
-    }
+    rank_.set()->visit([&](Index i) {
+      if (is_drawn(i) && main_donor_.of(i) == kNoCell) follow(i, lines);
+    });
     std::unordered_map<Index, Junction> junctions;
     for (const GridLine& line : lines) {
       if (line.joins) junctions.try_emplace(line.points.back().cell);
@@ -106,25 +108,27 @@ class Tracer {
   // the lines, by area alone deserts as many. 0 where none can be.
   void set_rank(const State& state) {
     const bool both = state.has(field::discharge) && state.has(field::drainage_area);
+    const auto rank_of = [&](Index i) {
+      return both ? std::cbrt(flow_[i] * flow_[i] * static_cast<float>(area_m2_[i])) : flow_[i];
+    };
     const FrozenGround ice(state);
-    rank_.assign(flow_.size(), 0.0F);
-    for (Index i = 0; i < grid_.size(); ++i) {
+    const auto may_be_drawn = [&](Index i) {
       const Index to = receiver_[i];
-      if (to < 0 || to == i || !is_land(i) || (!area_m2_.empty() && area_m2_[i] < source_m2_) ||
-          ice.at(i)) {
-        continue;
-      }
-      rank_[i] = both ? std::cbrt(flow_[i] * flow_[i] * static_cast<float>(area_m2_[i])) : flow_[i];
-    }
+      return to >= 0 && to != i && is_land(i) && (area_m2_.empty() || area_m2_[i] >= source_m2_) &&
+             !ice.at(i) && rank_of(i) > 0.0F;
+    };
+    const auto rivers = std::make_shared<const CellSet>(grid_.size(), may_be_drawn);
+    rank_ = SparseValues<float>(rivers);
+    rivers->visit([&](Index i) { rank_.of(i) = rank_of(i); });
   }
 
   [[nodiscard]] bool is_land(Index i) const { return elevation_.empty() || elevation_[i] >= 0.0F; }
   [[nodiscard]] bool is_lake(Index i) const {
     return !lake_depth_.empty() && lake_depth_[i] > 0.0F;
   }
-  [[nodiscard]] bool is_river(Index i) const { return rank_[i] > 0.0F; }
+  [[nodiscard]] bool is_river(Index i) const { return rank_.set()->holds(i); }
   [[nodiscard]] bool is_drawn(Index i) const {
-    return is_river(i) && rank_[i] >= least_rank_ && !(is_lake(i) && is_lake(receiver_[i]));
+    return is_river(i) && rank_.of(i) >= least_rank_ && !(is_lake(i) && is_lake(receiver_[i]));
   }
 
   [[nodiscard]] Step step(Index from, Index to) const {
@@ -146,7 +150,7 @@ class Tracer {
       land_m2 += grid_.area_m2(row);
       if (!is_river(i)) continue;
       const Step to = step(i, receiver_[i]);
-      length_m[bin_of(rank_[i])] +=
+      length_m[bin_of(rank_.of(i))] +=
           std::hypot(to.columns * grid_.spacing_east_m(row), to.rows * grid_.spacing_north_m(row));
     }
     double room_m = kLineDensity * land_m2 / pixel_m_;
@@ -159,12 +163,12 @@ class Tracer {
 
   // Of the drawn rivers that meet in a cell, the largest goes on; of equal ones the first.
   void find_main_donors() {
-    main_donor_.assign(receiver_.size(), kNoCell);
-    for (Index i = 0; i < grid_.size(); ++i) {
-      if (!is_drawn(i)) continue;
-      Index& main = main_donor_[receiver_[i]];
+    main_donor_ = SparseValues<Index>(rank_.set(), kNoCell);
+    rank_.set()->visit([&](Index i) {
+      if (!is_drawn(i) || !is_river(receiver_[i])) return;
+      Index& main = main_donor_.of(receiver_[i]);
       if (main == kNoCell || flow_[i] > flow_[main]) main = i;
-    }
+    });
   }
 
   void follow(Index cell, std::vector<GridLine>& lines) const {
@@ -184,7 +188,7 @@ class Tracer {
         row += by.rows;
       }
       add(to);
-      if (main_donor_[to] != cell) {
+      if (!is_river(to) || main_donor_.of(to) != cell) {
         line->joins = !over_pole && is_drawn(to);
         return;
       }
@@ -279,8 +283,10 @@ class Tracer {
   const MapFrame& frame_;
   const Grid& grid_;
   std::span<const std::int32_t> receiver_;
-  std::vector<float> flow_, rank_;
-  std::vector<Index> main_donor_;
+  std::vector<float> area_flow_;
+  std::span<const float> flow_;
+  SparseValues<float> rank_;
+  SparseValues<Index> main_donor_;
   double pixel_m_, source_m2_ = 0.0;
   std::optional<MapPage::Projector> projector_;
   float least_rank_ = 0.0F;

@@ -60,9 +60,10 @@ int leading_dimensions(hid_t dataset) {
   return dimensions - 2;
 }
 
-template <class T>
-void write_chunks(hid_t dataset, const std::vector<T>& values, int ny, int nx, ChunkShape chunk,
-                  int level, int slice) {
+/// `copy(row, column, count, to)` gives values of a part of a row.
+template <class T, class Copy>
+void write_chunks(hid_t dataset, const Copy& copy, int ny, int nx, ChunkShape chunk, int level,
+                  int slice) {
   const std::size_t cells = chunk.rows * chunk.columns, bytes = cells * sizeof(T);
   std::vector<T> raw(cells);
   std::vector<unsigned char> shuffled(bytes);
@@ -77,8 +78,7 @@ void write_chunks(hid_t dataset, const std::vector<T>& values, int ny, int nx, C
       // Beyond the edge of the raster a chunk holds zeros that nobody reads.
       if (rows < chunk.rows || columns < chunk.columns) std::fill(raw.begin(), raw.end(), T{});
       for (std::size_t j = 0; j < rows; ++j) {
-        std::copy_n(values.data() + (row + j) * nx + column, columns,
-                    raw.data() + j * chunk.columns);
+        copy(row + j, column, columns, raw.data() + j * chunk.columns);
       }
       shuffle<sizeof(T)>(reinterpret_cast<const unsigned char*>(raw.data()), cells,
                          shuffled.data());
@@ -115,9 +115,23 @@ void ChunkWriter::write(std::string_view variable, const Values& values, int ny,
                         ChunkShape chunk, int slice) const {
   const Dataset dataset(implementation_->file, variable);
   const int level = implementation_->level;
-  std::visit(
-      [&](const auto& array) { write_chunks(dataset.id(), array, ny, nx, chunk, level, slice); },
-      values);
+  const auto write_array = [&]<class T>(const std::vector<T>& array) {
+    const auto copy = [&](std::size_t row, std::size_t column, std::size_t count, T* to) {
+      std::copy_n(array.data() + row * nx + column, count, to);
+    };
+    write_chunks<T>(dataset.id(), copy, ny, nx, chunk, level, slice);
+  };
+  std::visit(write_array, values);
+}
+
+void ChunkWriter::write_rows(std::string_view variable, std::span<const double> value_of_row,
+                             int nx, ChunkShape chunk) const {
+  const Dataset dataset(implementation_->file, variable);
+  const auto copy = [&](std::size_t row, std::size_t /*column*/, std::size_t count, double* to) {
+    std::fill_n(to, count, value_of_row[row]);
+  };
+  write_chunks<double>(dataset.id(), copy, static_cast<int>(value_of_row.size()), nx, chunk,
+                       implementation_->level, 0);
 }
 
 void ChunkWriter::close() { require(H5Fclose(std::exchange(implementation_->file, -1)) >= 0); }

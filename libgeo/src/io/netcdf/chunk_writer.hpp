@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string_view>
 
 #include "geo/core/state.hpp"
@@ -28,6 +29,9 @@ class ChunkWriter {
   /// `slice`: which raster of a variable that has a leading dimension.
   void write(std::string_view variable, const Values& values, int ny, int nx, ChunkShape chunk,
              int slice = 0) const;
+  /// The same of a raster whose rows have one value each.
+  void write_rows(std::string_view variable, std::span<const double> value_of_row, int nx,
+                  ChunkShape chunk) const;
   /// Reports what only closing reveals.
   void close();
 

@@ -259,12 +259,9 @@ void put_figure(const nc::File& file, int mapping, const Ellipsoid& figure) {
   }
 }
 
-std::vector<double> cell_areas(const Grid& grid) {
-  std::vector<double> areas(grid.size());
-  for (int j = 0; j < grid.ny(); ++j) {
-    std::fill_n(areas.begin() + static_cast<std::ptrdiff_t>(j) * grid.nx(), grid.nx(),
-                grid.area_m2(j));
-  }
+std::vector<double> row_areas(const Grid& grid) {
+  std::vector<double> areas(grid.ny());
+  for (int j = 0; j < grid.ny(); ++j) areas[j] = grid.area_m2(j);
   return areas;
 }
 

@@ -16,12 +16,12 @@ struct GridVariables {
 /// Defines dimensions, coordinates with bounds, cell areas, the grid mapping, and the global
 /// attributes from which `read_grid` builds the very same grid again.
 GridVariables define_grid(const nc::File& file, const Grid& grid);
-/// Writes the values of those variables; cell areas are left to `cell_areas`.
+/// Writes the values of those variables; cell areas are left to `row_areas`.
 void write_coordinates(const nc::File& file, const Grid& grid);
 /// Gives a grid mapping the figure of its planet, a sphere or an ellipsoid.
 void put_figure(const nc::File& file, int mapping, const Ellipsoid& figure);
-/// Area of each cell, m2.
-std::vector<double> cell_areas(const Grid& grid);
+/// Area of the cells of each row, m2.
+std::vector<double> row_areas(const Grid& grid);
 
 /// The grid of a stage file. Throws InputError without the path when the description is missing
 /// or makes no sense.

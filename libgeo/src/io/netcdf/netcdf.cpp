@@ -252,7 +252,7 @@ void write_rasters(const std::filesystem::path& path, const Snapshot& snapshot, 
   const Grid& grid = *snapshot.grid;
   const ChunkShape chunk = chunk_shape(grid);
   ChunkWriter file(path, level);
-  file.write(kCellArea, cell_areas(grid), grid.ny(), grid.nx(), chunk);
+  file.write_rows(kCellArea, row_areas(grid), grid.nx(), chunk);
   for (const auto& [spec, values] : snapshot.fields) {
     file.write(spec->name, *values, grid.ny(), grid.nx(), chunk);
     if (written && !snapshot.months) written(*spec);  // months are made from those of the year

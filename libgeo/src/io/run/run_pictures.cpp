@@ -29,10 +29,9 @@
 namespace geo::io {
 namespace {
 
-std::vector<const FieldSpec*> picture_fields() {
-  auto wanted = map_fields();
-  for (const FieldSpec* spec : scorecard_fields()) wanted.push_back(spec);
-  return wanted;
+/// What a picture of the whole run or its scorecard may be made from.
+bool is_pictured(const FieldSpec& spec) {
+  return lists(map_fields(), spec) || lists(scorecard_fields(), spec);
 }
 
 bool holds(const StageRecord& record, std::string_view field) {
@@ -40,11 +39,11 @@ bool holds(const StageRecord& record, std::string_view field) {
                      [&](const FieldRecord& held) { return held.name == field; });
 }
 
-/// The fields of all complete stages of the planet that pictures and scorecard are made from: where
-/// two stages wrote the same, the later one's.
-State final_state(const RunFolder& folder, const Manifest& manifest, const FieldsAtHand& at_hand) {
-  const auto wanted = picture_fields();
-  std::optional<State> state = at_hand.planet();
+/// Of what is `held` of the planet these fields alone, and those that it lacks from the files of
+/// all complete stages: where two stages wrote the same, the later one's.
+State planet_with(std::span<const FieldSpec* const> wanted, const RunFolder& folder,
+                  const Manifest& manifest, std::optional<State> held) {
+  std::optional<State> state = std::move(held);
   const auto is_missing = [&](const FieldSpec& spec) {
     return lists(wanted, spec) && !(state && state->has(spec));
   };
@@ -54,19 +53,14 @@ State final_state(const RunFolder& folder, const Manifest& manifest, const Field
       return is_missing(*spec) && holds(*record, spec->name);
     });
     if (state && !has_missing) continue;
-    const Snapshot snapshot = read_recorded(folder.path(), *record, is_missing);
+    Snapshot snapshot = read_recorded(folder.path(), *record, is_missing);
     if (!state) state.emplace(snapshot.grid);
-    for (const auto& [spec, values] : snapshot.fields) state->share(*spec, values);
+    for (auto& [spec, values] : snapshot.fields) state->share(*spec, std::move(values));
   }
   if (!state) {
     throw InputError(fmt::format("{}: holds no complete stage to draw", folder.path().string()));
   }
   return std::move(*state);
-}
-
-std::optional<Scorecard> scorecard_of(const State& state) {
-  if (state.grid().topology() != Topology::sphere) return {};
-  return score_planet(state);
 }
 
 State island_state(const RunFolder& folder, const StageRecord& record,
@@ -222,10 +216,9 @@ std::vector<std::filesystem::path> write_pages(const RunFolder& folder, Report& 
 }  // namespace
 
 void FieldsAtHand::keep_planet(const State& state, std::span<const FieldSpec* const> fields) {
-  const auto wanted = picture_fields();
   if (!planet_) planet_.emplace(state.shared_grid());
   for (const FieldSpec* spec : fields) {
-    if (lists(wanted, *spec)) planet_->share(*spec, state.values(*spec));
+    if (is_pictured(*spec)) planet_->share(*spec, state.values(*spec));
   }
 }
 
@@ -243,22 +236,21 @@ const State* FieldsAtHand::island(const std::string& name) const {
 }
 
 std::vector<std::filesystem::path> draw_run(const RunFolder& folder, const MapView& asked,
-                                            std::string_view only_island,
-                                            const FieldsAtHand& at_hand) {
+                                            std::string_view only_island, FieldsAtHand at_hand) {
   const Manifest manifest = read_manifest(folder.manifest());
-  const State state = final_state(folder, manifest, at_hand);
   const bool all = only_island.empty();
   const MapView as_it_lies(asked.width_px);
-  const MapView& view = state.grid().is_latitude_longitude() ? asked : as_it_lies;
   const std::string note = note_of(manifest);
-  Report report = report_of(folder, manifest, state.grid());
 
-  // Scorecard and islands take longest, each on one thread, and are begun first.
+  // What a part of the scorecard alone reads leaves memory before what the maps do comes to it.
+  using Part = ScoreInParts::Part;
+  State state =
+      planet_with(ScoreInParts::fields(Part::surface), folder, manifest, at_hand.take_planet());
+  const bool is_scored = state.grid().topology() == Topology::sphere;
+  ScoreInParts score;
+  Report report = report_of(folder, manifest, state.grid());
   std::vector<std::function<void()>> pieces;
-  pieces.emplace_back([&] { report.scorecard = scorecard_of(state); });
-  const auto months = months_of(folder, manifest, state.grid());
-  pieces.emplace_back(
-      [&] { report.globe = globe_markup(state, globe_frames(folder, manifest), months); });
+  if (is_scored) pieces.emplace_back([&] { score.measure(Part::surface, state); });
   const std::vector<const StageRecord*> islands = islands_of(manifest);
   std::vector<std::vector<MapFile>> island_maps(islands.size());
   for (std::size_t k = 0; k < islands.size(); ++k) {
@@ -270,6 +262,20 @@ std::vector<std::filesystem::path> draw_run(const RunFolder& folder, const MapVi
       island_maps[k] = maps.files();
     });
   }
+  do_side_by_side(pieces);
+
+  auto wanted = map_fields();
+  for (const FieldSpec* spec : ScoreInParts::fields(Part::crust)) wanted.push_back(spec);
+  for (const FieldSpec* spec : state.present()) {
+    if (!lists(wanted, *spec)) state.erase(*spec);
+  }
+  state = planet_with(wanted, folder, manifest, std::move(state));
+  pieces.clear();
+  if (is_scored) pieces.emplace_back([&] { score.measure(Part::crust, state); });
+  const MapView& view = state.grid().is_latitude_longitude() ? asked : as_it_lies;
+  const auto months = months_of(folder, manifest, state.grid());
+  pieces.emplace_back(
+      [&] { report.globe = globe_markup(state, globe_frames(folder, manifest), months); });
   MapSet planet = MapSet::of_planet(state, folder.maps(), view, note, event_marks(manifest));
   if (all) {
     planet.prepare();
@@ -287,6 +293,7 @@ std::vector<std::filesystem::path> draw_run(const RunFolder& folder, const MapVi
   }
   do_side_by_side(pieces);
 
+  if (is_scored) report.scorecard = score.card();
   report.maps = planet.files();
   if (year) report.maps.push_back(*year);
   for (const auto& maps : island_maps) {
@@ -299,7 +306,7 @@ std::vector<std::filesystem::path> draw_run(const RunFolder& folder, const MapVi
 std::vector<std::filesystem::path> draw_view(const RunFolder& folder, const MapView& view,
                                              const std::filesystem::path& pictures) {
   const Manifest manifest = read_manifest(folder.manifest());
-  const State state = final_state(folder, manifest, {});
+  const State state = planet_with(map_fields(), folder, manifest, {});
   std::vector<std::filesystem::path> written;
   for (const MapFile& map :
        draw_map_files(state, pictures, view, note_of(manifest), event_marks(manifest))) {

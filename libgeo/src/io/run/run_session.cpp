@@ -14,6 +14,7 @@
 #include "geo/io/run/island_session.hpp"
 #include "geo/io/run/recorded_file.hpp"
 #include "io/netcdf/frame_files.hpp"
+#include "io/run/parked_fields.hpp"
 #include "io/run/run_clearing.hpp"
 #include "io/run/stage_job.hpp"
 #include "io/vtk/globe_files.hpp"
@@ -76,10 +77,13 @@ void RunSession::open_folder() {
   write_text_file(folder_.config(), config_);
 }
 
-void RunSession::write_stage(BackgroundWriter& writer, FrameFiles& frames, int position,
-                             const State& state, const Context& context, double seconds) {
+void RunSession::write_stage(BackgroundWriter& writer, FrameFiles& frames, ParkedFields& parked,
+                             int position, const State& state, const Context& context,
+                             double seconds) {
   auto job = std::make_shared<StageJob>(
       job_of(stage_folder(), position, config_, state, context, seconds));
+  const StageInfo& info = run_.stage(position).info();
+  if (!info.own_grid) parked.add({job, &job->record}, info.writes);
   writer.submit([this, job, &frames] {
     job->write(run_.settings);
     for (const std::string& name : frames.take_written()) job->record.list(folder_.path(), name);
@@ -90,24 +94,29 @@ void RunSession::write_stage(BackgroundWriter& writer, FrameFiles& frames, int p
   });
 }
 
-/// Of the planet, fields that no later stage writes again and that cost no memory while stages
-/// still change elevation, which is when runs are largest: later stages read them too.
+/// Of the planet what stages make once elevation changes no more, after which runs take less
+/// memory; and what is there at the end.
 void RunSession::keep_for_pictures(int position, const State& state) {
   const StageInfo& info = run_.stage(position).info();
-  if (info.own_grid) return at_hand_.keep_island(std::string(info.name), state);
-  std::vector<const FieldSpec*> fields;
-  for (const FieldSpec* spec : info.writes) {
-    bool is_last = true, elevation_changes = false, stays = false;
-    for (int at = position + 1; at <= plan_.last; ++at) {
-      const StageInfo& later = run_.stage(at).info();
-      stays = stays || lists(later.reads, *spec) || lists(later.optional, *spec);
-      if (later.own_grid) continue;
-      is_last = is_last && !lists(later.writes, *spec);
-      if (lists(later.writes, field::elevation)) elevation_changes = true, stays = false;
+  if (info.own_grid) {
+    at_hand_.keep_island(std::string(info.name), state);
+  } else {
+    const auto writes_later = [&](const FieldSpec& spec) {
+      for (int at = position + 1; at <= plan_.last; ++at) {
+        const StageInfo& later = run_.stage(at).info();
+        if (!later.own_grid && lists(later.writes, spec)) return true;
+      }
+      return false;
+    };
+    if (!writes_later(field::elevation)) {
+      std::vector<const FieldSpec*> fields = info.writes;
+      std::erase_if(fields, [&](const FieldSpec* spec) { return writes_later(*spec); });
+      at_hand_.keep_planet(state, fields);
     }
-    if (is_last && (stays || !elevation_changes)) fields.push_back(spec);
   }
-  at_hand_.keep_planet(state, fields);
+  if (position == plan_.last) {
+    at_hand_.keep_planet(*inputs_.state, inputs_.state->present());
+  }
 }
 
 void RunSession::execute(const RunEvents& events) {
@@ -136,6 +145,7 @@ void RunSession::compute(const RunEvents& events) {
   context.stop = events.stop;
 
   FrameFiles frames(folder_.path(), run_.settings);
+  ParkedFields parked(folder_.path(), manifest_.stages, *inputs_.state);
   BackgroundWriter writer;
   int running = plan_.first;
   context.on_frame = [&](Frame frame) {
@@ -155,10 +165,12 @@ void RunSession::compute(const RunEvents& events) {
   observer.after = [&](int position, const State& state, const Context& told) {
     const double seconds = seconds_since(start);
     for (const std::string& warning : told.warnings) tell(events.warning, warning);
-    write_stage(writer, frames, position, state, told, seconds);
+    write_stage(writer, frames, parked, position, state, told, seconds);
     if (run_.settings.maps) keep_for_pictures(position, state);
     tell(events.stage_ends, run_.name_of(position), seconds);
   };
+  observer.can_park = [&](const FieldSpec& spec) { return parked.has(spec); };
+  observer.fetch = [&](const FieldSpec& spec, State& state) { parked.fetch(spec, state); };
   try {
     run_.pipeline.run(*inputs_.state, context, plan_.first, plan_.last, observer);
   } catch (const Interrupted&) {
@@ -198,7 +210,7 @@ void RunSession::write_summaries(const RunEvents& events) {
   if (run_.settings.maps) {
     tell(events.stage_begins, "maps", static_cast<double>(run_.settings.map_width_px));
     const auto start = Clock::now();
-    draw_run(folder_, run_.settings.map_view(), {}, at_hand_);
+    draw_run(folder_, run_.settings.map_view(), {}, std::move(at_hand_));
     tell(events.stage_ends, "maps", seconds_since(start));
   }
   check_stop();

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "geo/core/error.hpp"
+#include "geo/core/stage.hpp"
 #include "geo/io/files/embedded_data.hpp"
 #include "score_figures.hpp"
 
@@ -77,29 +78,55 @@ int Scorecard::count_within() const {
                                         [](const ScoreLine& line) { return line.within(); }));
 }
 
-Scorecard score_planet(const State& state) {
+std::vector<const FieldSpec*> ScoreInParts::fields(Part part) {
+  if (part == Part::crust) {
+    return {&field::elevation,
+            &field::crust_thickness,
+            &field::crust_thickness_change,  // where crust has grown or worn, it is measured so
+            &field::crust_age,
+            &field::continental_fraction,
+            &field::plate_id,
+            &field::plate_velocity_east,
+            &field::plate_velocity_north};
+  }
+  const auto crust = fields(Part::crust);
+  std::vector<const FieldSpec*> others{&field::elevation};
+  for (const Target& target : targets()) {
+    for (const FieldSpec* spec : target.needs) {
+      if (!lists(crust, *spec) && !lists(others, *spec)) others.push_back(spec);
+    }
+  }
+  return others;
+}
+
+void ScoreInParts::measure(Part part, const State& state) {
   if (state.grid().topology() != Topology::sphere) {
     throw InputError("scorecard: the grid covers a part of a planet, must be the whole");
   }
-  Figures figures;
-  for (const auto measure : {measure_relief, measure_crust, measure_plates, measure_climate,
-                             measure_life, measure_rivers}) {
-    measure(state, figures);
+  for (const FieldSpec* spec : fields(part)) {
+    if (state.has(*spec)) present_.insert(spec->name);
   }
+  using Measure = void (*)(const State&, Figures&);
+  const auto measures = part == Part::crust
+                            ? std::vector<Measure>{measure_relief, measure_crust, measure_plates}
+                            : std::vector<Measure>{measure_climate, measure_life, measure_rivers};
+  for (const Measure measure : measures) measure(state, figures_);
+}
 
+Scorecard ScoreInParts::card() const {
   Scorecard card;
   Reasons reasons;
   for (Target& target : targets()) {
     std::vector<std::string_view> absent;
     for (const FieldSpec* spec : target.needs) {
-      if (!state.has(*spec)) absent.push_back(spec->name);
+      if (!present_.contains(spec->name)) absent.push_back(spec->name);
     }
     if (!absent.empty()) {
       reasons.add(fmt::format("no {}", fmt::join(absent, ", ")), target.line.name);
       continue;
     }
-    const auto figure = figures.find(target.line.name);
-    if (figure == figures.end() || !std::isfinite(figure->second)) {
+    const auto figure = figures_.find(target.line.name);
+    if (figure == figures_.end() || !std::isfinite(figure->second)) {
       reasons.add("nothing to measure on this planet", target.line.name);
       continue;
     }
@@ -110,15 +137,19 @@ Scorecard score_planet(const State& state) {
   return card;
 }
 
-std::vector<const FieldSpec*> scorecard_fields() {
-  std::vector<const FieldSpec*> fields;
-  for (const Target& target : targets()) {
-    for (const FieldSpec* spec : target.needs) {
-      if (std::find(fields.begin(), fields.end(), spec) == fields.end()) fields.push_back(spec);
-    }
+Scorecard score_planet(const State& state) {
+  ScoreInParts score;
+  for (const auto part : {ScoreInParts::Part::crust, ScoreInParts::Part::surface}) {
+    score.measure(part, state);
   }
-  fields.push_back(
-      &field::crust_thickness_change);  // where crust has grown or worn, it is measured so
+  return score.card();
+}
+
+std::vector<const FieldSpec*> scorecard_fields() {
+  auto fields = ScoreInParts::fields(ScoreInParts::Part::crust);
+  for (const FieldSpec* spec : ScoreInParts::fields(ScoreInParts::Part::surface)) {
+    if (!lists(fields, *spec)) fields.push_back(spec);
+  }
   return fields;
 }
 

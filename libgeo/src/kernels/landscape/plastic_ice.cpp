@@ -195,7 +195,7 @@ struct RegionFlow {
 };
 RegionFlow flow_of(std::size_t region, const Grid& grid, std::span<const float> bed_m,
                    std::span<const IceGround> ground, const IceSurface& surface,
-                   std::span<const float> balance_m_yr, IceFlux& flux) {
+                   const SparseValues<float>& balance_m_yr, IceFlux& flux) {
   RegionFlow flow;
   const IceOutflow outflow(grid, surface);
   const std::span<const Index> cells = cells_of(surface, region);
@@ -203,7 +203,7 @@ RegionFlow flow_of(std::size_t region, const Grid& grid, std::span<const float> 
     const Index cell = *at;
     const double area_m2 = grid.area_m2(grid.row(cell));
     double& through = flux.through_m3_yr.of(cell);
-    const double own = balance_m_yr[cell] * area_m2;
+    const double own = balance_m_yr.of(cell) * area_m2;
     // Over a bed below the sea snow falls on ice that is there: on a grounded divide, which none
     // flows to, as well.
     const bool is_land = bed_m[cell] >= 0.0F || through > 0.0 ||
@@ -275,11 +275,13 @@ IceSurface plastic_ice_surface(const Grid& grid, double k_m, std::span<const flo
 }
 
 IceFlux ice_flux(const Grid& grid, std::span<const float> bed_m, std::span<const IceGround> ground,
-                 const IceSurface& surface, std::span<const float> balance_m_yr) {
+                 const IceSurface& surface, const SparseValues<float>& balance_m_yr) {
   check_shape(grid, bed_m.size(), "the bed");
   check_shape(grid, ground.size(), "the ground");
-  check_shape(grid, balance_m_yr.size(), "the balance");
   check_shape(grid, surface.height_m.cells(), "the surface");
+  if (balance_m_yr.set() != surface.height_m.set()) {
+    throw InputError("ice: the balance is not of the cells of the surface");
+  }
   IceFlux flux;
   flux.through_m3_yr = SparseValues<double>(surface.height_m.set());
   flux.share = SparseValues<float>(surface.height_m.set());

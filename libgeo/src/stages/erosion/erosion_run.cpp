@@ -124,7 +124,8 @@ void ErosionRun::wear() {
            [&](std::int64_t step) {
              context_.advance(static_cast<double>(step + 1) / static_cast<double>(p_.steps + 1));
            },
-       .done = {.area = [&] { release(drainage_.area_m2), release(drainage_.flooded); },
+       .done = {.area = [&] { release(drainage_.area_m2); },
+                .flooded = [&] { release(drainage_.flooded); },
                 .graph = [&] { drainage_.graph = {}; }}},
       landscape_);
   landscape_.dry_filled_seas();
@@ -166,7 +167,7 @@ IceWork ErosionRun::ice_of(std::int64_t step) {
   const double years_yr = ice_->years_of_step(before_today_yr);
   if (years_yr <= 0.0) return {};
   return [this, years_yr](std::span<float> bed_m, std::span<const float> before_m) {
-    std::vector<double> let_out_m3 = ice_->work(*climate_, years_yr, bed_m);
+    auto let_out_m3 = ice_->work(*climate_, years_yr, bed_m);
 #pragma omp parallel for schedule(static)
     for (std::size_t c = 0; c < bed_m.size(); ++c) scoured_m_[c] += before_m[c] - bed_m[c];
     return let_out_m3;

@@ -37,18 +37,17 @@ double IceAge::years_of_step(double before_today_yr) const {
   return std::clamp(p_.glacial_time_yr - before_today_yr, 0.0, p_.time_step_yr);
 }
 
-std::vector<double> IceAge::work(const LandClimate& climate, double years_yr,
-                                 std::span<float> elevation_m) {
+std::vector<SparseValues<double>> IceAge::work(const LandClimate& climate, double years_yr,
+                                               std::span<float> elevation_m) {
   constexpr int kGrowing = 3, kMelting = 2;
   const double cycle_yr = p_.glacial_time_yr / static_cast<double>(p_.glacial_cycles);
   const int cycles = std::max(1, static_cast<int>(std::lround(years_yr / cycle_yr)));
-  std::vector<double> let_out_m3(elevation_m.size(), 0.0);
+  std::vector<SparseValues<double>> let_out_m3;
   const auto live = [&](const Age& age, double share) {
     if (share <= 0.0) return;
     settle(climate, age, elevation_m);
-    const SparseValues<double> let_out = erode_under_ice(
-        grid_, erosion_, share * years_yr / cycles, surface_, flux_, ground_, sunk_m_, elevation_m);
-    let_out.set()->visit([&](Index c) { let_out_m3[c] += let_out.of(c); });
+    let_out_m3.push_back(erode_under_ice(grid_, erosion_, share * years_yr / cycles, surface_,
+                                         flux_, ground_, sunk_m_, elevation_m));
     weigh(elevation_m);
     melt_away();
   };
@@ -142,12 +141,12 @@ void IceAge::settle(const LandClimate& climate, const Age& age,
   sort_ground(climate, age, elevation_m);
   const Cold cold = cold_cells(climate);
   const IceReach reach = ice_reach(grid_, next_);
-  std::vector<float> balance_m_yr(elevation_m.size());
   for (int round = 0; round < age.rounds; ++round) {
     surface_ = {};
     flux_ = {};
     ground_ = next_;
     surface_ = plastic_ice_surface(grid_, k_m_, bed_m_, ground_, reach);
+    SparseValues<float> balance_m_yr(surface_.height_m.set());
     balance(cold, age, elevation_m, balance_m_yr);
     flux_ = ice_flux(grid_, bed_m_, ground_, surface_, balance_m_yr);
     for (const Index c : cold.cells) {
@@ -240,7 +239,7 @@ IceAge::Cold IceAge::cold_cells(const LandClimate& climate) const {
 }
 
 void IceAge::balance(const Cold& cold, const Age& age, std::span<const float> elevation_m,
-                     std::span<float> balance_m_yr) const {
+                     SparseValues<float>& balance_m_yr) const {
   std::vector<double> cooling_of_row(grid_.ny());
   for (int j = 0; j < grid_.ny(); ++j) cooling_of_row[j] = cooling_k(age, j);
 #pragma omp parallel for schedule(static)
@@ -252,7 +251,7 @@ void IceAge::balance(const Cold& cold, const Age& age, std::span<const float> el
     const double higher_m = cold.knows_ice ? 0.0 : std::max(0.0, surface - ground);
     const double colder_k = cooling + kLapse_K_m * higher_m;
     const double rain = cold.precipitation_mm_yr[n] * std::exp(-kDrier_1_K * colder_k);
-    balance_m_yr[c] = static_cast<float>(
+    balance_m_yr.of(c) = static_cast<float>(
         snow_balance_m_yr(snow_, mean_c, cold.range_k[n], rain, cold.summer_rain[n]));
   }
 }

@@ -25,8 +25,8 @@ class IceAge {
   /// How much of a step that ends `before_today_yr` ago belongs to the ice, yr.
   [[nodiscard]] double years_of_step(double before_today_yr) const;
   /// Lets the ice of `years_yr` work on a surface; see IceWork.
-  [[nodiscard]] std::vector<double> work(const LandClimate& climate, double years_yr,
-                                         std::span<float> elevation_m);
+  [[nodiscard]] std::vector<SparseValues<double>> work(const LandClimate& climate, double years_yr,
+                                                       std::span<float> elevation_m);
   /// Lets the ice grow or shrink for some rounds in a climate, or in one that is `warmer_k` warmer.
   void follow(const LandClimate& climate, double warmer_k, int rounds,
               std::span<const float> elevation_m);
@@ -62,7 +62,7 @@ class IceAge {
   void sort_ground(const LandClimate& climate, const Age& age, std::span<const float> elevation_m);
   [[nodiscard]] Cold cold_cells(const LandClimate& climate) const;
   void balance(const Cold& cold, const Age& age, std::span<const float> elevation_m,
-               std::span<float> balance_m_yr) const;
+               SparseValues<float>& balance_m_yr) const;
   void lay(const LandClimate& climate);
   void measure(std::span<const float> elevation_m);
   void melt_away();

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 
+#include "geo/core/release.hpp"
 #include "geo/kernels/water/breaching.hpp"
 #include "geo/kernels/water/depressions.hpp"
 #include "geo/kernels/water/flow_graph.hpp"
@@ -165,7 +167,8 @@ class HydrologyStage final : public Stage {
                   io.read_optional(field::ice_thickness), z);
     context.advance(0.5);
 
-    const Drainage d = drain(grid, z, outlets, water, loss);
+    Drainage d = drain(grid, z, outlets, water, loss);
+    release(loss);
     context.advance(0.7);
     accumulate_discharge(d, water);
     report(context, land, inflow, d.lakes, runoff_to_sea(d.graph, outlets, water));
@@ -175,14 +178,13 @@ class HydrologyStage final : public Stage {
               io.write(field::lake_id));
     const auto discharge = io.write(field::discharge);
     write_discharge(d, sea, water, lake_depth, discharge);
+    release(water);
+    d.hierarchy = {};
     context.advance(0.8);
 
+    write_network(grid, std::move(d.graph), sea, inflow_area, io);
     const auto slope = io.write(field::slope);
     steepest_slope(grid, z, sea, slope);
-    const auto receiver = io.write(field::flow_receiver);
-    std::copy(d.graph.receiver.begin(), d.graph.receiver.end(), receiver.begin());
-    flow_directions(grid, receiver, io.write(field::flow_direction));
-    write_network(grid, d.graph, sea, inflow_area, io);
     write_rivers(grid, sea, discharge, slope, io);
     context.advance(1.0);
   }
@@ -269,7 +271,7 @@ class HydrologyStage final : public Stage {
     return hidden;
   }
 
-  void write_network(const Grid& grid, const FlowGraph& graph, const Bytes& sea,
+  void write_network(const Grid& grid, FlowGraph graph, const Bytes& sea,
                      std::span<const double> inflow_area, StageIo& io) const {
     const auto area = io.write(field::drainage_area);
     drain_area(grid, graph, inflow_area, area);
@@ -279,8 +281,10 @@ class HydrologyStage final : public Stage {
       channel[c] = sea[c] == 0 && area[c] > p_.channel_area_km2 * 1e6 ? 1 : 0;
     }
     strahler_order(graph, channel, io.write(field::stream_order));
-    const auto basins = number_basins(grid, graph, sea);
-    std::copy(basins.begin(), basins.end(), io.write(field::basin_id).begin());
+    io.write(field::basin_id, number_basins(grid, graph, sea));
+    graph.order = {};
+    flow_directions(grid, graph.receiver, io.write(field::flow_direction));
+    io.write(field::flow_receiver, std::move(graph.receiver));
   }
 
   static void report(Context& context, const LandWater& land, double inflow_m3_s,

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "geo/core/state.hpp"
@@ -24,7 +25,8 @@ class FieldsAtHand {
   /// The same of an island's.
   void keep_island(const std::string& name, const State& state);
 
-  [[nodiscard]] const std::optional<State>& planet() const { return planet_; }
+  /// What is kept of the planet, to be let go by who has it.
+  [[nodiscard]] std::optional<State> take_planet() { return std::exchange(planet_, {}); }
   /// Null when nothing is kept of that island.
   [[nodiscard]] const State* island(const std::string& name) const;
 
@@ -41,7 +43,7 @@ class FieldsAtHand {
 /// the folder holds no such run.
 std::vector<std::filesystem::path> draw_run(const RunFolder& folder, const MapView& view,
                                             std::string_view only_island = {},
-                                            const FieldsAtHand& at_hand = {});
+                                            FieldsAtHand at_hand = {});
 
 /// Draws the maps of a run's planet alone in some view, beside those of the run; no report.
 std::vector<std::filesystem::path> draw_view(const RunFolder& folder, const MapView& view,

@@ -19,6 +19,7 @@
 namespace geo::io {
 
 class FrameFiles;
+class ParkedFields;
 
 /// One run of a pipeline into a folder: configuration, DEM, stages, files.
 ///
@@ -54,8 +55,8 @@ class RunSession {
   [[nodiscard]] StageFolder stage_folder() const { return {folder_, run_, numbers_}; }
   void open_folder();
   void compute(const RunEvents& events);
-  void write_stage(BackgroundWriter& writer, FrameFiles& frames, int position, const State& state,
-                   const Context& context, double seconds);
+  void write_stage(BackgroundWriter& writer, FrameFiles& frames, ParkedFields& parked, int position,
+                   const State& state, const Context& context, double seconds);
   void keep_for_pictures(int position, const State& state);
   void write_summaries(const RunEvents& events);
   void write_collections();

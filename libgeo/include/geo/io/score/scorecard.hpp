@@ -1,6 +1,9 @@
 #pragma once
 
+#include <map>
+#include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "geo/core/state.hpp"
@@ -30,9 +33,27 @@ struct Scorecard {
   [[nodiscard]] int count_within() const;
 };
 
-/// Measures all figures that the fields of a whole planet allow. Those that depend on resolution
-/// are taken at that of Earth's data: elevation at 0.2 degrees, crust at 1 degree, or at the
-/// planet's own where it is coarser. Throws InputError when the grid is not the whole planet.
+/// A scorecard that is measured in parts, so that not all fields need be in memory at a time. Those
+/// figures that depend on resolution are taken at that of Earth's data: elevation at 0.2 degrees,
+/// crust at 1 degree, or at the planet's own where it is coarser.
+class ScoreInParts {
+ public:
+  enum class Part { crust, surface };
+  /// The fields that a part looks at.
+  [[nodiscard]] static std::vector<const FieldSpec*> fields(Part part);
+
+  /// Measures all figures of a part that the fields of a whole planet allow. Throws InputError when
+  /// the grid is not the whole planet.
+  void measure(Part part, const State& state);
+  /// Of the parts measured so far.
+  [[nodiscard]] Scorecard card() const;
+
+ private:
+  std::map<std::string, double> figures_;
+  std::set<std::string_view> present_;  ///< fields that were there
+};
+
+/// All parts of a planet in memory. Throws as `ScoreInParts::measure`.
 Scorecard score_planet(const State& state);
 
 /// The fields that `score_planet` looks at.

@@ -129,10 +129,11 @@ class IceOutflow {
 /// below the sea, where it already stands above the water; cells that are `away` melt what reaches
 /// them, or let it calve where their bed lies below the sea.
 ///
-/// `balance_m_yr`: m of ice a year, one per cell, read where the ground is not away. Cost: linear.
-/// Regions are shared out to threads; the same bits always.
+/// `balance_m_yr`: m of ice a year on the cells that the surface has, read where the ground is not
+/// away; InputError where it is of others. Cost: linear. Regions are shared out to threads; the
+/// same bits always.
 [[nodiscard]] IceFlux ice_flux(const Grid& grid, std::span<const float> bed_m,
                                std::span<const IceGround> ground, const IceSurface& surface,
-                               std::span<const float> balance_m_yr);
+                               const SparseValues<float>& balance_m_yr);
 
 }  // namespace geo

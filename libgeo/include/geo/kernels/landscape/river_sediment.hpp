@@ -3,10 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "geo/core/array_sizes.hpp"
+#include "geo/core/cell_set.hpp"
 #include "geo/core/grid.hpp"
 #include "geo/core/numeric.hpp"
 #include "geo/kernels/landscape/stream_power.hpp"
@@ -58,7 +62,8 @@ std::vector<std::uint8_t> flooded_cells(const FlowGraph& graph, std::span<const 
 /// `law.sea_level_m`. A cell below its receiver is not cut; it keeps what settles on it.
 ///
 /// What is taken equals what is laid and what arrives at roots, to the rounding of Z
-/// (sediment_outflow). `area_m2`, `erodibility`: as for `incise`. `flooded`: one byte per cell, or
+/// (sediment_outflow). `area_m2`, `erodibility`: as for `incise`; `area_done` is called once the
+/// areas are read no more, so that who holds them may let them go. `flooded`: one byte per cell, or
 /// empty. `elevation_m` in and out. Derivatives (core/numeric.hpp) are those of the step along
 /// these receivers. Cost: linear; in double, threaded over the parts of the order, the same bits
 /// for any number of threads. Throws Bug where sizes differ.
@@ -66,7 +71,7 @@ template <class K, class Z>
 void incise_and_deposit(const Grid& grid, const FlowGraph& graph, std::span<const double> area_m2,
                         std::span<const K> erodibility, const BasicStreamPower<Arithmetic<Z>>& law,
                         const Arithmetic<Z>& deposition, std::span<const std::uint8_t> flooded,
-                        std::span<Z> elevation_m);
+                        std::span<Z> elevation_m, const std::function<void()>& area_done = {});
 
 /// Rock and sediment that leave each cell along its receiver while elevation changes from
 /// `before_m` to `after_m`, m3: its own loss and that of all cells upstream. At a root: what
@@ -110,13 +115,9 @@ class SedimentSweeps {
         sea_level_m_(sea_level_m),
         flooded_(flooded),
         z_(elevation_m),
-        source_m2_(elevation_m.size()),
+        source_m2_(source_area(grid, graph)),
         lowering_m_(elevation_m.size()),
         follows_(elevation_m.size()) {
-    for (int j = 0; j < grid.ny(); ++j) {
-      std::fill_n(source_m2_.begin() + grid.cell(0, j), grid.nx(), grid.area_m2(j));
-    }
-    graph.accumulate(source_m2_);
     if (!flooded.empty()) find_lake_levels();
   }
 
@@ -139,23 +140,37 @@ class SedimentSweeps {
   }
 
  private:
+  /// As exact as the surface.
+  using Area = std::conditional_t<std::is_same_v<Z, float>, float, double>;
+
+  /// A* of every cell.
+  static std::vector<Area> source_area(const Grid& grid, const FlowGraph& graph) {
+    std::vector<double> area_m2(static_cast<std::size_t>(grid.size()));
+    for (int j = 0; j < grid.ny(); ++j) {
+      std::fill_n(area_m2.begin() + grid.cell(0, j), grid.nx(), grid.area_m2(j));
+    }
+    graph.accumulate(area_m2);
+    return {area_m2.begin(), area_m2.end()};
+  }
+
   [[nodiscard]] bool is_flooded(Index cell) const {
     return !flooded_.empty() && flooded_[cell] != 0;
   }
   /// Whether a cell's level as a base is part of the solution.
   [[nodiscard]] bool moves(Index cell) const { return is_river(cell); }
   [[nodiscard]] Number base(Index to) const {
-    if (is_flooded(to)) return Number(lake_level_m_[to]);
+    if (is_flooded(to)) return Number(lake_level_m_.of(to));
     if (graph_.receiver[to] == to) return greater(Number(z_[to]), Number(sea_level_m_));
     return Number(z_[to]);
   }
   void find_lake_levels() {
-    lake_level_m_.resize(z_.size());
+    lake_level_m_ = SparseValues<Z>(std::make_shared<const CellSet>(
+        grid_.size(), [&](Index cell) { return flooded_[cell] != 0; }));
     walk_upstream(graph_, [&](Index cell) {
+      if (!is_flooded(cell)) return;
       const Index to = graph_.receiver[cell];
-      lake_level_m_[cell] = is_flooded(cell) && to != cell
-                                ? Z(greater(Number(z_[cell]), Number(lake_level_m_[to])))
-                                : z_[cell];
+      const Z sill_m = is_flooded(to) ? lake_level_m_.of(to) : z_[to];
+      lake_level_m_.of(cell) = to == cell ? z_[cell] : Z(greater(Number(z_[cell]), Number(sill_m)));
     });
   }
 
@@ -171,14 +186,14 @@ class SedimentSweeps {
       const double area_m2 = grid_.area_m2(grid_.row(cell));
       const Number brought = lowering_m_[cell], more = follows_[cell];
       if (is_flooded(cell)) {
-        const Number room = area_m2 * (Number(lake_level_m_[cell]) - Number(z_[cell]));
+        const Number room = area_m2 * (Number(lake_level_m_.of(cell)) - Number(z_[cell]));
         const Number laid = lesser(greater(brought, Number(0.0)), room);
         lowering_m_[cell] = -laid / area_m2;
         follows_[cell] = Number(0.0);
         lowering_m_[to] += brought - laid;
         return;
       }
-      const Number settles = deposition_ / source_m2_[cell];
+      const Number settles = deposition_ / static_cast<double>(source_m2_[cell]);
       const Number f = factor(cell);
       const Number total = 1.0 + f + settles * (area_m2 + more);
       const Number e = (f * (Number(z_[cell]) - base(to)) - settles * brought) / total;
@@ -213,8 +228,8 @@ class SedimentSweeps {
   double sea_level_m_;
   std::span<const std::uint8_t> flooded_;
   std::span<const Z> z_;
-  std::vector<Z> lake_level_m_;
-  std::vector<double> source_m2_;
+  SparseValues<Z> lake_level_m_;
+  std::vector<Area> source_m2_;
   std::vector<Number> lowering_m_, follows_;
 };
 
@@ -265,7 +280,7 @@ template <class K, class Z>
 void incise_and_deposit(const Grid& grid, const FlowGraph& graph, std::span<const double> area_m2,
                         std::span<const K> erodibility, const BasicStreamPower<Arithmetic<Z>>& law,
                         const Arithmetic<Z>& deposition, std::span<const std::uint8_t> flooded,
-                        std::span<Z> elevation_m) {
+                        std::span<Z> elevation_m, const std::function<void()>& area_done) {
   check_sizes("incise_and_deposit", grid.size(),
               {{"receiver", graph.receiver.size()},
                {"order", graph.order.size()},
@@ -275,12 +290,16 @@ void incise_and_deposit(const Grid& grid, const FlowGraph& graph, std::span<cons
                {"elevation_m", elevation_m.size()}});
   using Number = Arithmetic<Z>;
   const auto factor = detail::incision_factors(grid, graph, area_m2, erodibility, law);
+  const bool is_linear =
+      value_of(law.slope_exponent) == 1.0 && !carries_derivative(law.slope_exponent);
+  if (is_linear && area_done) area_done();
   detail::SedimentSweeps<Z> sweeps(grid, graph, deposition, law.sea_level_m, flooded, elevation_m);
-  if (value_of(law.slope_exponent) == 1.0 && !carries_derivative(law.slope_exponent)) {
+  if (is_linear) {
     sweeps.solve([&](Index cell) { return Number(factor[cell]); });
   } else {
     detail::iterate_slopes<K, Z>(grid, graph, area_m2, erodibility, law, factor, elevation_m,
                                  sweeps);
+    if (area_done) area_done();
   }
 #pragma omp parallel for schedule(static)
   for (Index cell = 0; cell < grid.size(); ++cell) {

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "geo/core/cell_set.hpp"
 #include "geo/core/numeric.hpp"
 #include "geo/core/release.hpp"
 #include "geo/kernels/landscape/deltas.hpp"
@@ -56,15 +57,16 @@ struct LandscapeRecords {
 };
 
 /// Ice that changes elevation, m, from what it was `before_m`, which stays: returns the rock that
-/// it lets out to the water of each cell, m3.
-using IceWork = std::function<std::vector<double>(std::span<float> elevation_m,
-                                                  std::span<const float> before_m)>;
+/// it lets out to the water of cells, m3, in parts that add up.
+using IceWork = std::function<std::vector<SparseValues<double>>(std::span<float> elevation_m,
+                                                                std::span<const float> before_m)>;
 
 /// Called within a step that water is routed after, as soon as the step reads no more of that part
-/// of its drainage: who holds it may let it go. Both may be empty.
+/// of its drainage: who holds it may let it go. All may be empty.
 struct DrainageDone {
-  std::function<void()> area{};   ///< drained area, and what is flooded
-  std::function<void()> graph{};  ///< receivers and their order
+  std::function<void()> area{};     ///< drained area
+  std::function<void()> flooded{};  ///< what is flooded
+  std::function<void()> graph{};    ///< receivers and their order
 };
 
 /// One run of the landscape: rivers, hillslopes and rebound work on a surface, step by step, along
@@ -312,11 +314,12 @@ void Landscape<V>::step(const Drainage& drainage, bool builds_deltas, const IceW
   const std::span<const double> area_m2(drainage.area_m2);
   if (deposits()) {
     incise_and_deposit<V, V>(grid_, drainage.graph, area_m2, erodibility_, law(),
-                             active_(p_.deposition), drainage.flooded, z_);
+                             active_(p_.deposition), drainage.flooded, z_, done.area);
   } else {
     incise(grid_, drainage.graph, area_m2, erodibility_, law(), z_);
+    if (done.area) done.area();
   }
-  if (done.area) done.area();
+  if (done.flooded) done.flooded();
   creep();
   hold_outlets();
   widen_valleys<V>(grid_, before_, outlets_, z_);

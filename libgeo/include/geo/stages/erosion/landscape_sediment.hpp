@@ -33,7 +33,7 @@ void Landscape<V>::let_ice_work(const FlowGraph& graph, const IceWork& ice,
                                 const std::function<void()>& graph_done) {
   if (deposits()) record_layers();
   std::vector<V> before_rivers = std::exchange(before_, {z_.begin(), z_.end()});
-  std::vector<double> let_out_m3 = ice(z_, before_);
+  std::vector<SparseValues<double>> let_out = ice(z_, before_);
   rock_.eroded -= volume_since_before();
 #pragma omp parallel for schedule(static)
   for (Index cell = 0; cell < grid_.size(); ++cell) {
@@ -41,6 +41,11 @@ void Landscape<V>::let_ice_work(const FlowGraph& graph, const IceWork& ice,
     records_.crust_change_m[cell] += Number(z_[cell]) - Number(before_[cell]);
   }
   if (deposits()) {
+    std::vector<double> let_out_m3(static_cast<std::size_t>(grid_.size()), 0.0);
+    for (SparseValues<double>& part : let_out) {
+      part.set()->visit([&](Index cell) { let_out_m3[cell] += part.of(cell); });
+      part = {};
+    }
     graph.accumulate(let_out_m3);
     std::vector<double> volume_m3 = outflow(graph, before_rivers, before_);
 #pragma omp parallel for schedule(static)
