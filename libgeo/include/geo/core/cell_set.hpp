@@ -81,6 +81,9 @@ class SparseValues {
   /// The value of a cell of the set.
   [[nodiscard]] T& of(Index cell) noexcept { return values_[set_->place(cell)]; }
   [[nodiscard]] const T& of(Index cell) const noexcept { return values_[set_->place(cell)]; }
+  /// The same by the cell's place in the set.
+  [[nodiscard]] T& at(std::size_t place) noexcept { return values_[place]; }
+  [[nodiscard]] const T& at(std::size_t place) const noexcept { return values_[place]; }
   /// Those of all cells.
   [[nodiscard]] std::vector<T> on_cells() const {
     std::vector<T> all(static_cast<std::size_t>(cells()), elsewhere_);

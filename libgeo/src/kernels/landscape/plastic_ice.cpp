@@ -48,18 +48,29 @@ double rise_between(double bed, double a, double dx, double c, double dy, double
 
 /// Cells that are not away, and those beside them.
 CellSet cells_within_reach(const Grid& grid, std::span<const IceGround> ground) {
+  const auto is_reached = [&](Index cell) { return ground[cell] != IceGround::away ? 1 : 0; };
   std::vector<std::uint8_t> within(ground.size(), 0);
+  const auto offsets = grid.offsets();
 #pragma omp parallel for schedule(static)
   for (int j = 0; j < grid.ny(); ++j) {
-    for (int i = 0; i < grid.nx(); ++i) {
-      const Index cell = grid.cell(i, j);
-      bool is_within = ground[cell] != IceGround::away;
-      for (int k = 0; k < kDirections && !is_within; ++k) {
+    const Index row = grid.cell(0, j);
+    const auto look_round = [&](int i) {
+      int any = is_reached(row + i);
+      for (int k = 0; k < kDirections; ++k) {
         const Index beside = grid.neighbour(i, j, k);
-        is_within = beside != kNoCell && ground[beside] != IceGround::away;
+        if (beside != kNoCell) any |= is_reached(beside);
       }
-      within[cell] = is_within ? 1 : 0;
+      within[row + i] = static_cast<std::uint8_t>(any);
+    };
+    const bool is_inner = j > 0 && j < grid.ny() - 1;
+    const int first = is_inner ? 1 : grid.nx(), last = is_inner ? grid.nx() - 1 : grid.nx();
+    for (int i = 0; i < first; ++i) look_round(i);
+    for (int i = first; i < last; ++i) {
+      int any = is_reached(row + i);
+      for (const Index offset : offsets) any |= is_reached(row + i + offset);
+      within[row + i] = static_cast<std::uint8_t>(any);
     }
+    for (int i = last; i < grid.nx(); ++i) look_round(i);
   }
   return {grid.size(), [&](Index c) { return within[c] != 0; }};
 }
@@ -109,11 +120,17 @@ class March {
   void march(std::size_t region, bool is_endless) {
     MonotoneQueue front;
     std::size_t next = surface_.region_begins[region];
+    const auto is_margin = [&](Index cell) {
+      return ground_[cell] == IceGround::away || (is_endless && settled_.of(cell) != 0);
+    };
     for (const Index cell : cells_of(surface_, region)) {
-      if (settled_.of(cell) != 0) continue;
+      if (is_endless && settled_.of(cell) != 0) continue;
+      const int i = grid_.column(cell), j = grid_.row(cell);
+      const bool is_interior = grid_.is_interior(i, j);
       for (int k = 0; k < kDirections; ++k) {
-        const Index margin = grid_.neighbour(cell, k);
-        if (margin != kNoCell && settled_.of(margin) != 0) reach(cell, margin, k, front);
+        const Index margin = beside(cell, i, j, k, is_interior);
+        if (margin == kNoCell || !is_margin(margin)) continue;
+        reach(cell, reach_->place(cell), margin, surface_.height_m.of(margin), k, front);
       }
     }
     if (is_endless) {
@@ -124,38 +141,42 @@ class March {
     }
     while (!front.empty()) {
       const auto [height, cell] = front.pop();
-      if (settled_.of(cell) != 0 || height > surface_.height_m.of(cell)) continue;
-      settled_.of(cell) = 1;
+      const std::size_t place = reach_->place(cell);
+      if (settled_.at(place) != 0 || height > surface_.height_m.at(place)) continue;
+      settled_.at(place) = 1;
       surface_.order[next++] = cell;
-      reach_neighbours(cell, front);
+      reach_neighbours(cell, surface_.height_m.at(place), front);
     }
   }
-  void reach_neighbours(Index from, MonotoneQueue& front) {
+  void reach_neighbours(Index from, float height_m, MonotoneQueue& front) {
     const int i = grid_.column(from), j = grid_.row(from);
     const bool is_interior = grid_.is_interior(i, j);
     for (int k = 0; k < kDirections; ++k) {
       const Index cell = beside(from, i, j, k, is_interior);
-      if (cell == kNoCell || settled_.of(cell) != 0) continue;
+      if (cell == kNoCell || ground_[cell] == IceGround::away) continue;
+      const std::size_t place = reach_->place(cell);
+      if (settled_.at(place) != 0) continue;
       const int back =
           is_interior ? (k + kDirections / 2) % kDirections : grid_.back_direction(j, k);
-      reach(cell, from, back, front);
+      reach(cell, place, from, height_m, back, front);
     }
   }
   [[nodiscard]] Index beside(Index cell, int i, int j, int k, bool is_interior) const {
     return is_interior ? cell + offsets_[k] : grid_.neighbour(i, j, k);
   }
-  /// From a settled neighbour, which lies in direction k of `cell`.
-  void reach(Index cell, Index from, int k, MonotoneQueue& front) {
-    const float height =
-        std::max(static_cast<float>(rise(cell, from, k)), surface_.height_m.of(from));
-    float& now = surface_.height_m.of(cell);
+  /// Of a cell and its place in the reach, from a settled neighbour `from_m` high, which lies in
+  /// direction k of it.
+  void reach(Index cell, std::size_t place, Index from, float from_m, int k, MonotoneQueue& front) {
+    float& now = surface_.height_m.at(place);
+    if (from_m >= now) return;
+    const float height = std::max(static_cast<float>(rise(cell, from_m, k)), from_m);
     if (height >= now) return;
     now = height;
-    surface_.lowest.of(cell) = from;
+    surface_.lowest.at(place) = from;
     front.push(height, cell);
   }
-  [[nodiscard]] double rise(Index cell, Index from, int back) const {
-    const double bed = bed_m_[cell], below = surface_.height_m.of(from);
+  [[nodiscard]] double rise(Index cell, double below, int back) const {
+    const double bed = bed_m_[cell];
     if (ground_[cell] == IceGround::bare) return std::max(bed, below);
     const int i = grid_.column(cell), j = grid_.row(cell);
     const bool is_interior = grid_.is_interior(i, j);
@@ -167,8 +188,10 @@ class March {
       double best = kUnreached, apart = 1.0;
       for (const int side : {first, second}) {
         const Index to = beside(cell, i, j, side, is_interior);
-        if (to == kNoCell || settled_.of(to) == 0) continue;
-        const float height = surface_.height_m.of(to);
+        if (to == kNoCell) continue;
+        const std::size_t place = reach_->place(to);
+        if (settled_.at(place) == 0) continue;
+        const float height = surface_.height_m.at(place);
         if (height < best) best = height, apart = distance[side];
       }
       return std::pair{best, apart};
@@ -238,6 +261,7 @@ IceReach ice_reach(const Grid& grid, std::span<const IceGround> ground) {
   IceReach reach;
   reach.cells = std::make_shared<const CellSet>(cells_within_reach(grid, ground));
   SparseValues<std::uint8_t> seen(reach.cells);
+  const auto offsets = grid.offsets();
   const auto add = [&](Index cell) {
     if (ground[cell] == IceGround::away || seen.of(cell) != 0) return;
     seen.of(cell) = 1;
@@ -249,8 +273,10 @@ IceReach ice_reach(const Grid& grid, std::span<const IceGround> ground) {
     if (at < reach.members.size()) reach.region_begins.push_back(at);
     for (; at < reach.members.size(); ++at) {
       const Index cell = reach.members[at];
+      const int i = grid.column(cell), j = grid.row(cell);
+      const bool is_interior = grid.is_interior(i, j);
       for (int k = 0; k < kDirections; ++k) {
-        const Index beside = grid.neighbour(cell, k);
+        const Index beside = is_interior ? cell + offsets[k] : grid.neighbour(i, j, k);
         if (beside != kNoCell) add(beside);
       }
     }

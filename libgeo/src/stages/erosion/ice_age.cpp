@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -67,13 +68,12 @@ void IceAge::follow(const LandClimate& climate, double warmer_k, int rounds,
 
 void IceAge::settle_today(const LandClimate& climate, std::span<const float> elevation_m) {
   constexpr int kRounds = 3, kTurns = 2;
-  const Age today{0.0, 0.0, kRounds};
   lay(climate);
-  settle(climate, today, elevation_m);
-  // The ground sinks under the ice, and the ice changes with the ground.
+  settle(climate, {0.0, 0.0, kRounds}, elevation_m);
+  // The ground sinks under the ice, and the ice changes a little with the ground.
   for (int turn = 0; turn < kTurns; ++turn) {
     weigh(elevation_m);
-    settle(climate, today, elevation_m);
+    settle(climate, {0.0, 0.0, 1}, elevation_m);
   }
   measure(elevation_m);
 #pragma omp parallel for schedule(static)
@@ -139,14 +139,14 @@ void IceAge::settle(const LandClimate& climate, const Age& age,
 #pragma omp parallel for schedule(static)
   for (std::size_t c = 0; c < bed_m_.size(); ++c) bed_m_[c] = elevation_m[c] - sunk_m_[c];
   sort_ground(climate, age, elevation_m);
-  const Cold cold = cold_cells(climate);
+  Cold cold = cold_cells(climate);
   const IceReach reach = ice_reach(grid_, next_);
+  SparseValues<float> balance_m_yr(reach.cells);
   for (int round = 0; round < age.rounds; ++round) {
     surface_ = {};
     flux_ = {};
     ground_ = next_;
     surface_ = plastic_ice_surface(grid_, k_m_, bed_m_, ground_, reach);
-    SparseValues<float> balance_m_yr(surface_.height_m.set());
     balance(cold, age, elevation_m, balance_m_yr);
     flux_ = ice_flux(grid_, bed_m_, ground_, surface_, balance_m_yr);
     for (const Index c : cold.cells) {
@@ -235,18 +235,22 @@ IceAge::Cold IceAge::cold_cells(const LandClimate& climate) const {
   cold.precipitation_mm_yr = gather(climate.precipitation_mm_yr);
   cold.summer_rain = gather(climate.summer_rain);
   cold.knows_ice = !climate.ice_m.empty();
+  cold.balanced_at_m.assign(cold.cells.size(), std::numeric_limits<float>::quiet_NaN());
   return cold;
 }
 
-void IceAge::balance(const Cold& cold, const Age& age, std::span<const float> elevation_m,
+void IceAge::balance(Cold& cold, const Age& age, std::span<const float> elevation_m,
                      SparseValues<float>& balance_m_yr) const {
   std::vector<double> cooling_of_row(grid_.ny());
   for (int j = 0; j < grid_.ny(); ++j) cooling_of_row[j] = cooling_k(age, j);
 #pragma omp parallel for schedule(static)
   for (std::size_t n = 0; n < cold.cells.size(); ++n) {
     const Index c = cold.cells[n];
+    const double surface = surface_.height_m.of(c);
+    if (surface == cold.balanced_at_m[n]) continue;
+    cold.balanced_at_m[n] = surface_.height_m.of(c);
     const double cooling = cooling_of_row[grid_.row(c)];
-    const double ground = std::max(0.0F, elevation_m[c]), surface = surface_.height_m.of(c);
+    const double ground = std::max(0.0F, elevation_m[c]);
     const double mean_c = cold.sea_level_temperature_c[n] - cooling - kLapse_K_m * surface;
     const double higher_m = cold.knows_ice ? 0.0 : std::max(0.0, surface - ground);
     const double colder_k = cooling + kLapse_K_m * higher_m;

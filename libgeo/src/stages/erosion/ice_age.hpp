@@ -56,12 +56,13 @@ class IceAge {
   struct Cold {
     std::vector<Index> cells;  ///< ascending
     std::vector<float> sea_level_temperature_c, range_k, precipitation_mm_yr, summer_rain;
+    std::vector<float> balanced_at_m;  ///< surface that the balance was taken at; NaN: none yet
     bool knows_ice = false;  ///< whether they are of the surface of the ice, not of the ground
   };
   void settle(const LandClimate& climate, const Age& age, std::span<const float> elevation_m);
   void sort_ground(const LandClimate& climate, const Age& age, std::span<const float> elevation_m);
   [[nodiscard]] Cold cold_cells(const LandClimate& climate) const;
-  void balance(const Cold& cold, const Age& age, std::span<const float> elevation_m,
+  void balance(Cold& cold, const Age& age, std::span<const float> elevation_m,
                SparseValues<float>& balance_m_yr) const;
   void lay(const LandClimate& climate);
   void measure(std::span<const float> elevation_m);
