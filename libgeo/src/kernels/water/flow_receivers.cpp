@@ -1,6 +1,7 @@
 // D8 receivers and the drainage of flats.
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <vector>
 
 #include "geo/core/array_sizes.hpp"
@@ -85,10 +86,7 @@ class FlatDrainage {
       : grid_(grid), z_(z), outlets_(outlets), receiver_(receiver) {}
 
   void run() {
-    std::vector<Index> flats;
-    for (Index cell = 0; cell < grid_.size(); ++cell) {
-      if (is_bottom(cell) && has_equal_neighbour(cell)) flats.push_back(cell);
-    }
+    const std::vector<Index> flats = find_flats();
     if (flats.empty()) return;
     // Flats with a way out: start from the neighbours of equal height that have one.
     for (const Index cell : flats) {
@@ -107,6 +105,29 @@ class FlatDrainage {
   }
 
  private:
+  /// In ascending order: rows are counted first, so that each knows where its own begin.
+  [[nodiscard]] std::vector<Index> find_flats() const {
+    std::vector<Index> begins(static_cast<std::size_t>(grid_.ny()) + 1, 0);
+#pragma omp parallel for schedule(static)
+    for (int j = 0; j < grid_.ny(); ++j) {
+      visit_flats(j, [&](Index) { ++begins[j + 1]; });
+    }
+    std::partial_sum(begins.begin(), begins.end(), begins.begin());
+    std::vector<Index> flats(static_cast<std::size_t>(begins.back()));
+#pragma omp parallel for schedule(static)
+    for (int j = 0; j < grid_.ny(); ++j) {
+      if (begins[j] == begins[j + 1]) continue;
+      Index at = begins[j];
+      visit_flats(j, [&](Index cell) { flats[at++] = cell; });
+    }
+    return flats;
+  }
+  template <class Visit>
+  void visit_flats(int j, Visit&& visit) const {
+    for (Index cell = grid_.cell(0, j); cell < grid_.cell(0, j) + grid_.nx(); ++cell) {
+      if (is_bottom(cell) && has_equal_neighbour(cell)) visit(cell);
+    }
+  }
   [[nodiscard]] bool is_bottom(Index cell) const {
     return receiver_[cell] == cell && outlets_[cell] == 0;
   }

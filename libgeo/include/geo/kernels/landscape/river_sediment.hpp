@@ -146,11 +146,21 @@ class SedimentSweeps {
   /// A* of every cell.
   static std::vector<Area> source_area(const Grid& grid, const FlowGraph& graph) {
     std::vector<double> area_m2(static_cast<std::size_t>(grid.size()));
+#pragma omp parallel for schedule(static)
     for (int j = 0; j < grid.ny(); ++j) {
       std::fill_n(area_m2.begin() + grid.cell(0, j), grid.nx(), grid.area_m2(j));
     }
     graph.accumulate(area_m2);
-    return {area_m2.begin(), area_m2.end()};
+    if constexpr (std::is_same_v<Area, double>) {
+      return area_m2;
+    } else {
+      std::vector<Area> rounded(area_m2.size());
+#pragma omp parallel for schedule(static)
+      for (Index cell = 0; cell < grid.size(); ++cell) {
+        rounded[cell] = static_cast<Area>(area_m2[cell]);
+      }
+      return rounded;
+    }
   }
 
   [[nodiscard]] bool is_flooded(Index cell) const {
