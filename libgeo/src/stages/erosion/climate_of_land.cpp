@@ -78,7 +78,7 @@ LandClimate climate_of_land(const Grid& grid, std::span<const float> elevation_m
   std::vector<float> height_m(static_cast<std::size_t>(coarse->size()));
   const Raster fine = raster_of(grid), raster = raster_of(*coarse);
   resample_raster(fine, elevation_m, raster, height_m, grid.figure());
-  LandClimate climate = climate_of_surface(coarse, height_m, {}, kAirOfAges, context);
+  LandClimate climate = climate_of_surface(coarse, height_m, {}, {}, context);
   climate.between = std::make_shared<const RowResampling>(raster, fine, grid.figure());
   return climate;
 }

@@ -24,10 +24,6 @@ struct AirOfTime {
   double colder_k = 0.0;  ///< by how much the planet is colder, but for what snow and ice add
 };
 
-/// That of the ages that rivers work in: the relief between two of their climates changes more than
-/// air on a grid half as coarse again.
-inline constexpr AirOfTime kAirOfAges{.coarser = 1.5};
-
 /// The climate of a surface as it is now: the stage `climate`, with the settings that it has in
 /// this run. Currents of the sea are left out. Events do not act on it: they are sudden, this is
 /// the mean of an age. `ice_m` (one value per cell; empty: bare ground) lies on the surface.
@@ -35,12 +31,12 @@ inline constexpr AirOfTime kAirOfAges{.coarser = 1.5};
                                              std::span<const float> surface_m,
                                              std::span<const float> ice_m, const AirOfTime& air,
                                              Context& context);
-/// The same of bare ground on the climate's grid in the air of ages, interpolated; temperatures
-/// follow heights by `kLapse_K_m` from there.
+/// The same of bare ground on the climate's grid, interpolated; temperatures follow heights by
+/// `kLapse_K_m` from there.
 [[nodiscard]] LandClimate climate_of_land(const Grid& grid, std::span<const float> elevation_m,
                                           Context& context);
 /// What that takes, as in StageCost, with the climate's settings in `configuration`.
 [[nodiscard]] double climate_of_land_seconds(std::span<const Parameter> configuration,
-                                             const AirOfTime& air = kAirOfAges);
+                                             const AirOfTime& air = {});
 
 }  // namespace geo
