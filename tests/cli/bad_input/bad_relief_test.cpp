@@ -78,6 +78,13 @@ const BadInput kReliefs[] = {
        return quick_run(folder / "relief.nc", folder / "out",
                         {"--set", "fields.erodibility=" + (folder / "k.nc").string()});
      }},
+    {"FieldThatAStageMakes",
+     kConfiguration,
+     {"fields.erodibility = ", "stage isostasy of this run makes erodibility itself"},
+     [](const fs::path& folder) {
+       return Words{"run", "--grid",      "64x32", "--set", "fields.erodibility=k.nc",
+                    "-o",  folder / "out"};
+     }},
     {"Folder",
      kIo,
      {"Is a directory"},

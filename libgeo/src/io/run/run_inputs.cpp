@@ -211,7 +211,9 @@ class Reader {
   void read_given_fields() {
     State& state = *inputs_.state;
     const auto read = [&](const Field<float>& spec, const std::string& given) {
-      if (given.empty() || state.has(spec) || !is_still_read(run_.pipeline, plan_, spec)) return;
+      if (given.empty()) return;
+      refuse_field_of_stage(spec, given);
+      if (state.has(spec) || !is_still_read(run_.pipeline, plan_, spec)) return;
       FieldSpec read_as = spec;
       if (&spec == &field::ranking) read_as.units = "";  // an order has no unit
       state.set(spec,
@@ -220,6 +222,18 @@ class Reader {
     read(field::erodibility, settings_.erodibility);
     read(field::uplift_rate, settings_.uplift_rate);
     read(field::ranking, settings_.ranking);
+  }
+
+  /// A field that a stage makes before another reads it has no use for given values.
+  void refuse_field_of_stage(const FieldSpec& spec, const std::string& given) const {
+    for (int at = plan_.begin; at <= plan_.last; ++at) {
+      const StageInfo& info = run_.stage(at).info();
+      if (lists(info.reads, spec) || lists(info.optional, spec)) return;
+      if (info.own_grid || !lists(info.writes, spec)) continue;
+      throw ConfigurationError(
+          fmt::format("fields.{} = {}: stage {} of this run makes {} itself: must be empty",
+                      spec.name, given, info.name, spec.name));
+    }
   }
 
   /// A run that leaves the first stage out has no use for what it begins with.
