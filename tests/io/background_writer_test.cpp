@@ -1,10 +1,12 @@
 #include "geo/io/files/background_writer.hpp"
 
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include <atomic>
 #include <future>
 #include <memory>
+#include <thread>
 #include <vector>
 
 #include "geo/core/error.hpp"
@@ -81,6 +83,23 @@ TEST(BackgroundWriter, LetsGoOfAJobsDataWhenItIsDone) {
   writer.submit([data] {});
   writer.wait();
   EXPECT_EQ(data.use_count(), 1);
+}
+
+TEST(BackgroundWriter, TakesAllThreadsOnlyWhileItIsWaitedFor) {
+  omp_set_num_threads(3);
+  EXPECT_EQ(BackgroundWriter::threads_to_take(), 3);
+  BackgroundWriter writer;
+  std::promise<int> alone;
+  std::atomic<int> waited_for = 0;
+  writer.submit([&] {
+    alone.set_value(BackgroundWriter::threads_to_take());
+    while (BackgroundWriter::threads_to_take() == 1) std::this_thread::yield();
+    waited_for = BackgroundWriter::threads_to_take();
+  });
+  EXPECT_EQ(alone.get_future().get(), 1);
+  writer.wait();
+  EXPECT_EQ(waited_for, 3);
+  omp_set_num_threads(omp_get_num_procs());
 }
 
 }  // namespace

@@ -1,8 +1,10 @@
 #include "geo/io/netcdf/stage_file.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <netcdf.h>
+#include <omp.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 
@@ -240,6 +242,18 @@ TEST(StageFile, SameContentGivesTheSameBytes) {
   }
   EXPECT_TRUE(text_of(folder / "a.nc") == text_of(folder / "b.nc"));
   EXPECT_TRUE(text_of(folder / "a.vti") == text_of(folder / "b.vti"));
+}
+
+TEST(StageFile, HasTheSameBytesWhateverThreadsPackIt) {
+  const TemporaryFolder folder;
+  for (const int threads : {1, 3, 40}) {
+    omp_set_num_threads(threads);
+    write_netcdf(folder / fmt::format("{}.nc", threads), sample_snapshot(Grid::sphere(1400, 700)),
+                 sample_provenance());
+  }
+  omp_set_num_threads(omp_get_num_procs());
+  EXPECT_TRUE(text_of(folder / "1.nc") == text_of(folder / "3.nc"));
+  EXPECT_TRUE(text_of(folder / "1.nc") == text_of(folder / "40.nc"));
 }
 
 /// What a read of every variable leaves in memory that held `before`.

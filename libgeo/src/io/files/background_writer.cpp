@@ -17,9 +17,12 @@ void block_signals() {
   pthread_sigmask(SIG_BLOCK, &all, nullptr);
 }
 
+thread_local const BackgroundWriter* writer_of_this_thread = nullptr;
+
 }  // namespace
 
-BackgroundWriter::BackgroundWriter() : thread_([this] { work(); }) {}
+BackgroundWriter::BackgroundWriter()
+    : threads_(omp_get_max_threads()), thread_([this] { work(); }) {}
 
 BackgroundWriter::~BackgroundWriter() { stop(); }
 
@@ -34,8 +37,16 @@ void BackgroundWriter::submit(std::function<void()> job) {
 
 void BackgroundWriter::wait_until_left(std::size_t most) {
   std::unique_lock lock(mutex_);
+  waiting_.fetch_add(1, std::memory_order_relaxed);
   changed_.wait(lock, [&] { return jobs_.size() + (busy_ ? 1 : 0) <= most; });
+  waiting_.fetch_sub(1, std::memory_order_relaxed);
   rethrow();
+}
+
+int BackgroundWriter::threads_to_take() {
+  const BackgroundWriter* const writer = writer_of_this_thread;
+  if (writer == nullptr) return omp_in_parallel() != 0 ? 1 : omp_get_max_threads();
+  return writer->waiting_.load(std::memory_order_relaxed) > 0 ? writer->threads_ : 1;
 }
 
 void BackgroundWriter::stop() {
@@ -54,6 +65,7 @@ void BackgroundWriter::rethrow() {
 
 void BackgroundWriter::work() {
   block_signals();
+  writer_of_this_thread = this;
   // OpenMP would give this thread a team of its own beside that of the stage that computes.
   omp_set_num_threads(1);
   std::unique_lock lock(mutex_);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstddef>
 #include <deque>
@@ -30,6 +31,10 @@ class BackgroundWriter {
   /// Finishes the job that runs now and drops the rest. No job may be submitted afterwards.
   void stop();
 
+  /// How many threads the work of the calling thread may take. On a writer's: one while others
+  /// compute, all of the program's while they wait for it; elsewhere as many as OpenMP would give.
+  [[nodiscard]] static int threads_to_take();
+
  private:
   void work();
   void rethrow();
@@ -40,6 +45,8 @@ class BackgroundWriter {
   std::exception_ptr error_;
   bool busy_ = false;
   bool stopping_ = false;
+  std::atomic<int> waiting_ = 0;  ///< threads that wait for jobs
+  int threads_;                   ///< of the program
   std::thread thread_;
 };
 
