@@ -124,7 +124,7 @@ class ClimateStage final : public Stage {
   [[nodiscard]] const StageInfo& info() const override { return info_; }
   [[nodiscard]] std::vector<Parameter> parameters() override { return p_.declarations(); }
   [[nodiscard]] StageCost cost(std::span<const Parameter> /*configuration*/) const override {
-    return {.per_cell_ns = 300.0, .fixed_s = air_seconds(p_), .cell_bytes = 118.0};
+    return {.per_cell_ns = 300.0, .fixed_s = air_seconds(p_), .cell_bytes = 112.0};
   }
 
   void run(StageIo& io, Context& context) const override {

@@ -26,7 +26,7 @@ class ErosionStage final : public Stage {
   }
   [[nodiscard]] std::vector<Parameter> parameters() override { return parameters_.declarations(); }
   [[nodiscard]] StageCost cost(std::span<const Parameter> configuration) const override {
-    constexpr double kStep_ns = 259.0, kIce_ns = 2000.0;  // cold and warm times, and today
+    constexpr double kStep_ns = 259.0, kIce_ns = 1600.0;  // cold and warm times, and today
     constexpr double kAir_bytes = 50e6;
     const auto steps = static_cast<double>(parameters_.steps);
     const bool follows_rain = parameters_.discharge == "rain" && parameters_.steps > 0;
@@ -36,7 +36,7 @@ class ErosionStage final : public Stage {
     const double ice_s = ice_ns > 0.0 ? icy_climate_seconds(configuration) : 0.0;
     return {.per_cell_ns = kStep_ns * steps + ice_ns,
             .fixed_s = climates * climate_of_land_seconds(configuration) + ice_s,
-            .cell_bytes = 137.0,
+            .cell_bytes = 113.0,
             .fixed_bytes = kAir_bytes};
   }
 
