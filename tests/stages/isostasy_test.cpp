@@ -64,6 +64,24 @@ IsostasyParameters blueprint() {
   return p;
 }
 
+TEST(Isostasy, WhatFloatsIsLighterThanTheMantle) {
+  for (double ColumnDensities::*heavy :
+       {&ColumnDensities::continental_crust, &ColumnDensities::oceanic_crust,
+        &ColumnDensities::water}) {
+    IsostasyParameters parameters;
+    parameters.density.*heavy = parameters.density.mantle;
+    EXPECT_THROW(planet(64, 1, parameters), ConfigurationError);
+  }
+}
+
+TEST(Isostasy, CrustThatNoPlatesMadeIsRefused) {
+  for (const char* crust : {"simulated", "given"}) {
+    IsostasyParameters parameters;
+    parameters.crust = crust;
+    EXPECT_THROW(planet(64, 1, parameters), ConfigurationError);
+  }
+}
+
 TEST(Isostasy, SeaCoversItsShareOfTheArea) {
   for (const auto& parameters : {IsostasyParameters{}, blueprint()}) {
     for (const double ocean : {0.3, 0.71, 0.9}) {

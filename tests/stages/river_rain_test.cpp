@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geo/core/error.hpp"
 #include "geo/kernels/numerics/area_sum.hpp"
 #include "geo/kernels/water/flow_graph.hpp"
 #include "geo/kernels/water/water_balance.hpp"
@@ -118,6 +119,14 @@ TEST(RiverRain, OpenLakesLoseWhatTheAirTakes) {
 State erode_planet(const std::string& discharge, Budget& budget) {
   return erode_three_continents(100.0F, {{"erosion.discharge", discharge}, {"erosion.steps", "3"}},
                                 budget);
+}
+
+TEST(RiverRain, FlowThatNoSlopeLeadsIsRefused) {
+  Budget budget;
+  EXPECT_THROW(
+      erode_three_continents(
+          100.0F, {{"erosion.flow_routing", "mfd"}, {"erosion.flow_exponent", "0"}}, budget),
+      ConfigurationError);
 }
 
 TEST(RiverRain, WearsWetLandFasterThanDryAndLeavesDrainageAreaWhatItIs) {

@@ -104,7 +104,7 @@ void Pipeline::run(State& state, Context& context, int first, int last,
   std::set<const FieldSpec*> parked;
   for (int at = first; at <= last; ++at) {
     const StageInfo& info = stages_[at]->info();
-    // Whether a field stays in memory once the stage has done with it.
+    // Whether a field stays in memory once the stage has done with it; else it is parked, or gone.
     const auto stays = [&](const FieldSpec& spec) {
       const int reader = next_reader(spec, at, last);
       if (reader == kNever) return false;

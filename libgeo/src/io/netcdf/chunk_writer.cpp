@@ -124,7 +124,8 @@ void write_chunks(hid_t dataset, const Copy& copy, int ny, int nx, ChunkShape ch
     const auto threads = static_cast<std::size_t>(BackgroundWriter::threads_to_take());
     const std::size_t some = std::min({threads, count - first, kMost});
     while (packers.size() < some) packers.emplace_back(chunk, level);
-#pragma omp parallel for schedule(static) num_threads(static_cast <int>(some)) if (some > 1)
+    const auto team = static_cast<int>(some);
+#pragma omp parallel for schedule(static) num_threads(team) if (team > 1)
     for (std::size_t k = 0; k < some; ++k) {
       packers[k].pack(copy, (first + k) / across * chunk.rows, (first + k) % across * chunk.columns,
                       ny, nx);

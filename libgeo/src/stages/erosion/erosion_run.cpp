@@ -1,11 +1,14 @@
 #include "erosion_run.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
 
 #include "climate_of_land.hpp"
 #include "finish_surface.hpp"
+#include "geo/core/error.hpp"
 #include "geo/core/release.hpp"
 #include "geo/stages/erosion/finishing.hpp"
 #include "geo/stages/erosion/ground.hpp"
@@ -57,6 +60,16 @@ std::vector<float> erodibility_of(const ErosionParameters& p, const StageIo& io,
   return erodibility;
 }
 
+/// Refuses what does not go together before a step is taken.
+const ErosionParameters& checked(const ErosionParameters& p) {
+  if (p.flow_routing == "mfd" && !(p.flow_exponent > 0.0)) {
+    throw ConfigurationError(fmt::format(
+        "erosion.flow_exponent = {:g}: must be positive where erosion.flow_routing = \"mfd\"",
+        p.flow_exponent));
+  }
+  return p;
+}
+
 std::span<float> unscoured(const ErosionParameters& p, StageIo& io) {
   if (!p.freezes()) return {};
   const std::span<float> scoured = io.write(field::glacial_erosion);
@@ -72,7 +85,7 @@ bool is_turn_of_climate(const ErosionParameters& p, std::int64_t step) {
 }  // namespace
 
 ErosionRun::ErosionRun(const ErosionParameters& parameters, StageIo& io, Context& context)
-    : p_(parameters),
+    : p_(checked(parameters)),
       io_(io),
       context_(context),
       grid_(io.grid()),

@@ -1,7 +1,11 @@
 #include "geo/stages/isostasy/isostasy.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <string_view>
+#include <utility>
 
 #include "blueprint_crust.hpp"
 #include "geo/core/error.hpp"
@@ -23,13 +27,28 @@ bool keeps_made_crust(const IsostasyParameters& p) {
   return p.crust == "simulated" || p.crust == "given";
 }
 
+/// What floats on the mantle is lighter than it.
+void check_densities(const ColumnDensities& density) {
+  const std::pair<std::string_view, double> floating[] = {
+      {"continental", density.continental_crust},
+      {"oceanic", density.oceanic_crust},
+      {"water", density.water}};
+  for (const auto& [what, kg_m3] : floating) {
+    if (kg_m3 < density.mantle) continue;
+    throw ConfigurationError(
+        fmt::format("isostasy.{}_density_kg_m3 = {:g}: must be less than "
+                    "isostasy.mantle_density_kg_m3 = {:g}",
+                    what, kg_m3, density.mantle));
+  }
+}
+
 std::span<const float> made_by_plates(const IsostasyParameters& p, const StageIo& io) {
   const auto elevation_m = io.read_optional(field::crust_elevation);
   const auto thickness_m = io.read_optional(field::crust_thickness);
   if (elevation_m.empty() || thickness_m.empty()) {
-    throw InputError("isostasy: crust = \"" + p.crust +
-                     "\" needs crust_elevation and crust_thickness, which plates.model = "
-                     "\"sphere\", \"raster\" and \"hypsography\" write");
+    throw ConfigurationError("isostasy.crust = \"" + p.crust +
+                             "\" needs crust_elevation and crust_thickness, which plates.model = "
+                             "\"sphere\", \"raster\" and \"hypsography\" write");
   }
   return elevation_m;
 }
@@ -187,6 +206,7 @@ class IsostasyStage final : public Stage {
     if (io.grid().topology() == Topology::plane) {
       throw InputError("isostasy: the grid must be a whole sphere or a torus");
     }
+    check_densities(parameters_.density);
     const Crust<float> crust = open_crust(parameters_, io, context);
     if (on_torus) return settle_torus(crust, context);
     const CoarseGrid coarse(crust.grid);
