@@ -84,6 +84,34 @@ TEST(Pipeline, AStageReleasesNothingThatItWritesOrDoesNotDeclare) {
   EXPECT_TRUE(state.has(field::crust_age));
 }
 
+/// A stage that needs an age, whatever it reads.
+class ParticularStage final : public Stage {
+ public:
+  [[nodiscard]] const StageInfo& info() const override { return info_; }
+  [[nodiscard]] std::vector<Parameter> parameters() override { return {}; }
+  void check(const std::function<bool(const FieldSpec&)>& has) const override {
+    if (!has(field::crust_age)) throw ConfigurationError("no age");
+  }
+  void run(StageIo& /*io*/, Context& /*context*/) const override { FAIL() << "has run"; }
+
+ private:
+  StageInfo info_{.name = "particular"};
+};
+
+TEST(Pipeline, AsksStagesBeforeACellIsComputed) {
+  bool has_run = false;
+  const auto first_writes = [&](const FieldSpec& spec) {
+    return pipeline_of(
+        stage({.name = "first", .writes = {&spec}}, [&](StageIo&, Context&) { has_run = true; }),
+        std::make_unique<ParticularStage>());
+  };
+  first_writes(field::crust_age).check({}, 0, 1);
+  State state = empty_state();
+  Context context;
+  EXPECT_THROW(first_writes(field::elevation).run(state, context, 0, 1, {}), ConfigurationError);
+  EXPECT_FALSE(has_run);
+}
+
 TEST(Pipeline, ParksAFieldThatTheNextStageDoesNotRead) {
   // The fourth stage reads an age that the second releases, and warmth that no other reads.
   std::vector<std::string> there_before_third, fetched;

@@ -64,13 +64,18 @@ IsostasyParameters blueprint() {
   return p;
 }
 
+void check(const IsostasyParameters& parameters, bool plates_have_made_crust) {
+  make_isostasy_stage(parameters)->check([&](const FieldSpec&) { return plates_have_made_crust; });
+}
+
 TEST(Isostasy, WhatFloatsIsLighterThanTheMantle) {
+  check({}, false);
   for (double ColumnDensities::*heavy :
        {&ColumnDensities::continental_crust, &ColumnDensities::oceanic_crust,
         &ColumnDensities::water}) {
     IsostasyParameters parameters;
     parameters.density.*heavy = parameters.density.mantle;
-    EXPECT_THROW(planet(64, 1, parameters), ConfigurationError);
+    EXPECT_THROW(check(parameters, true), ConfigurationError);
   }
 }
 
@@ -78,6 +83,8 @@ TEST(Isostasy, CrustThatNoPlatesMadeIsRefused) {
   for (const char* crust : {"simulated", "given"}) {
     IsostasyParameters parameters;
     parameters.crust = crust;
+    check(parameters, true);
+    EXPECT_THROW(check(parameters, false), ConfigurationError);
     EXPECT_THROW(planet(64, 1, parameters), ConfigurationError);
   }
 }

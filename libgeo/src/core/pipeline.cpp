@@ -83,6 +83,7 @@ void Pipeline::check(std::span<const FieldSpec* const> initial, int first, int l
                       writers.empty() ? "no stage writes, so that it must be given"
                                       : "stage " + writers + " writes"));
     }
+    stages_[at]->check([&](const FieldSpec& spec) { return there.contains(spec.name); });
     if (info.own_grid) continue;
     for (const FieldSpec* written : info.writes) there.insert(written->name);
   }

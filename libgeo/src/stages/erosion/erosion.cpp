@@ -40,6 +40,10 @@ class ErosionStage final : public Stage {
             .fixed_bytes = kAir_bytes};
   }
 
+  void check(const std::function<bool(const FieldSpec&)>& /*has*/) const override {
+    static_cast<void>(checked(parameters_));
+  }
+
   void run(StageIo& io, Context& context) const override {
     ErosionRun run(parameters_, io, context);
     run.wear();

@@ -60,16 +60,6 @@ std::vector<float> erodibility_of(const ErosionParameters& p, const StageIo& io,
   return erodibility;
 }
 
-/// Refuses what does not go together before a step is taken.
-const ErosionParameters& checked(const ErosionParameters& p) {
-  if (p.flow_routing == "mfd" && !(p.flow_exponent > 0.0)) {
-    throw ConfigurationError(fmt::format(
-        "erosion.flow_exponent = {:g}: must be positive where erosion.flow_routing = \"mfd\"",
-        p.flow_exponent));
-  }
-  return p;
-}
-
 std::span<float> unscoured(const ErosionParameters& p, StageIo& io) {
   if (!p.freezes()) return {};
   const std::span<float> scoured = io.write(field::glacial_erosion);
@@ -83,6 +73,15 @@ bool is_turn_of_climate(const ErosionParameters& p, std::int64_t step) {
 }
 
 }  // namespace
+
+const ErosionParameters& checked(const ErosionParameters& p) {
+  if (p.flow_routing == "mfd" && !(p.flow_exponent > 0.0)) {
+    throw ConfigurationError(fmt::format(
+        "erosion.flow_exponent = {:g}: must be positive where erosion.flow_routing = \"mfd\"",
+        p.flow_exponent));
+  }
+  return p;
+}
 
 ErosionRun::ErosionRun(const ErosionParameters& parameters, StageIo& io, Context& context)
     : p_(checked(parameters)),

@@ -14,6 +14,9 @@
 
 namespace geo {
 
+/// The parameters of a run. Throws ConfigurationError where they do not go together.
+const ErosionParameters& checked(const ErosionParameters& p);
+
 /// One run of the erosion stage: a planet's landscape, and the water, the climate, the ice and the
 /// events that work on it. `wear`, then `finish`, then `write`.
 class ErosionRun {

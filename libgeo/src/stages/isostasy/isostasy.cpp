@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string_view>
 #include <utility>
 
@@ -42,14 +43,16 @@ void check_densities(const ColumnDensities& density) {
   }
 }
 
+[[noreturn]] void refuse_crust(const IsostasyParameters& p) {
+  throw ConfigurationError("isostasy.crust = \"" + p.crust +
+                           "\" needs crust_elevation and crust_thickness, which plates.model = "
+                           "\"sphere\", \"raster\" and \"hypsography\" write");
+}
+
 std::span<const float> made_by_plates(const IsostasyParameters& p, const StageIo& io) {
   const auto elevation_m = io.read_optional(field::crust_elevation);
   const auto thickness_m = io.read_optional(field::crust_thickness);
-  if (elevation_m.empty() || thickness_m.empty()) {
-    throw ConfigurationError("isostasy.crust = \"" + p.crust +
-                             "\" needs crust_elevation and crust_thickness, which plates.model = "
-                             "\"sphere\", \"raster\" and \"hypsography\" write");
-  }
+  if (elevation_m.empty() || thickness_m.empty()) refuse_crust(p);
   return elevation_m;
 }
 
@@ -201,12 +204,17 @@ class IsostasyStage final : public Stage {
     return {.per_cell_ns = 1950.0, .cell_bytes = 117.0};
   }
 
+  void check(const std::function<bool(const FieldSpec&)>& has) const override {
+    check_densities(parameters_.density);
+    const bool has_crust = has(field::crust_elevation) && has(field::crust_thickness);
+    if (keeps_made_crust(parameters_) && !has_crust) refuse_crust(parameters_);
+  }
+
   void run(StageIo& io, Context& context) const override {
     const bool on_torus = io.grid().topology() == Topology::torus;
     if (io.grid().topology() == Topology::plane) {
       throw InputError("isostasy: the grid must be a whole sphere or a torus");
     }
-    check_densities(parameters_.density);
     const Crust<float> crust = open_crust(parameters_, io, context);
     if (on_torus) return settle_torus(crust, context);
     const CoarseGrid coarse(crust.grid);

@@ -55,11 +55,14 @@ class PlatesStage final : public Stage {
                 model == "sphere" ? kSample_bytes * static_cast<double>(parameters_.samples) : 0.0};
   }
 
-  void run(StageIo& io, Context& context) const override {
+  void check(const std::function<bool(const FieldSpec&)>& /*has*/) const override {
     if (parameters_.landscape == "full" && parameters_.model != "sphere") {
       throw ConfigurationError(
           "plates.landscape = \"full\" is of plates that drift: plates.model must be \"sphere\"");
     }
+  }
+
+  void run(StageIo& io, Context& context) const override {
     if (parameters_.model == "sphere") return drift(parameters_, info(), io, context);
     if (!context.plates.empty() || context.initial_elevation) {
       context.warnings.push_back(
