@@ -39,8 +39,8 @@ bool holds(const StageRecord& record, std::string_view field) {
                      [&](const FieldRecord& held) { return held.name == field; });
 }
 
-/// Of what is `held` of the planet these fields alone, and those that it lacks from the files of
-/// all complete stages: where two stages wrote the same, the later one's.
+/// What is `held` of the planet, and from the files of all complete stages those of the wanted
+/// fields that it lacks: where two stages wrote the same, the later one's.
 State planet_with(std::span<const FieldSpec* const> wanted, const RunFolder& folder,
                   const Manifest& manifest, std::optional<State> held) {
   std::optional<State> state = std::move(held);
