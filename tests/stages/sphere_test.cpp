@@ -422,8 +422,8 @@ TEST(DriftedPlates, AreMissedWhereSimulatedCrustIsAskedFor) {
   IsostasyParameters parameters;
   parameters.crust = "simulated";
   const auto stage = make_isostasy_stage(parameters);
-  StageIo io(state, stage->info());
-  EXPECT_THROW(stage->run(io, context), InputError);
+  EXPECT_THROW(stage->check([&](const FieldSpec& spec) { return state.has(spec); }),
+               ConfigurationError);
 }
 
 TEST(DriftingPlates, FoldsLieAcrossTheWayTheirPlatesMeet) {
