@@ -415,7 +415,7 @@ TEST(SurfaceRivers, DrainLandWithoutASeaIntoTheLakeOnIt) {
 TEST(SurfaceRivers, AreAsLargeAsTheRunoffOfWhatTheyDrain) {
   const SurfaceGraph graph = row_of(5);
   const std::vector<float> z{-10.0F, 1.0F, 2.0F, 3.0F, 4.0F}, runoff{1.0F, 0.5F, 2.0F, 0.0F, 3.0F};
-  const SurfaceRivers rivers = route_rivers(graph, z, runoff);
+  const SurfaceRivers rivers = route_rivers(graph, z, [&](std::int32_t i) { return runoff[i]; });
   EXPECT_EQ(rivers.area_m2[4], 3e6);
   EXPECT_EQ(rivers.area_m2[3], 3e6);
   EXPECT_EQ(rivers.area_m2[2], 5e6);

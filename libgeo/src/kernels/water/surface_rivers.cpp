@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <compare>
 #include <limits>
 #include <utility>
 
 #include "geo/core/array_sizes.hpp"
+#include "geo/core/parallel_errors.hpp"
 #include "kernels/numerics/monotone_queue.hpp"
 
 namespace geo {
@@ -15,45 +17,80 @@ constexpr float kFar = std::numeric_limits<float>::infinity();
 
 /// Places of the sea: what lies below 0 and is not landlocked. Water is landlocked where no deep
 /// floor, no open side and not most of the water is joined to it.
-std::vector<std::uint8_t> sea_of(const SurfaceGraph& graph, std::span<const float> z) {
-  constexpr float kDeep_m = -1000.0F;
-  const auto is_water = [&](std::int32_t i) { return graph.is_there[i] != 0 && z[i] < 0.0F; };
-  std::vector<std::uint8_t> sea(z.size(), 0), seen(z.size(), 0);
-  std::vector<std::int32_t> water, largest;
-  const auto become_sea = [&](const std::vector<std::int32_t>& places) {
-    for (const std::int32_t i : places) sea[i] = 1;
-  };
-  for (std::int32_t first = 0; first < graph.size(); ++first) {
-    if (seen[first] != 0 || !is_water(first)) continue;
-    water.assign(1, first);
-    seen[first] = 1;
-    bool is_joined = false;
+class SeaPlaces {
+ public:
+  SeaPlaces(const SurfaceGraph& graph, std::span<const float> z)
+      : graph_(graph), z_(z), sea_(z.size(), 0) {}
+
+  std::vector<std::uint8_t> find() {
+    std::size_t joined = join_what_is_deep_or_open();
+    std::vector<std::int32_t> largest;
+    std::vector<std::uint8_t> seen = sea_;
+    for (std::int32_t first = 0; first < graph_.size(); ++first) {
+      if (seen[first] != 0 || !is_water(first)) continue;
+      std::vector<std::int32_t> water{first};
+      seen[first] = 1;
+      spread(water, seen);
+      if (water.size() > largest.size()) largest = std::move(water);
+    }
+    if (largest.size() > joined) {
+      for (const std::int32_t i : largest) sea_[i] = 1;
+    }
+    return std::move(sea_);
+  }
+
+ private:
+  static constexpr float kDeep_m = -1000.0F;
+
+  [[nodiscard]] bool is_water(std::int32_t i) const {
+    return graph_.is_there[i] != 0 && z_[i] < 0.0F;
+  }
+  /// Adds the water that is joined to some.
+  void spread(std::vector<std::int32_t>& water, std::vector<std::uint8_t>& seen) const {
     for (std::size_t at = 0; at < water.size(); ++at) {
       const std::int32_t i = water[at];
-      is_joined = is_joined || z[i] < kDeep_m || graph.is_open[i] != 0;
-      for (std::int32_t k = graph.first[i]; k < graph.first[i + 1]; ++k) {
-        const std::int32_t j = graph.neighbour[k];
+      for (std::int32_t k = graph_.first[i]; k < graph_.first[i + 1]; ++k) {
+        const std::int32_t j = graph_.neighbour[k];
         if (seen[j] != 0 || !is_water(j)) continue;
         seen[j] = 1;
         water.push_back(j);
       }
     }
-    if (is_joined) become_sea(water);
-    if (water.size() > largest.size()) largest = water;
   }
-  become_sea(largest);
-  return sea;
-}
+  /// Number of places. Of deep ones only those beside shallower water have anything to join.
+  std::size_t join_what_is_deep_or_open() {
+    std::vector<std::int32_t> edge;
+    std::size_t deep = 0;
+#pragma omp parallel for schedule(static) reduction(+ : deep)
+    for (std::int32_t i = 0; i < graph_.size(); ++i) {
+      if (!is_water(i) || (z_[i] >= kDeep_m && graph_.is_open[i] == 0)) continue;
+      sea_[i] = 1;
+      ++deep;
+    }
+    for (std::int32_t i = 0; i < graph_.size(); ++i) {
+      if (sea_[i] != 0 || !is_water(i)) continue;
+      for (std::int32_t k = graph_.first[i]; k < graph_.first[i + 1]; ++k) {
+        if (sea_[graph_.neighbour[k]] == 0) continue;
+        edge.push_back(i);
+        break;
+      }
+    }
+    for (const std::int32_t i : edge) sea_[i] = 1;
+    spread(edge, sea_);
+    return deep + edge.size();
+  }
+
+  const SurfaceGraph& graph_;
+  std::span<const float> z_;
+  std::vector<std::uint8_t> sea_;
+};
 
 /// Floods land from the coast inland.
 class Flood {
  public:
   Flood(const SurfaceGraph& graph, std::span<const float> z)
-      : graph_(graph),
-        z_(z),
-        sea_(sea_of(graph, z)),
-        level_(z.size(), kFar),
-        from_(z.size(), SurfaceRivers::kSink) {
+      : graph_(graph), sea_(SeaPlaces(graph, z).find()), place_(z.size()) {
+    for (std::size_t i = 0; i < z.size(); ++i) place_[i].z = z[i];
     out_.receiver.assign(z.size(), SurfaceRivers::kSink);
     out_.distance_m.assign(z.size(), 0.0F);
   }
@@ -62,7 +99,8 @@ class Flood {
     for (std::int32_t i = 0; i < graph_.size(); ++i) {
       if (graph_.is_there[i] == 0) continue;
       if (sea_[i] != 0) {
-        level_[i] = 0.0F;
+        place_[i].level = 0.0F;
+        place_[i].is_settled = true;
       } else if (graph_.is_open[i] != 0) {
         reach(i, 0.0F, SurfaceRivers::kOpen);
       }
@@ -76,15 +114,23 @@ class Flood {
   }
 
  private:
+  /// What the flood asks of a neighbour, side by side in memory.
+  struct Place {
+    float z = 0.0F, level = kFar;
+    std::int32_t from = SurfaceRivers::kSink;
+    bool is_settled = false;
+  };
+
   void reach(std::int32_t i, float level, std::int32_t from) {
-    level_[i] = std::max(z_[i], level);
-    from_[i] = from;
-    queue_.push(level_[i], i);
+    Place& place = place_[i];
+    place.level = std::max(place.z, level);
+    place.from = from;
+    queue_.push(place.level, i);
   }
   void spread_from(std::int32_t i) {
     for (std::int32_t k = graph_.first[i]; k < graph_.first[i + 1]; ++k) {
       const std::int32_t j = graph_.neighbour[k];
-      if (level_[j] == kFar) reach(j, level_[i], i);
+      if (place_[j].level == kFar) reach(j, place_[i].level, i);
     }
   }
   void rise() {
@@ -94,21 +140,19 @@ class Flood {
       spread_from(i);
     }
   }
-  [[nodiscard]] bool is_settled(std::int32_t i) const {
-    return sea_[i] != 0 || out_.distance_m[i] > 0.0F;
-  }
   void settle(std::int32_t i) {
     out_.order.push_back(i);
+    Place& place = place_[i];
     // An outlet of its own: half a place's width from the water.
     const auto half_m = static_cast<float>(0.5 * std::sqrt(graph_.area_m2));
-    std::int32_t to = from_[i];
-    float steepest = from_[i] == SurfaceRivers::kOpen ? level_[i] / half_m : 0.0F;
+    std::int32_t to = place.from;
+    float steepest = to == SurfaceRivers::kOpen ? place.level / half_m : 0.0F;
     float way_m = half_m;
     for (std::int32_t k = graph_.first[i]; k < graph_.first[i + 1]; ++k) {
       const std::int32_t j = graph_.neighbour[k];
-      if (j == from_[i]) way_m = graph_.distance_m[k];
-      if (!is_settled(j)) continue;
-      const float slope = (level_[i] - level_[j]) / graph_.distance_m[k];
+      if (j == place.from) way_m = graph_.distance_m[k];
+      if (!place_[j].is_settled) continue;
+      const float slope = (place.level - place_[j].level) / graph_.distance_m[k];
       if (slope <= steepest) continue;
       steepest = slope;
       to = j;
@@ -118,26 +162,25 @@ class Flood {
     }
     out_.receiver[i] = to;
     out_.distance_m[i] = way_m;
+    place.is_settled = true;
   }
   /// Land that no sea borders drains to its lowest place, landlocked water on it stands at 0.
   void seed_enclosed() {
     std::vector<std::pair<float, std::int32_t>> dry;
     for (std::int32_t i = 0; i < graph_.size(); ++i) {
-      if (graph_.is_there[i] != 0 && level_[i] == kFar) dry.emplace_back(z_[i], i);
+      if (graph_.is_there[i] != 0 && place_[i].level == kFar) dry.emplace_back(place_[i].z, i);
     }
     std::sort(dry.begin(), dry.end());
     for (const auto& [level, i] : dry) {
-      if (level_[i] != kFar) continue;
+      if (place_[i].level != kFar) continue;
       reach(i, std::max(level, 0.0F), SurfaceRivers::kSink);
       rise();
     }
   }
 
   const SurfaceGraph& graph_;
-  std::span<const float> z_;
   std::vector<std::uint8_t> sea_;
-  std::vector<float> level_;
-  std::vector<std::int32_t> from_;
+  std::vector<Place> place_;
   MonotoneQueue queue_;
   SurfaceRivers out_;
 };
@@ -278,8 +321,10 @@ class Sea {
   double settle() {
     order_by_way_from_coast();
     const double share = -std::expm1(-std::sqrt(graph_.area_m2) / (1e3 * law_.settling_km));
-    for (const std::int32_t i : order_) {
-      if (load_m3_[i] > 0.0) pass_on(i, lay(i, share * load_m3_[i]));
+    for (const auto& ring : rings_) {
+      for (const auto& [way_m, i] : ring) {
+        if (load_m3_[i] > 0.0) pass_on(i, lay(i, share * load_m3_[i]));
+      }
     }
     settle_evenly();
     return laid_m3_;
@@ -287,27 +332,54 @@ class Sea {
 
  private:
   static constexpr float kLengths = 6.0F;  // farther off, what is left is everywhere
+  static constexpr float kLand = -1.0F;
 
+  /// A place that a way leads to.
+  struct Reached {
+    float way_m;
+    std::int32_t place;
+
+    auto operator<=>(const Reached&) const = default;
+  };
+
+  /// Ring by ring, each about as wide as a place, so that what a ring reaches lies in it seldom
+  /// (delta-stepping, Meyer & Sanders 2003); then each is put in order.
   void order_by_way_from_coast() {
-    const float farthest = kLengths * static_cast<float>(1e3 * law_.settling_km);
-    way_m_.assign(z_.size(), kFar);
-    MonotoneQueue queue;
+    constexpr int kRings = 64;
+    const float farthest_m = kLengths * static_cast<float>(1e3 * law_.settling_km);
+    rings_.resize(kRings + 1);
+    way_m_.resize(z_.size());
     for (std::int32_t i = 0; i < graph_.size(); ++i) {
+      way_m_[i] = z_[i] < 0.0F ? kFar : kLand;
       if (load_m3_[i] <= 0.0) continue;
       way_m_[i] = 0.0F;
-      queue.push(0.0F, i);
+      rings_[0].push_back({0.0F, i});
     }
-    while (!queue.empty()) {
-      const auto [way, i] = queue.pop();
-      if (way > way_m_[i]) continue;
-      order_.push_back(i);
-      for (std::int32_t k = graph_.first[i]; k < graph_.first[i + 1]; ++k) {
-        const std::int32_t j = graph_.neighbour[k];
-        const float next = way + graph_.distance_m[k];
-        if (z_[j] >= 0.0F || next >= way_m_[j] || next > farthest) continue;
-        way_m_[j] = next;
-        queue.push(next, j);
+    for (auto& ring : rings_) {
+      for (std::size_t k = 0; k < ring.size(); ++k) {
+        if (!is_beaten(ring[k])) reach_on(ring[k], farthest_m);
       }
+    }
+    ParallelErrors errors;
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int at = 0; at <= kRings; ++at) {
+      errors.guard([&] {
+        std::erase_if(rings_[at], [&](const Reached& place) { return is_beaten(place); });
+        std::sort(rings_[at].begin(), rings_[at].end());
+      });
+    }
+    errors.rethrow();
+  }
+  /// By a shorter way to the same place.
+  [[nodiscard]] bool is_beaten(const Reached& one) const { return one.way_m > way_m_[one.place]; }
+  void reach_on(const Reached from, float farthest_m) {
+    const float rings_per_m = static_cast<float>(rings_.size() - 1) / farthest_m;
+    for (std::int32_t k = graph_.first[from.place]; k < graph_.first[from.place + 1]; ++k) {
+      const std::int32_t j = graph_.neighbour[k];
+      const float next_m = from.way_m + graph_.distance_m[k];
+      if (next_m >= way_m_[j] || next_m > farthest_m) continue;
+      way_m_[j] = next_m;
+      rings_[static_cast<std::size_t>(next_m * rings_per_m)].push_back({next_m, j});
     }
   }
   /// Up to a volume on a place, as far as there is room; the rest of its load.
@@ -325,23 +397,16 @@ class Sea {
   }
   /// To all neighbours that lie farther from the coast, by how much farther.
   void pass_on(std::int32_t i, double m3) {
+    farther_.clear();
     double sum = 0.0;
-    for (const int pass : {0, 1}) {
-      for (std::int32_t k = graph_.first[i]; k < graph_.first[i + 1]; ++k) {
-        const std::int32_t j = graph_.neighbour[k];
-        if (!(way_m_[j] > way_m_[i]) || way_m_[j] == kFar) continue;
-        const double weight = (way_m_[j] - way_m_[i]) / graph_.distance_m[k];
-        if (pass == 0) {
-          sum += weight;
-        } else {
-          load_m3_[j] += m3 * weight / sum;
-        }
-      }
-      if (sum == 0.0) {
-        rest_m3_ += m3;
-        return;
-      }
+    for (std::int32_t k = graph_.first[i]; k < graph_.first[i + 1]; ++k) {
+      const std::int32_t j = graph_.neighbour[k];
+      if (!(way_m_[j] > way_m_[i]) || way_m_[j] == kFar) continue;
+      farther_.emplace_back(j, (way_m_[j] - way_m_[i]) / graph_.distance_m[k]);
+      sum += farther_.back().second;
     }
+    if (farther_.empty()) rest_m3_ += m3;
+    for (const auto& [j, weight] : farther_) load_m3_[j] += m3 * weight / sum;
   }
   void settle_evenly() {
     if (rest_m3_ == 0.0) return;
@@ -361,20 +426,26 @@ class Sea {
   std::span<float> z_, rock_m_;
   std::vector<double> load_m3_;
   std::vector<float> way_m_;
-  std::vector<std::int32_t> order_;
+  std::vector<std::vector<Reached>> rings_;               ///< of places by their way, ascending
+  std::vector<std::pair<std::int32_t, double>> farther_;  ///< than the place whose turn it is
   double rest_m3_ = 0.0, laid_m3_ = 0.0;
 };
 
 }  // namespace
 
 SurfaceRivers route_rivers(const SurfaceGraph& graph, std::span<const float> elevation_m,
-                           std::span<const float> runoff) {
-  check_sizes(
-      "route_rivers", graph.is_there.size(),
-      {{"elevation_m", elevation_m.size()}, {"runoff", runoff.size(), ArraySize::May::be_empty}});
+                           const std::function<double(std::int32_t place)>& runoff) {
+  check_sizes("route_rivers", graph.is_there.size(), {{"elevation_m", elevation_m.size()}});
   SurfaceRivers rivers = Flood(graph, elevation_m).run();
   rivers.area_m2.assign(elevation_m.size(), graph.area_m2);
-  for (std::size_t i = 0; i < runoff.size(); ++i) rivers.area_m2[i] *= runoff[i];
+  if (runoff) {
+    const auto places = static_cast<std::ptrdiff_t>(rivers.order.size());
+#pragma omp parallel for schedule(static)
+    for (std::ptrdiff_t at = 0; at < places; ++at) {
+      const std::int32_t i = rivers.order[at];
+      rivers.area_m2[i] *= runoff(i);
+    }
+  }
   for (auto at = rivers.order.rbegin(); at != rivers.order.rend(); ++at) {
     const std::int32_t to = rivers.receiver[*at];
     if (to >= 0) rivers.area_m2[to] += rivers.area_m2[*at];

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -37,17 +38,17 @@ struct SurfaceRivers {
   std::vector<std::int32_t> order;           ///< land, each place behind its receiver
   std::vector<std::int32_t> receiver;        ///< of each place; kSink off the land
   std::vector<float> distance_m;             ///< to the receiver
-  std::vector<double> area_m2;               ///< drained, the place itself included, times runoff
+  std::vector<double> area_m2;  ///< that land drains, the place itself included, times runoff
 };
 
 /// Steepest descent over filled ground: land is flooded from the coast inland, lowest first (Barnes
 /// et al. 2014); of the neighbours that water has reached before it, a place drains to the one to
 /// which its level falls most steeply, in a lake to that from which the flood came. No cycles, no
-/// place left out. `runoff` weighs the area of each place, so that area is discharge over a
-/// reference runoff; without it all weigh 1. Cost n log n in places of land. Throws Bug unless
-/// there is one value per place.
+/// place left out. `runoff` weighs the area of each place of land, asked for by several threads, so
+/// that area is discharge over a reference runoff; without it all weigh 1. Cost n log n in places
+/// of land. Throws Bug unless there is one elevation per place.
 SurfaceRivers route_rivers(const SurfaceGraph& graph, std::span<const float> elevation_m,
-                           std::span<const float> runoff = {});
+                           const std::function<double(std::int32_t place)>& runoff = {});
 
 /// What a step of rivers moved, m3 of rock.
 struct RiverWork {
@@ -68,8 +69,8 @@ struct RiverWork {
 ///
 /// `is_rock`: places that rivers erode; `erodibility`: K of each over that of the law, or empty: 1.
 /// `elevation_m` in and out; `rock_m`: change of the thickness of rock and sediment. Cost linear
-/// but for the order of places off the coast, n log n. Arrays have one value per place; Bug
-/// otherwise.
+/// but for the order of places off the coast, found in rings (Meyer & Sanders 2003), each sorted.
+/// Arrays have one value per place; Bug otherwise.
 RiverWork run_rivers(const SurfaceGraph& graph, const SurfaceRivers& rivers, const RiverLaw& law,
                      std::span<const std::int8_t> is_rock, std::span<float> elevation_m,
                      std::span<float> rock_m, std::span<const float> erodibility = {});

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/plates/sphere/surface/sphere_water.hpp"
@@ -9,6 +10,14 @@
 
 namespace geo {
 namespace {
+
+/// Angle between unit vectors that are near each other, by their chord c, to 5 c^7 / 7168:
+///   2 asin(c / 2) = c + c^3 / 24 + 3 c^5 / 640 + ...
+double short_arc(const Vector3& a, const Vector3& b) {
+  const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+  const double chord2 = x * x + y * y + z * z;
+  return std::sqrt(chord2) * (1.0 + chord2 * (1.0 / 24.0 + chord2 * (3.0 / 640.0)));
+}
 
 /// A way from a sample across the edge of its plate.
 struct Crossing {
@@ -41,7 +50,7 @@ class MovingSurface {
     return graph_.is_there[j] != 0 && crust_.plate[j] == crust_.plate[i];
   }
   [[nodiscard]] float way_m(const Vector3& a, const Vector3& b) const {
-    return static_cast<float>(1e3 * m_.settings.radius_km * angle_between(a, b));
+    return static_cast<float>(1e3 * m_.settings.radius_km * short_arc(a, b));
   }
   /// The sample on top at a place of the planet that is of another plate, or -1.
   [[nodiscard]] std::int32_t across(const Vector3& place, int own) const {
@@ -125,19 +134,14 @@ class MovingSurface {
   std::vector<Crossing> crossings_;
 };
 
-/// Runoff over that of reference where each sample lies now; empty where no climate is known.
-std::vector<float> runoff_of_samples(const SphereTectonics& model) {
-  const std::vector<float>& runoff = model.state.runoff;
-  if (runoff.empty()) return {};
-  std::vector<float> found(runoff.size(), 0.0F);
-  const FibonacciSphere& samples = model.mesh->samples();
-#pragma omp parallel for schedule(static)
-  for (std::int32_t i = 0; i < model.mesh->size(); ++i) {
-    const int own = model.state.crust.plate[i];
-    if (own < 0) continue;
-    found[i] = runoff[samples.nearest(times(model.frame[own], samples.position(i)))];
-  }
-  return found;
+/// Runoff over that of reference where a sample lies now; none where no climate is known.
+std::function<double(std::int32_t)> runoff_of_samples(const SphereTectonics& model) {
+  if (model.state.runoff.empty()) return {};
+  return [&model](std::int32_t i) -> double {
+    const FibonacciSphere& samples = model.mesh->samples();
+    const Vector3 place = times(model.frame[model.state.crust.plate[i]], samples.position(i));
+    return model.state.runoff[samples.nearest(place)];
+  };
 }
 
 /// Of each sample, over that of a belt that is being folded: rock that has come up from the depth

@@ -37,18 +37,30 @@ double level_above(const SphereTectonics& model, double share) {
   return bin + kLowest_m;
 }
 
-double sea_volume_km3(const SphereTectonics& model, double level_m) {
+namespace {
+
+/// The sea below a level: its water and its surface.
+struct SeaBelow {
+  double volume_km3, area_km2;
+};
+
+/// Places that no plate stands for are floor of the mean depth of `gap_m`.
+SeaBelow sea_below(const SphereTectonics& model, double level_m, double gap_m) {
   const SphereCrust& crust = model.state.crust;
-  const auto is_seen = [&](std::int32_t i) {
-    return crust.plate[i] >= 0 && model.margins.hidden[i] == 0;
+  const auto depth_m = [&](std::int32_t i) {
+    if (crust.plate[i] < 0 || model.margins.hidden[i] != 0) return std::max(0.0, level_m - gap_m);
+    return std::max(0.0, level_m - crust.elevation_m[i]);
   };
-  const double seen =
-      sum_over(crust.size(), [&](std::int32_t i) { return is_seen(i) ? 1.0 : 0.0; });
-  const double depths_m = sum_over(crust.size(), [&](std::int32_t i) {
-    return is_seen(i) ? std::max(0.0, level_m - crust.elevation_m[i]) : 0.0;
-  });
-  const double gaps_m = (crust.size() - seen) * std::max(0.0, level_m - gap_m(model));
-  return 1e-3 * model.sample_km2() * (depths_m + gaps_m);
+  const double depths_m = sum_over(crust.size(), depth_m);
+  const double places =
+      sum_over(crust.size(), [&](std::int32_t i) { return depth_m(i) > 0.0 ? 1.0 : 0.0; });
+  return {1e-3 * model.sample_km2() * depths_m, model.sample_km2() * places};
+}
+
+}  // namespace
+
+double sea_volume_km3(const SphereTectonics& model, double level_m) {
+  return sea_below(model, level_m, gap_m(model)).volume_km3;
 }
 
 void exchange_water(SphereTectonics& model) {
@@ -61,18 +73,26 @@ void exchange_water(SphereTectonics& model) {
       (steady_km3 - state.water_km3) * -std::expm1(-s.law.step_myr / s.freeboard_myr);
 }
 
+/// Newton's steps: the volume rises with the level, the faster the higher it is, so that from the
+/// second on each level lies above the one sought, and nearer.
 void keep_water(SphereTectonics& model) {
   SphereState& state = model.state;
   if (state.water_km3 <= 0.0) return;
-  constexpr double kReach_m = 12000.0;
-  constexpr int kHalvings = 30;  // to less than a millimetre
-  const double wanted_km3 = std::max(0.0, state.water_km3 - state.ice_km3);
-  double low = -kReach_m, high = kReach_m;
-  for (int k = 0; k < kHalvings; ++k) {
-    const double middle = 0.5 * (low + high);
-    (sea_volume_km3(model, middle) > wanted_km3 ? high : low) = middle;
+  constexpr double kReach_m = 12000.0, kClose_m = 1e-4;
+  constexpr int kSteps = 60;
+  const double wanted_km3 = std::max(0.0, state.water_km3 - state.ice_km3), floor_m = gap_m(model);
+  double level_m = state.sea_level_m;
+  for (int k = 0; k < kSteps; ++k) {
+    const SeaBelow sea = sea_below(model, level_m, floor_m);
+    const double missing_km3 = wanted_km3 - sea.volume_km3;
+    if (sea.area_km2 == 0.0 && missing_km3 <= 0.0) break;
+    // Of dry ground there is no surface to go by.
+    const double next_m =
+        sea.area_km2 > 0.0 ? level_m + 1e3 * missing_km3 / sea.area_km2 : 0.5 * kReach_m;
+    if (std::abs(next_m - level_m) < kClose_m) break;
+    level_m = std::clamp(next_m, -kReach_m, kReach_m);
   }
-  state.sea_level_m = 0.5 * (low + high);
+  state.sea_level_m = level_m;
 }
 
 }  // namespace geo
