@@ -283,10 +283,11 @@ TEST(TheTableOfStages, IsInOrderAndWiredUp) {
     EXPECT_EQ(entry.make()->info().own_grid, is_last) << entry.name;
   }
   const Pipeline pipeline = make_pipeline();
+  const Grid planet = Grid::sphere(2048, 1024);
   const std::array<const FieldSpec*, 1> given{&field::elevation};
-  EXPECT_NO_THROW(pipeline.check(given, 0, static_cast<int>(pipeline.stages().size()) - 1));
-  EXPECT_NO_THROW(pipeline.check({}, 0, static_cast<int>(pipeline.stages().size()) - 1));
-  EXPECT_THROW(pipeline.check({}, pipeline.find("erosion"), pipeline.find("erosion")),
+  EXPECT_NO_THROW(pipeline.check(planet, given, 0, static_cast<int>(pipeline.stages().size()) - 1));
+  EXPECT_NO_THROW(pipeline.check(planet, {}, 0, static_cast<int>(pipeline.stages().size()) - 1));
+  EXPECT_THROW(pipeline.check(planet, {}, pipeline.find("erosion"), pipeline.find("erosion")),
                ConfigurationError);
 }
 

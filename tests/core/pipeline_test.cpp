@@ -89,7 +89,8 @@ class ParticularStage final : public Stage {
  public:
   [[nodiscard]] const StageInfo& info() const override { return info_; }
   [[nodiscard]] std::vector<Parameter> parameters() override { return {}; }
-  void check(const std::function<bool(const FieldSpec&)>& has) const override {
+  void check(const Grid& /*grid*/,
+             const std::function<bool(const FieldSpec&)>& has) const override {
     if (!has(field::crust_age)) throw ConfigurationError("no age");
   }
   void run(StageIo& /*io*/, Context& /*context*/) const override { FAIL() << "has run"; }
@@ -105,7 +106,7 @@ TEST(Pipeline, AsksStagesBeforeACellIsComputed) {
         stage({.name = "first", .writes = {&spec}}, [&](StageIo&, Context&) { has_run = true; }),
         std::make_unique<ParticularStage>());
   };
-  first_writes(field::crust_age).check({}, 0, 1);
+  first_writes(field::crust_age).check(Grid::sphere(8, 4), {}, 0, 1);
   State state = empty_state();
   Context context;
   EXPECT_THROW(first_writes(field::elevation).run(state, context, 0, 1, {}), ConfigurationError);
@@ -209,16 +210,17 @@ TEST(Pipeline, NamesTheFieldThatIsMissingAndWhoWritesIt) {
       stage({.name = "first", .writes = {&field::elevation}}, fills(field::elevation, 1.0F)),
       stage({.name = "second", .reads = {&field::elevation}, .writes = {&field::temperature}},
             fills(field::temperature, 1.0F)));
+  const Grid grid = Grid::sphere(8, 4);
   try {
-    pipeline.check({}, 1, 1);
+    pipeline.check(grid, {}, 1, 1);
     FAIL();
   } catch (const ConfigurationError& error) {
     EXPECT_THAT(error.what(), HasSubstr("second needs the field elevation"));
     EXPECT_THAT(error.what(), HasSubstr("stage first writes"));
   }
-  EXPECT_NO_THROW(pipeline.check({}, 0, 1));
+  EXPECT_NO_THROW(pipeline.check(grid, {}, 0, 1));
   const FieldSpec* const given = &field::elevation;
-  EXPECT_NO_THROW(pipeline.check({&given, 1}, 1, 1));
+  EXPECT_NO_THROW(pipeline.check(grid, {&given, 1}, 1, 1));
 }
 
 TEST(Pipeline, FindsWhatAStageDidNotDeclareOrDidNotWrite) {

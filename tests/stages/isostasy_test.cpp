@@ -65,7 +65,9 @@ IsostasyParameters blueprint() {
 }
 
 void check(const IsostasyParameters& parameters, bool plates_have_made_crust) {
-  make_isostasy_stage(parameters)->check([&](const FieldSpec&) { return plates_have_made_crust; });
+  make_isostasy_stage(parameters)->check(Grid::sphere(8, 4), [&](const FieldSpec&) {
+    return plates_have_made_crust;
+  });
 }
 
 TEST(Isostasy, WhatFloatsIsLighterThanTheMantle) {

@@ -131,8 +131,9 @@ TEST(DriftLandscape, IsOfPlatesThatDriftAndRunsWithAClimate) {
   State state(std::make_shared<Grid>(Grid::sphere(64, 32)));
   EXPECT_THROW((void)frames_of(p, state, nullptr), ConfigurationError);
   p.model = "growth";
-  EXPECT_THROW(make_plates_stage(p)->check([](const FieldSpec&) { return false; }),
-               ConfigurationError);
+  EXPECT_THROW(
+      make_plates_stage(p)->check(Grid::sphere(64, 32), [](const FieldSpec&) { return false; }),
+      ConfigurationError);
 }
 
 }  // namespace

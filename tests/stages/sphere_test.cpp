@@ -422,7 +422,7 @@ TEST(DriftedPlates, AreMissedWhereSimulatedCrustIsAskedFor) {
   IsostasyParameters parameters;
   parameters.crust = "simulated";
   const auto stage = make_isostasy_stage(parameters);
-  EXPECT_THROW(stage->check([&](const FieldSpec& spec) { return state.has(spec); }),
+  EXPECT_THROW(stage->check(state.grid(), [&](const FieldSpec& spec) { return state.has(spec); }),
                ConfigurationError);
 }
 

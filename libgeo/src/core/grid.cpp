@@ -35,6 +35,12 @@ void check_size(int nx, int ny) {
   }
 }
 
+void check_figure(const Ellipsoid& figure) {
+  if (!(figure.radius_m > 0.0) || !(figure.flattening > -0.5 && figure.flattening < 0.5)) {
+    throw ConfigurationError("planet figure: radius must be positive and flattening within ±0.5");
+  }
+}
+
 /// Beyond these areas, distances and what is counted by them leave the numbers' range or precision.
 bool is_cell_side(double side_m) { return side_m >= 1e-3 && side_m <= 1e9; }
 
@@ -43,9 +49,7 @@ bool is_cell_side(double side_m) { return side_m >= 1e-3 && side_m <= 1e9; }
 Grid::Grid(Topology topology, Edges edges, int nx, int ny, Ellipsoid figure)
     : topology_(topology), edges_(edges), nx_(nx), ny_(ny), figure_(figure) {
   check_size(nx, ny);
-  if (!(figure.radius_m > 0.0) || !(figure.flattening > -0.5 && figure.flattening < 0.5)) {
-    throw ConfigurationError("planet figure: radius must be positive and flattening within ±0.5");
-  }
+  check_figure(figure);
   area_m2_.resize(ny);
   spacing_east_m_.resize(ny);
   face_east_m_.resize(ny);
@@ -107,20 +111,26 @@ Grid Grid::plane(int nx, int ny, double dx_m, double dy_m, Edges edges,
   return grid;
 }
 
-Grid Grid::equal_area(int nx, int ny, double cell_m, Centre centre, Ellipsoid figure, Edges edges) {
+void Grid::check_equal_area(int nx, int ny, double cell_m, Centre centre, Ellipsoid figure) {
+  check_size(nx, ny);
+  check_figure(figure);
   if (!(std::abs(centre.latitude_deg) <= 90.0 && std::abs(centre.longitude_deg) <= 360.0)) {
     throw ConfigurationError("centre of an equal-area grid: latitude must be within 90 degrees");
   }
+  // The rim of the hemisphere lies at sqrt(2) authalic radii.
+  const double radius_m = EqualAreaProjection(centre, figure).authalic_radius_m();
+  if (std::hypot(0.5 * nx * cell_m, 0.5 * ny * cell_m) > std::numbers::sqrt2 * radius_m) {
+    throw ConfigurationError("equal-area grid of " + std::to_string(nx) + " x " +
+                             std::to_string(ny) + " cells reaches beyond half of the planet");
+  }
+}
+
+Grid Grid::equal_area(int nx, int ny, double cell_m, Centre centre, Ellipsoid figure, Edges edges) {
+  check_equal_area(nx, ny, cell_m, centre, figure);
   Grid grid(Topology::plane, edges, nx, ny, figure);
   grid.set_plane_metric(cell_m, cell_m);
   grid.centre_ = centre;
   const EqualAreaProjection projection(centre, figure);
-  // The rim of the hemisphere lies at sqrt(2) authalic radii.
-  if (std::hypot(0.5 * nx * cell_m, 0.5 * ny * cell_m) >
-      std::numbers::sqrt2 * projection.authalic_radius_m()) {
-    throw ConfigurationError("equal-area grid of " + std::to_string(nx) + " x " +
-                             std::to_string(ny) + " cells reaches beyond half of the planet");
-  }
   grid.cell_latitude_deg_.resize(grid.size());
   grid.cell_longitude_deg_.resize(grid.size());
 #pragma omp parallel for schedule(static)

@@ -63,7 +63,8 @@ std::vector<Parameter> Pipeline::parameters() const {
   return all;
 }
 
-void Pipeline::check(std::span<const FieldSpec* const> initial, int first, int last) const {
+void Pipeline::check(const Grid& grid, std::span<const FieldSpec* const> initial, int first,
+                     int last) const {
   std::set<std::string_view> there;
   for (const FieldSpec* spec : initial) there.insert(spec->name);
   for (int at = first; at <= last; ++at) {
@@ -83,7 +84,7 @@ void Pipeline::check(std::span<const FieldSpec* const> initial, int first, int l
                       writers.empty() ? "no stage writes, so that it must be given"
                                       : "stage " + writers + " writes"));
     }
-    stages_[at]->check([&](const FieldSpec& spec) { return there.contains(spec.name); });
+    stages_[at]->check(grid, [&](const FieldSpec& spec) { return there.contains(spec.name); });
     if (info.own_grid) continue;
     for (const FieldSpec* written : info.writes) there.insert(written->name);
   }
@@ -100,7 +101,7 @@ int Pipeline::next_reader(const FieldSpec& spec, int at, int last) const {
 
 void Pipeline::run(State& state, Context& context, int first, int last,
                    const Observer& observer) const {
-  check(state.present(), first, last);
+  check(state.grid(), state.present(), first, last);
   context.configuration = parameters();
   std::set<const FieldSpec*> parked;
   for (int at = first; at <= last; ++at) {

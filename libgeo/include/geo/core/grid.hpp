@@ -76,10 +76,12 @@ class Grid {
                     std::optional<Centre> centre = {}, Ellipsoid figure = {});
   /// A rectangle of square cells in Lambert's azimuthal equal-area projection about `centre`
   /// (EqualAreaProjection): plane topology and metric, true areas, and a true latitude and
-  /// longitude for every cell. Throws ConfigurationError when it does not fit the hemisphere round
-  /// its centre or the centre is no place.
+  /// longitude for every cell. Throws ConfigurationError as `check_equal_area` does.
   static Grid equal_area(int nx, int ny, double cell_m, Centre centre, Ellipsoid figure = {},
                          Edges edges = Edges::open);
+  /// Throws ConfigurationError when it does not fit the hemisphere round its centre, has too many
+  /// or too few cells or the centre is no place.
+  static void check_equal_area(int nx, int ny, double cell_m, Centre centre, Ellipsoid figure = {});
   /// A flat rectangle whose opposite edges meet.
   static Grid torus(int nx, int ny, double dx_m, double dy_m);
 

@@ -23,9 +23,10 @@ class Pipeline {
 
   /// Checks, before a cell is computed, that stages first..last (positions, inclusive) find every
   /// field they read in `initial` or in an earlier stage of that span, and that their parameters go
-  /// together (Stage::check). Throws ConfigurationError that names the field, who wants it and who
-  /// would write it, or what does not go together.
-  void check(std::span<const FieldSpec* const> initial, int first, int last) const;
+  /// together, and with the grid (Stage::check). Throws ConfigurationError that names the field,
+  /// who wants it and who would write it, or what does not go together.
+  void check(const Grid& grid, std::span<const FieldSpec* const> initial, int first,
+             int last) const;
 
   /// Who watches a run: called before and after each stage (with the budgets it reported).
   struct Observer {

@@ -184,9 +184,10 @@ class Stage {
   [[nodiscard]] virtual std::vector<Parameter> parameters() = 0;
   /// Computes. Every declared output is written or an Error thrown.
   virtual void run(StageIo& io, Context& context) const = 0;
-  /// Whether its present parameters go together, and with the fields that there will be: before a
-  /// cell is computed. Throws ConfigurationError that names what does not.
-  virtual void check(const std::function<bool(const FieldSpec&)>& /*has*/) const {}
+  /// Whether its present parameters go together, with the grid and with the fields that there will
+  /// be: before a cell is computed. Throws ConfigurationError that names what does not.
+  virtual void check(const Grid& /*grid*/,
+                     const std::function<bool(const FieldSpec&)>& /*has*/) const {}
   /// What that takes with its present parameters. `configuration` has those of the whole pipeline,
   /// as a stage may run others inside.
   [[nodiscard]] virtual StageCost cost(std::span<const Parameter> /*configuration*/) const {

@@ -115,7 +115,7 @@ std::vector<StageInMemory> run_in_memory(const RunConfiguration& run, const std:
   RunPlan plan = plan_run(run, from, to);
   if (initial && !run.settings.turn.empty()) initial = laid_out(*initial, run);
   RunInputs inputs = read_inputs(run, plan, std::move(initial), {});
-  run.pipeline.check(inputs.state->present(), plan.first, plan.last);
+  run.pipeline.check(inputs.state->grid(), inputs.state->present(), plan.first, plan.last);
   if (!plan.note.empty()) tell(events.info, plan.note);
   return compute(run, plan, std::move(inputs), events);
 }
@@ -131,7 +131,7 @@ StageInMemory island_in_memory(const RunConfiguration& run, const std::vector<Sn
   if (inputs.state->grid().topology() != Topology::sphere) {
     throw ConfigurationError(fmt::format("stage {} needs a whole planet", (*own)->info().name));
   }
-  run.pipeline.check(inputs.state->present(), position, position);
+  run.pipeline.check(inputs.state->grid(), inputs.state->present(), position, position);
   auto made = compute(run, {.begin = position, .first = position, .last = position, .note = {}},
                       std::move(inputs), events);
   return std::move(made.front());

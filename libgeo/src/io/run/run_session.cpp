@@ -51,7 +51,7 @@ void RunSession::prepare() {
       run_, plan_, read_complete_stages(stage_folder(), plan_), [this](const Grid& grid) {
         folder_.check_writable(prediction_on(static_cast<double>(grid.size()), {}).disk_bytes);
       });
-  run_.pipeline.check(inputs_.state->present(), plan_.first, plan_.last);
+  run_.pipeline.check(inputs_.state->grid(), inputs_.state->present(), plan_.first, plan_.last);
   config_ = resolved_config(run_);
 }
 

@@ -40,7 +40,8 @@ class ErosionStage final : public Stage {
             .fixed_bytes = kAir_bytes};
   }
 
-  void check(const std::function<bool(const FieldSpec&)>& /*has*/) const override {
+  void check(const Grid& /*grid*/,
+             const std::function<bool(const FieldSpec&)>& /*has*/) const override {
     static_cast<void>(checked(parameters_));
   }
 

@@ -96,11 +96,18 @@ class IslandStage final : public Stage {
     return {.per_cell_ns = 2500.0, .cell_bytes = 400.0, .fixed_bytes = 35e6};
   }
 
-  void run(StageIo& io, Context& context) const override {
-    if (io.grid().topology() != Topology::sphere) {
+  void check(const Grid& grid,
+             const std::function<bool(const FieldSpec&)>& /*has*/) const override {
+    if (grid.topology() != Topology::sphere) {
       throw ConfigurationError(
           "stage island needs a whole planet: this grid is a part of one; run --to biomes");
     }
+    const Centre centre = p_.center == "auto" ? Centre{} : parse_centre(p_.center);
+    Grid::check_equal_area(static_cast<int>(p_.nx), static_cast<int>(p_.ny), p_.cell_m, centre,
+                           grid.figure());
+  }
+
+  void run(StageIo& io, Context& context) const override {
     State state(std::make_shared<const Grid>(
         Grid::equal_area(static_cast<int>(p_.nx), static_cast<int>(p_.ny), p_.cell_m,
                          centre(io, context), io.grid().figure())));

@@ -204,7 +204,8 @@ class IsostasyStage final : public Stage {
     return {.per_cell_ns = 1950.0, .cell_bytes = 117.0};
   }
 
-  void check(const std::function<bool(const FieldSpec&)>& has) const override {
+  void check(const Grid& /*grid*/,
+             const std::function<bool(const FieldSpec&)>& has) const override {
     check_densities(parameters_.density);
     const bool has_crust = has(field::crust_elevation) && has(field::crust_thickness);
     if (keeps_made_crust(parameters_) && !has_crust) refuse_crust(parameters_);

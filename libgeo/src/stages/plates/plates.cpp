@@ -55,7 +55,8 @@ class PlatesStage final : public Stage {
                 model == "sphere" ? kSample_bytes * static_cast<double>(parameters_.samples) : 0.0};
   }
 
-  void check(const std::function<bool(const FieldSpec&)>& /*has*/) const override {
+  void check(const Grid& /*grid*/,
+             const std::function<bool(const FieldSpec&)>& /*has*/) const override {
     if (parameters_.landscape == "full" && parameters_.model != "sphere") {
       throw ConfigurationError(
           "plates.landscape = \"full\" is of plates that drift: plates.model must be \"sphere\"");
