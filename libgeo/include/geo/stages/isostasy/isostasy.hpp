@@ -40,7 +40,7 @@ struct IsostasyParameters {
   double coast_smoothing_km = 80.0;
 
   double lithosphere = 1.22;
-  double craton_compensation = 0.9583;
+  double craton_compensation = 0.958333;
   double swell_m = 345.0;
   double ocean_swell_m = 430.0;
   double margin_tilt_m = 760.0;
