@@ -195,35 +195,27 @@ void expect_the_same_distribution(const Pair& pair) {
   }
 }
 
-/// By field, the mean over planets of the logarithm of what is steeper eastwards.
-using Grain = std::map<std::string, double>;
-
-void expect_the_same_slopes(const Pair& pair, Grain& grain) {
+void expect_the_same_slopes(const Pair& pair) {
   for (const auto* name : kFields) {
     const Grid& frame = *pair.turned.grid;
     const Steepness turned(pair.turned, name, frame, 75.0), plain(pair.plain, name, frame, 75.0);
     // Continents have a grain of their own: what the frame adds to it is what counts.
     EXPECT_NEAR(turned.ratio() / plain.ratio(), 1.0, 0.08) << name;
+    EXPECT_GT(turned.ratio(), 0.8) << name;
+    EXPECT_LT(turned.ratio(), 1.25) << name;
     EXPECT_NEAR(std::sqrt(turned.east / plain.east), 1.0, 0.15) << name;
-    grain[name] += std::log(turned.ratio());
   }
 }
 
 // Cells of 40 km: a continental slope is a few of them wide. On cells of 80 km a cap holds so few
 // of a slope's that a quantile which falls on one moves by 100 m with where the centres lie.
 TEST(TurnedPlanet, LooksTheSameWithAContinentOnThePole) {
-  const std::array<std::uint64_t, 4> seeds{2, 3, 4, 5};
-  Grain grain;
-  for (const std::uint64_t seed : seeds) {
+  for (const std::uint64_t seed : {2, 3, 4, 5}) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     const Pair pair = planets(seed, 1024);
     expect_the_same_land(pair);
     expect_the_same_distribution(pair);
-    expect_the_same_slopes(pair, grain);
-  }
-  // The grain of one continent is not that of the next: on the mean there is none.
-  for (const auto& [name, sum] : grain) {
-    EXPECT_NEAR(std::exp(sum / seeds.size()), 1.0, 0.1) << name;
+    expect_the_same_slopes(pair);
   }
 }
 
