@@ -345,9 +345,11 @@ class Sea {
   /// Ring by ring, each about as wide as a place, so that what a ring reaches lies in it seldom
   /// (delta-stepping, Meyer & Sanders 2003); then each is put in order.
   void order_by_way_from_coast() {
-    constexpr int kRings = 64;
+    constexpr double kMostRings = 4096.0;
     const float farthest_m = kLengths * static_cast<float>(1e3 * law_.settling_km);
-    rings_.resize(kRings + 1);
+    const double places = farthest_m / std::sqrt(graph_.area_m2);
+    const int rings = static_cast<int>(std::clamp(places, 1.0, kMostRings));
+    rings_.resize(rings + 1);
     way_m_.resize(z_.size());
     for (std::int32_t i = 0; i < graph_.size(); ++i) {
       way_m_[i] = z_[i] < 0.0F ? kFar : kLand;
@@ -362,7 +364,7 @@ class Sea {
     }
     ParallelErrors errors;
 #pragma omp parallel for schedule(dynamic, 1)
-    for (int at = 0; at <= kRings; ++at) {
+    for (int at = 0; at <= rings; ++at) {
       errors.guard([&] {
         std::erase_if(rings_[at], [&](const Reached& place) { return is_beaten(place); });
         std::sort(rings_[at].begin(), rings_[at].end());

@@ -60,7 +60,7 @@ struct IslandParameters {
 /// and discharge, mean heights of land over each planet cell stay (the crust rises by as much as
 /// rivers take away), temperature and rain are the planet's, adapted to the finer topography. The
 /// stages inside take the settings that their namesakes have in the run.
-/// Reads a whole planet; throws ConfigurationError on any other grid.
+/// Reads a whole planet: Stage::check refuses any other grid, and a planet that it does not fit.
 std::unique_ptr<Stage> make_island_stage(IslandParameters parameters = {});
 
 }  // namespace geo
