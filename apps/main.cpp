@@ -26,6 +26,7 @@
 #include "log.hpp"
 #include "memory/memory.hpp"
 #include "memory/memory_cap.hpp"
+#include "ranks/ranks.hpp"
 #include "signals.hpp"
 #include "waiting.hpp"
 
@@ -137,22 +138,11 @@ void run_program(int argc, char** argv) {
   action();
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  if (argc == 2 && std::string_view(argv[1]) == kReader) std::_Exit(geo::io::answer_reader());
-  terrane::wait_without_spinning(argc, argv);
-  geo::io::read_files_aside({"/proc/self/exe", kReader});
-  terrane::prepare_memory();
-  terrane::keep_standard_streams();
-  terrane::prepare_signals();
+/// Returns the exit code of the program; every error is told in one line.
+template <class Program>
+int exit_code_of(Program&& program) {
   try {
-    run_program(argc, argv);
-    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-      if (errno == EPIPE) terrane::end_by_broken_pipe();
-      throw geo::IoError("standard output: could not be written");
-    }
-    return 0;
+    return program();
   } catch (const geo::Bug& error) {
     terrane::log_error(
         fmt::format("{} (a bug in terrane: please report it with the command line)", error.what()));
@@ -176,4 +166,27 @@ int main(int argc, char** argv) {
         "unexpected failure (a bug in terrane: please report it with the command line)");
     return static_cast<int>(geo::ErrorKind::bug);
   }
+}
+
+int run_and_flush(int argc, char** argv) {
+  run_program(argc, argv);
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    if (errno == EPIPE) terrane::end_by_broken_pipe();
+    throw geo::IoError("standard output: could not be written");
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc == 2 && std::string_view(argv[1]) == kReader) std::_Exit(geo::io::answer_reader());
+  terrane::wait_without_spinning(argc, argv);
+  geo::io::read_files_aside({"/proc/self/exe", kReader});
+  terrane::prepare_memory();
+  terrane::keep_standard_streams();
+  terrane::prepare_signals();
+  const auto program = [&] { return exit_code_of([&] { return run_and_flush(argc, argv); }); };
+  if (!terrane::is_one_of_several()) return program();
+  return exit_code_of([&] { return terrane::run_as_rank(program); });
 }

@@ -26,6 +26,9 @@ struct MemoryOption {
   [[nodiscard]] double bytes() const;
   /// A cap until its end, or none. `folder` takes the scratch file.
   [[nodiscard]] std::unique_ptr<MemoryCap> cap(const std::string& folder) const;
+  /// What each of so many ranks takes of a run that takes so much by itself: the size that was
+  /// given, or a share. Throws ConfigurationError where so little does not hold the run.
+  [[nodiscard]] double bytes_of_rank(int ranks, double uncapped_bytes) const;
 };
 
 /// Adds --memory and --scratch. `what` is kept within so much: "the run".

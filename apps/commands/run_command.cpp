@@ -15,6 +15,8 @@
 #include "apps/memory/memory_cap.hpp"
 #include "apps/memory_option.hpp"
 #include "apps/progress.hpp"
+#include "apps/ranks/rank_messages.hpp"
+#include "apps/ranks/ranks.hpp"
 #include "apps/signals.hpp"
 #include "apps/thread_count.hpp"
 #include "commands.hpp"
@@ -56,7 +58,10 @@ void print_prediction(const geo::io::RunSession& session, const RunOptions& opti
   const auto& grid = session.grid();
   fmt::print("grid    {} x {}, {} cells\n", grid.nx(), grid.ny(), grid.size());
   fmt::print("stages  {}\n", fmt::join(session.stages_to_run(), " "));
-  if (!options.memory.is_given()) {
+  if (const RankMessages* const ranks = other_ranks()) {
+    const double each = options.memory.bytes_of_rank(ranks->count(), prediction.memory_bytes);
+    fmt::print("memory  at most {} in each of {} ranks\n", shown_bytes(each), ranks->count());
+  } else if (!options.memory.is_given()) {
     fmt::print("memory  about {}\n", shown_bytes(prediction.memory_bytes));
   } else {
     const auto taken = memory_under_cap(options.memory.bytes(), prediction.memory_bytes);
@@ -94,7 +99,7 @@ void refuse_beyond_memory(const geo::io::RunSession& session) {
                   : "an island of fewer cells, island.nx times island.ny";
   throw geo::ConfigurationError(fmt::format(
       "a run on {} x {} cells wants about {} of memory, and there are {} (--memory {:.0f}GiB would "
-      "keep it within less): must be {}",
+      "keep it within less, mpirun would share it among machines): must be {}",
       session.grid().nx(), session.grid().ny(), shown_bytes(wanted), shown_bytes(there),
       std::max(1.0, std::floor(kOurs * there / kGibibyte)), fewer));
 }
@@ -102,8 +107,10 @@ void refuse_beyond_memory(const geo::io::RunSession& session) {
 void run(const RunOptions& options) {
   set_log_style({.json = options.log_json || options.json_progress, .quiet = options.quiet});
   const int threads = use_threads(options.threads);
-  const auto cap = options.dry_run ? nullptr : options.memory.cap(options.folder);
-  if (options.dry_run) static_cast<void>(options.memory.bytes());
+  static_cast<void>(options.memory.bytes());
+  RankMessages* const ranks = options.dry_run ? nullptr : other_ranks();
+  std::unique_ptr<MemoryCap> cap;
+  if (!options.dry_run && ranks == nullptr) cap = options.memory.cap(options.folder);
   Configuration configuration;
   const bool folders_configuration = configure(configuration, options);
   geo::io::RunSession session(configuration.run(), configuration.stage_numbers(),
@@ -117,8 +124,13 @@ void run(const RunOptions& options) {
                                .threads = threads});
   session.prepare();
   if (options.dry_run) print_prediction(session, options, threads);
-  if (!options.memory.is_given()) refuse_beyond_memory(session);
+  if (!options.memory.is_given() && other_ranks() == nullptr) refuse_beyond_memory(session);
   if (options.dry_run) return;
+  if (ranks != nullptr) {
+    const double wanted = session.prediction({}).memory_bytes;
+    cap = std::make_unique<MemoryCap>(options.memory.bytes_of_rank(ranks->count(), wanted), *ranks,
+                                      wanted);
+  }
 
   Progress progress(options.json_progress               ? ProgressStyle::json
                     : options.quiet || options.log_json ? ProgressStyle::none
@@ -152,8 +164,12 @@ void run(const RunOptions& options) {
                                  options.folder));
   }
   if (cap) {
-    log_info(fmt::format("at most {} of memory, {} in the scratch file",
-                         shown_bytes(peak_resident_bytes()), shown_bytes(cap->scratch_bytes())));
+    const std::string kept = shown_bytes(cap->scratch_bytes());
+    log_info(fmt::format("at most {} of memory, {}", shown_bytes(peak_resident_bytes()),
+                         ranks == nullptr
+                             ? kept + " in the scratch file"
+                             : fmt::format("{} shared with the other ranks, {} exchanged with them",
+                                           kept, shown_bytes(cap->exchanged_bytes()))));
   }
   log_info(fmt::format("the files are in {}", options.folder));
 }

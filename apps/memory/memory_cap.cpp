@@ -1,26 +1,23 @@
 #include "memory_cap.hpp"
 
-#include <fcntl.h>
-#include <fmt/format.h>
 #include <malloc.h>
 #include <sys/mman.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cerrno>
-#include <csignal>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <fstream>
+#include <new>
 #include <string>
+#include <utility>
 
+#include "apps/ranks/page_server.hpp"
 #include "block_regions.hpp"
-#include "geo/core/error.hpp"
-#include "memory.hpp"
 #include "memory_pager.hpp"
+#include "memory_size.hpp"
+#include "remote_pages.hpp"
+#include "scratch_file.hpp"
 
 namespace terrane {
 namespace {
@@ -39,7 +36,7 @@ double own_memory_bytes(double cap_bytes) {
 std::atomic<MemoryPager*> pager{nullptr};
 /// From the first address of both regions to the last; outside nothing is locked.
 std::atomic<const std::byte*> first_address{nullptr}, last_address{nullptr};
-std::array<char, 1024> full_message{}, broken_message{};
+std::array<char, 1024> full_message{};
 
 /// Addresses, as many as the system gives: less where it limits them.
 std::byte* reserve(std::size_t& size) {
@@ -55,81 +52,52 @@ std::byte* reserve(std::size_t& size) {
   return nullptr;
 }
 
-fs::path existing_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::path there = fs::absolute(folder, error);
-  while (!fs::exists(there, error) && there.has_relative_path()) there = there.parent_path();
-  return there;
-}
-
-/// A file without a name; where the system has none, one whose name is gone at once.
-int open_scratch(const fs::path& folder) {
-  int file = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-  if (file >= 0 || (errno != EOPNOTSUPP && errno != EISDIR && errno != ENOENT)) return file;
-  std::string name = (folder / ".terrane-scratch-XXXXXX").string();
-  file = ::mkostemp(name.data(), O_CLOEXEC);
-  if (file >= 0) ::unlink(name.c_str());
-  return file;
-}
-
-/// A page of the scratch file that the system can neither read nor write.
-void end_for_lost_page(int, siginfo_t* about, void*) {
-  if (!regions().scratch.has(about->si_addr)) {
-    std::signal(SIGBUS, SIG_DFL);
-    std::raise(SIGBUS);
-    return;
+/// Addresses of both regions; pages of the scratch region are so large.
+void lay_out(double cap_bytes, std::size_t page) {
+  Regions& all = regions();
+  all.memory_limit_pages = static_cast<std::size_t>(own_memory_bytes(cap_bytes)) / kPage;
+  // Memory twice, as freed parts do not always fit the next blocks.
+  all.memory.size = (std::size_t(2) * all.memory_limit_pages * kPage / kLargePage + 1) * kLargePage;
+  all.scratch.size = std::size_t(8) << 40;
+  all.scratch.page = page;
+  for (Region* region : {&all.memory, &all.scratch}) {
+    region->base = reserve(region->size);
+    if (region->base == nullptr) throw std::bad_alloc();
+    region->ranges = PageRanges(region->size / region->page);
   }
-  end_at_once(broken_message.data(), static_cast<int>(geo::ErrorKind::io));
+  ::mprotect(all.memory.base, all.memory.size, PROT_READ | PROT_WRITE);
+  ::madvise(all.memory.base, all.memory.size, MADV_HUGEPAGE);
 }
 
 }  // namespace
 
 MemoryCap::MemoryCap(double cap_bytes, const fs::path& folder) {
-  const fs::path there = existing_folder(folder);
-  Regions& all = regions();
-  all.file = open_scratch(there);
-  if (all.file < 0) {
-    throw geo::IoError(
-        fmt::format("{}: no scratch file for --memory: {}; --scratch DIR names another folder",
-                    there.string(), std::strerror(errno)));
-  }
-  std::snprintf(
-      full_message.data(), full_message.size(),
-      "%.700s: the disk is too full for the scratch file of --memory; --scratch DIR names "
-      "a folder on another",
-      there.c_str());
-  std::snprintf(
-      broken_message.data(), broken_message.size(),
-      "%.700s: the scratch file of --memory could not be read or written: the disk is full "
-      "or fails; --scratch DIR names a folder on another",
-      there.c_str());
-  all.memory_limit_pages = static_cast<std::size_t>(own_memory_bytes(cap_bytes)) / kPage;
-  // Memory twice, as freed parts do not always fit the next blocks.
-  std::size_t size =
-      (std::size_t(2) * all.memory_limit_pages * kPage / kLargePage + 1) * kLargePage;
-  std::size_t scratch = std::size_t(8) << 40;
-  all.memory.base = reserve(size);
-  all.memory.size = size;
-  all.scratch.base = reserve(scratch);
-  all.scratch.size = scratch;
-  if (all.memory.base == nullptr || all.scratch.base == nullptr) throw std::bad_alloc();
-  ::mprotect(all.memory.base, size, PROT_READ | PROT_WRITE);
-  ::madvise(all.memory.base, size, MADV_HUGEPAGE);
-  if (::mmap(all.scratch.base, scratch, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_FIXED, all.file,
-             0) == MAP_FAILED) {
-    throw geo::IoError(
-        fmt::format("{}: the scratch file of --memory cannot be mapped: {}; --scratch "
-                    "DIR names another folder",
-                    there.string(), std::strerror(errno)));
-  }
-  all.memory.ranges = PageRanges(size / kPage);
-  all.scratch.ranges = PageRanges(scratch / kPage);
-  struct sigaction action {};
-  action.sa_sigaction = end_for_lost_page;
-  action.sa_flags = SA_SIGINFO;
-  sigaction(SIGBUS, &action, nullptr);
+  auto file = std::make_unique<ScratchFile>(folder);
+  lay_out(cap_bytes, kPage);
+  file->map(regions().scratch.base, regions().scratch.size);
+  std::snprintf(full_message.data(), full_message.size(), "%s", file->full_message().c_str());
+  regions().store = std::move(file);
+  begin(cap_bytes);
+}
+
+MemoryCap::MemoryCap(double cap_bytes, RankMessages& ranks, double uncapped_bytes) {
+  // The system keeps a list of parts that can be touched or not, and lets it have 65 530 entries.
+  constexpr double kMostPages = 20000.0;
+  std::size_t page = kPage;
+  while (static_cast<double>(page) * kMostPages < uncapped_bytes) page *= 2;
+  static PagesAtRanks at_ranks(ranks, page);
+  lay_out(cap_bytes, page);
+  const Region& scratch = regions().scratch;
+  auto pages = std::make_unique<RemotePages>(scratch.base, scratch.size, at_ranks);
+  remote_ = pages.get();
+  regions().store = std::move(pages);
+  begin(cap_bytes);
+}
+
+void MemoryCap::begin(double cap_bytes) {
+  const Regions& all = regions();
   first_address = std::min(all.memory.base, all.scratch.base);
-  last_address = std::max(all.memory.base + size, all.scratch.base + scratch);
+  last_address = std::max(all.memory.base + all.memory.size, all.scratch.base + all.scratch.size);
   mallopt(M_TRIM_THRESHOLD, 16 << 20);
   pager_ = std::make_unique<MemoryPager>(static_cast<std::size_t>(cap_bytes));
   pager = pager_.get();
@@ -141,7 +109,11 @@ MemoryCap::~MemoryCap() {
 
 double MemoryCap::scratch_bytes() const {
   const std::lock_guard lock(regions().mutex);
-  return static_cast<double>(regions().scratch.most_pages * kPage);
+  return static_cast<double>(regions().scratch.most_pages * regions().scratch.page);
+}
+
+double MemoryCap::exchanged_bytes() const {
+  return remote_ == nullptr ? 0.0 : static_cast<double>(remote_->exchanged_bytes());
 }
 
 void* capped_block(std::size_t size) noexcept {
@@ -167,7 +139,7 @@ bool free_capped_block(void* block) noexcept {
                                                   : nullptr;
   if (region == nullptr) return false;
   const std::lock_guard lock(all.mutex);
-  region->ranges.give(static_cast<std::size_t>(place - region->base) / kPage);
+  region->ranges.give(static_cast<std::size_t>(place - region->base) / region->page);
   return true;
 }
 
@@ -190,6 +162,13 @@ MemoryUnderCap memory_under_cap(double cap_bytes, double uncapped_bytes) {
   const double waiting = std::max(0.0, large - own_memory_bytes(cap_bytes));
   // A late look finds more than the mark: half of what is kept clear is taken at some time.
   return {std::min(uncapped_bytes, cap_bytes - 0.5 * least_clear_bytes(cap_bytes)), waiting};
+}
+
+double cap_of_rank(double uncapped_bytes, int ranks) {
+  // Its share and a quarter more for what comes back while something else is away, and the program.
+  constexpr double kMore = 1.25, kWithMpi_bytes = 35e6;
+  return std::max(kLeastMemory_bytes,
+                  kMore * uncapped_bytes / ranks + kProgram_bytes + kWithMpi_bytes);
 }
 
 }  // namespace terrane

@@ -7,43 +7,57 @@
 namespace terrane {
 
 class MemoryPager;
+class RankMessages;
+class RemotePages;
 
 /// Keeps the memory that the program has resident below a cap, from its construction to its end.
 ///
 /// Large blocks then lie in a region of addresses of their own. Up to two fifths of the cap
-/// they have memory as usual; the rest is mapped from a scratch file, whose room on the disk is
-/// reserved block by block. A thread looks every millisecond how much is resident. Near the cap it
-/// drops pages of freed blocks and then, going round, those of the scratch file: a dropped page
-/// stays in the system's cache of files as long as the machine has memory to spare, on the disk
-/// otherwise, and comes back when it is touched. Nothing of this changes what a kernel reads or
-/// writes.
+/// they have memory as usual; the rest lies in pages that can be elsewhere: in a scratch file,
+/// whose room on the disk is reserved block by block, or with the other ranks of the job. A thread
+/// looks every millisecond how much is resident. Near the cap it drops pages of freed blocks and
+/// then, going round, those that can be elsewhere. One that was dropped comes back when it is
+/// touched: from the system's cache of files as long as the machine has memory to spare, from the
+/// disk, from its rank. Nothing of this changes what a kernel reads or writes.
 ///
-/// The scratch file has no name and ends with the program, however that ends. One at a time; blocks
-/// may outlive it.
+/// The scratch file has no name and ends with the program, however that ends. One cap at a time;
+/// blocks may outlive it.
 class MemoryCap {
  public:
   /// `folder`, or the nearest one above it that exists, takes the scratch file. Throws IoError
   /// where it cannot.
   MemoryCap(double cap_bytes, const std::filesystem::path& folder);
+  /// What does not fit is kept by the other ranks, which must be serving pages.
+  /// `uncapped_bytes`: what the run takes without a cap; pages are as large as that many need.
+  MemoryCap(double cap_bytes, RankMessages& ranks, double uncapped_bytes);
   ~MemoryCap();
   MemoryCap(const MemoryCap&) = delete;
   MemoryCap& operator=(const MemoryCap&) = delete;
 
-  /// The most that was in the scratch file at a time.
+  /// The most that was in the scratch region at a time.
   [[nodiscard]] double scratch_bytes() const;
+  /// What went to other ranks and came back.
+  [[nodiscard]] double exchanged_bytes() const;
 
  private:
+  void begin(double cap_bytes);
+
   std::unique_ptr<MemoryPager> pager_;
+  const RemotePages* remote_ = nullptr;
 };
 
 /// The most that this process ever had resident; 0 if the system does not tell.
 double peak_resident_bytes();
 
-/// What a run that takes so much without a cap takes under one: of memory, and of the scratch file.
+/// What a run that takes so much without a cap takes under one: of memory, and of the scratch
+/// region.
 struct MemoryUnderCap {
   double resident_bytes = 0.0, scratch_bytes = 0.0;
 };
 MemoryUnderCap memory_under_cap(double cap_bytes, double uncapped_bytes);
+
+/// The cap of each of so many ranks for a run that takes so much without one.
+double cap_of_rank(double uncapped_bytes, int ranks);
 
 /// A large block while memory is capped. Null for blocks that are none of its own, which come from
 /// the heap, and where there is no room.

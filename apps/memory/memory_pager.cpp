@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <malloc.h>
-#include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -21,7 +20,7 @@ double least_clear_bytes(double cap_bytes) {
 
 MemoryPager::MemoryPager(std::size_t cap_bytes) : cap_(cap_bytes) {
   keep_clear(least_clear());
-  most_on_disk_pages_ = pages_of(cap_bytes / 4);
+  most_on_disk_pages_ = regions().scratch.pages_of(cap_bytes / 4);
   statm_ = ::open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
   own_at_first_ = resident().own;
   watching_.emplace(std::chrono::milliseconds(1), [this] { look(); });
@@ -35,17 +34,26 @@ MemoryPager::~MemoryPager() {
 }
 
 void MemoryPager::look() {
-  const std::size_t taken = taken_bytes();
-  if (taken <= high_) return forget();
   const std::unique_lock lock(dropping_, std::try_to_lock);
   if (!lock) return;
+  const std::size_t taken = taken_bytes();
+  if (taken > high_) {
+    drop_until_low(taken);
+  } else {
+    forget();
+  }
+  regions().store->allow(cap_ - std::min(cap_, taken_bytes()));
+}
+
+void MemoryPager::drop_until_low(std::size_t taken) {
   // On a busy machine this thread comes late: the later it came, the more is kept clear.
   const std::size_t late = std::min(2 * (taken - std::min(taken, high_.load())), cap_ / 5 * 2);
-  if (late > cap_ - high_) keep_clear(late);
+  if (late > cap_ - high_ && !regions().store->asks_for_room()) keep_clear(late);
   while (taken_bytes() > low_) {
-    if (drop_one_free(regions().scratch, Trace::disk)) continue;
-    if (drop_one_free(regions().memory, Trace::none)) continue;
+    if (drop_one_free_of_scratch() || drop_one_free_of_memory()) continue;
     if (!drop_round()) break;
+    // Whoever waits for room need not wait for all of it.
+    regions().store->allow(cap_ - std::min(cap_, taken_bytes()));
   }
 }
 
@@ -63,13 +71,11 @@ std::size_t MemoryPager::taken_bytes() const {
   const Resident now = resident();
   Regions& all = regions();
   const std::lock_guard lock(all.mutex);
-  const std::size_t promised = all.memory.ranges.pages_in_use() * kPage;
+  const std::size_t promised = all.memory.ranges.pages_in_use() * all.memory.page;
   return now.of_files + std::max(now.own, own_at_first_ + promised);
 }
 
-std::size_t MemoryPager::least_clear() const {
-  return static_cast<std::size_t>(least_clear_bytes(static_cast<double>(cap_)));
-}
+std::size_t MemoryPager::least_clear() const { return regions().store->least_clear_bytes(cap_); }
 
 void MemoryPager::forget() {
   constexpr std::size_t kLooks = 1000;
@@ -83,17 +89,17 @@ void MemoryPager::keep_clear(std::size_t margin) {
 }
 
 bool MemoryPager::drop_round() {
-  constexpr std::size_t kStep = 4 * kMebibyte / kPage;
   Regions& all = regions();
+  const std::size_t step = all.scratch.pages_of(4 * kMebibyte);
   std::size_t reach = 0;
   {
     const std::lock_guard lock(all.mutex);
     reach = all.scratch.ranges.reach();
   }
-  for (std::size_t gone = 0; gone < reach; gone += kStep) {
+  for (std::size_t gone = 0; gone < reach; gone += step) {
     if (hand_ >= reach) hand_ = 0;
-    const std::size_t pages = std::min(kStep, reach - hand_);
-    ::madvise(all.scratch.at(hand_), pages * kPage, MADV_DONTNEED);
+    const std::size_t pages = std::min(step, reach - hand_);
+    all.store->send_away({hand_, pages});
     hand_ += pages;
     if (taken_bytes() <= low_) return true;
   }
@@ -111,7 +117,7 @@ void MemoryPager::cut() const {
     const std::lock_guard lock(all.mutex);
     return all.scratch.ranges.free_pages(Trace::disk) > most_on_disk_pages_;
   };
-  while (is_much() && cut_one_free(Trace::disk)) {
+  while (is_much() && forget_one_free(Trace::disk)) {
   }
 }
 

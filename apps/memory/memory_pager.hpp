@@ -35,6 +35,7 @@ class MemoryPager {
   /// that goes faster than anybody could look.
   [[nodiscard]] std::size_t taken_bytes() const;
   [[nodiscard]] std::size_t least_clear() const;
+  void drop_until_low(std::size_t taken);
   /// That it came late once says less and less of now.
   void forget();
   void keep_clear(std::size_t margin);

@@ -60,12 +60,18 @@ void redirect(const std::filesystem::path& file, int descriptor) {
       (::setgroups(0, nullptr) != 0 || ::setgid(kNobody) != 0 || ::setuid(kNobody) != 0)) {
     ::_exit(kCouldNotStart);
   }
-  std::vector<std::string> words{TERRANE_PROGRAM};
+  std::vector<std::string> words;
+  if (call.ranks > 0) {
+    words = {"mpirun", "--oversubscribe", "-n", std::to_string(call.ranks)};
+    ::setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
+    ::setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
+  }
+  words.emplace_back(TERRANE_PROGRAM);
   words.insert(words.end(), call.arguments.begin(), call.arguments.end());
   std::vector<char*> pointers;
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
-  ::execv(TERRANE_PROGRAM, pointers.data());
+  ::execvp(pointers.front(), pointers.data());
   ::_exit(kCouldNotStart);
 }
 
@@ -88,6 +94,19 @@ Running::~Running() {
 
 void Running::send(int signal_number) const {
   if (!ended_) ::kill(process_, signal_number);
+}
+
+bool Running::send_to_rank(int rank, int signal_number) const {
+  const std::string parent = std::to_string(process_);
+  std::istringstream children(text_of("/proc/" + parent + "/task/" + parent + "/children"));
+  const std::string mark = "OMPI_COMM_WORLD_RANK=" + std::to_string(rank);
+  for (pid_t child = 0; children >> child;) {
+    std::istringstream entries(text_of("/proc/" + std::to_string(child) + "/environ"));
+    for (std::string entry; std::getline(entries, entry, '\0');) {
+      if (entry == mark) return ::kill(child, signal_number) == 0;
+    }
+  }
+  return false;
 }
 
 void Running::note(int status, const rusage& used) {
@@ -153,6 +172,16 @@ std::string Running::environment() const {
 Outcome terrane(const Call& call) { return Running(call).finish(); }
 Outcome terrane(std::vector<std::string> arguments) {
   return terrane(Call{.arguments = std::move(arguments), .environment = {}, .working_folder = {}});
+}
+
+bool can_start_ranks() {
+  std::istringstream folders(std::getenv("PATH"));
+  const std::filesystem::path module =
+      std::filesystem::path(TERRANE_PROGRAM).parent_path() / "terrane_mpi.so";
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    if (std::filesystem::exists(folder + "/mpirun")) return std::filesystem::exists(module);
+  }
+  return false;
 }
 
 std::string text_of(const std::filesystem::path& file) {

@@ -27,6 +27,7 @@ struct Call {
   long file_size_limit_bytes = -1;      ///< RLIMIT_FSIZE; negative: none
   bool as_nobody = false;               ///< without the rights of root
   long address_space_limit_bytes = -1;  ///< RLIMIT_AS; negative: none
+  int ranks = 0;                        ///< processes that mpirun starts; 0: without mpirun
 };
 
 /// The program on its way, heard through files in a folder of its own.
@@ -38,6 +39,8 @@ class Running {
   Running& operator=(const Running&) = delete;
 
   void send(int signal_number) const;
+  /// To one of the ranks that mpirun has started; false where there is none of that number.
+  [[nodiscard]] bool send_to_rank(int rank, int signal_number) const;
   /// Whether it still runs.
   bool alive();
   /// Waits until `condition` holds or the program has ended; true when the condition came first.
@@ -65,6 +68,9 @@ class Running {
 /// Runs `terrane` to its end.
 Outcome terrane(const Call& call);
 Outcome terrane(std::vector<std::string> arguments);
+
+/// Whether mpirun is there, and a program that it can start.
+bool can_start_ranks();
 
 std::string text_of(const std::filesystem::path& file);
 std::vector<std::string> lines_of(const std::string& text);

@@ -103,9 +103,12 @@ class Job:
                 continue
         return found
 
-    def planet(self, program):
-        """The process of terrane run."""
-        return next((number for number, words in self.processes() if words.startswith(f"{program} run ")), None)
+    def planet(self, program, rank=None):
+        """The process of terrane run, or that of one of its ranks."""
+        def is_rank(number):
+            return rank is None or f"SLURM_PROCID={rank}".encode() in Path(f"/proc/{number}/environ").read_bytes().split(b"\0")
+        return next((number for number, words in self.processes()
+                     if words.startswith(f"{program} run ") and is_rank(number)), None)
 
 
 class Cluster:
@@ -215,6 +218,21 @@ class Checks:
         self.must_be_the_same(out)
         threads = json.loads((out / "manifest.json").read_text())["threads"]
         require(threads == 3, f"the step had 3 processors, the planet {threads} threads")
+
+    def check_ranks(self):
+        """A planet of three ranks on two nodes loses one of them: the job ends at once and says so; two go on."""
+        out = self.work / "ranks"
+        job = self.submit(out, "--nodes=2", "--ntasks=3")
+        kept = self.under_way(job, out)
+        wait_until("the second rank", lambda: job.planet(self.program, rank=1))
+        begun = time.monotonic()
+        os.kill(job.planet(self.program, rank=1), signal.SIGKILL)
+        job.wait_for(*ENDED)
+        require(time.monotonic() - begun < 30, "the job did not end with its rank")
+        told = [line for line in job.log.read_text().splitlines() if "terrane: error:" in line]
+        require(len(told) == 1 and "another of its ranks died" in told[0], f"said of it: {told}")
+        self.submit(out, "--nodes=1", "--ntasks=2").wait_for("COMPLETED")
+        self.must_be_the_same(out, kept)
 
     def check_drained(self):
         """A node is drained: its job goes on, and requeued it goes on elsewhere."""

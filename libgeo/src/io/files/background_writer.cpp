@@ -10,10 +10,11 @@
 namespace geo::io {
 namespace {
 
-/// Signals are the main thread's to handle.
+/// Signals are the main thread's to handle, but those that a thread's own work brings about.
 void block_signals() {
   sigset_t all;
   sigfillset(&all);
+  for (const int own : {SIGSEGV, SIGBUS, SIGFPE, SIGILL}) sigdelset(&all, own);
   pthread_sigmask(SIG_BLOCK, &all, nullptr);
 }
 
