@@ -1,6 +1,7 @@
 #include "remote_pages.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <linux/futex.h>
 #include <pthread.h>
 #include <sys/mman.h>
@@ -11,7 +12,7 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
-#include <new>
+#include <cstring>
 
 #include "geo/core/error.hpp"
 #include "memory.hpp"
@@ -61,7 +62,8 @@ RemotePages::RemotePages(std::byte* base, std::size_t bytes, PagesAtRanks& ranks
       ::mmap(base, bytes, PROT_NONE, MAP_SHARED | MAP_FIXED | MAP_NORESERVE, file_, 0) ==
           MAP_FAILED ||
       ::pipe2(pipe.data(), O_CLOEXEC) != 0) {
-    throw std::bad_alloc();
+    throw geo::IoError(
+        fmt::format("memory to share with other ranks cannot be had: {}", std::strerror(errno)));
   }
   static_assert(fresh == 0 && Word::is_always_lock_free, "as the system gives memory");
   state_ = {static_cast<Word*>(states), pages_};
@@ -109,7 +111,8 @@ void RemotePages::wait_for_room() noexcept {
 }
 
 void RemotePages::allow(std::size_t bytes) {
-  allowed_ = static_cast<std::int64_t>(bytes / page_bytes_);
+  constexpr std::size_t kAlways = 16;  // else nothing would ever go on where a cap is too small
+  allowed_ = static_cast<std::int64_t>(std::max(kAlways, bytes / page_bytes_));
   ++allowances_;
   wake(allowances_);
 }

@@ -22,8 +22,8 @@ namespace terrane {
 /// state.
 class RemotePages : public PageStore {
  public:
-  /// The region [base, base + bytes), which is mapped anew. Throws std::bad_alloc where the system
-  /// does not let it. One at a time, to the end of the program.
+  /// The region [base, base + bytes), which is mapped anew. Throws IoError where the system does
+  /// not let it. One at a time, to the end of the program.
   RemotePages(std::byte* base, std::size_t bytes, PagesAtRanks& ranks);
   ~RemotePages() override;
 

@@ -12,6 +12,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,6 +26,20 @@ namespace terrane {
 namespace {
 
 RankMessages* others = nullptr;
+
+std::optional<long> number_of(const char* variable) {
+  const char* const text = std::getenv(variable);
+  if (text == nullptr) return std::nullopt;
+  return std::strtol(text, nullptr, 10);
+}
+
+/// What the launcher calls this process, as long as MPI has not said it.
+long rank_by_launcher() {
+  for (const char* const name : {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"}) {
+    if (const auto rank = number_of(name)) return *rank;
+  }
+  return 0;
+}
 
 /// Beside the program where it was built, in the folder of modules where it was installed.
 RankMessages* load_messages() {
@@ -90,18 +105,16 @@ void leave_job() {
 }  // namespace
 
 bool is_one_of_several() {
-  const auto count = [](const char* name) {
-    const char* const text = std::getenv(name);
-    return text == nullptr ? 0L : std::strtol(text, nullptr, 10);
-  };
+  const auto count = [](const char* name) { return number_of(name).value_or(0); };
   // Open MPI's launcher, MPICH's and its kin, Slurm's with PMIx.
   return count("OMPI_COMM_WORLD_SIZE") > 1 || count("PMI_SIZE") > 1 ||
-         (std::getenv("PMIX_RANK") != nullptr && count("SLURM_STEP_NUM_TASKS") > 1);
+         (number_of("PMIX_RANK") && count("SLURM_STEP_NUM_TASKS") > 1);
 }
 
 int run_as_rank(const std::function<int()>& program) {
   const std::unique_ptr<RankMessages> messages(load_messages());
   if (!messages) {
+    if (rank_by_launcher() > 0) return static_cast<int>(geo::ErrorKind::configuration);
     throw geo::ConfigurationError(
         "this build of terrane has no MPI: start it without mpirun or srun, or build it where MPI "
         "is (libopenmpi-dev)");

@@ -183,6 +183,8 @@ class Checks:
     def under_way(self, job, folder):
         """Waits until the planet is in the middle of a stage; when the files of earlier ones were written."""
         def has_relief():
+            state = job.state()
+            require(state not in ENDED, f"job {job.number}: {state} before it was under way: {job.tail()}")
             try:
                 stages = json.loads((folder / "manifest.json").read_text())["stages"]
             except OSError:

@@ -1,8 +1,8 @@
 // The module that `terrane` loads where MPI has started it.
 #include <mpi.h>
 
+#include <algorithm>
 #include <array>
-#include <cstring>
 #include <vector>
 
 #include "apps/ranks/rank_messages.hpp"
@@ -30,11 +30,13 @@ class MpiMessages : public RankMessages {
   [[nodiscard]] int count() const override { return count_; }
 
   void expect(std::size_t bytes) override {
-    for (auto& copy : copies_) copy.reserve(bytes);
+    constexpr std::size_t kRoom = std::size_t(16) << 20;
+    most_ = std::clamp<std::size_t>(kRoom / bytes, 4, copies_.size());
+    for (std::size_t k = 0; k < most_; ++k) copies_[k].reserve(bytes);
   }
 
   void send(int to, std::span<const std::byte> bytes) override {
-    next_ = (next_ + 1) % kOnTheWay;
+    next_ = (next_ + 1) % most_;
     MPI_Wait(&requests_[next_], MPI_STATUS_IGNORE);
     std::vector<std::byte>& copy = copies_[next_];
     copy.assign(bytes.begin(), bytes.end());
@@ -65,7 +67,8 @@ class MpiMessages : public RankMessages {
   }
 
   static constexpr int kOnTheWay = 64;
-  int rank_ = 0, count_ = 1, next_ = 0;
+  int rank_ = 0, count_ = 1;
+  std::size_t most_ = kOnTheWay, next_ = 0;  ///< messages on their way
   std::array<MPI_Request, kOnTheWay> requests_{};
   std::array<std::vector<std::byte>, kOnTheWay> copies_;
 };
