@@ -45,8 +45,7 @@ void add_memory_options(CLI::App& command, MemoryOption& option, std::string_vie
   command
       .add_option("--memory", option.memory,
                   fmt::format("Keep {} within so much memory, such as 16GiB or 500MB: what does "
-                              "not fit waits in a scratch file, with the other ranks under mpirun; "
-                              "same bits",
+                              "not fit waits in a scratch file; same bits",
                               what))
       ->type_name("SIZE");
   command

@@ -239,7 +239,7 @@ void add_stage_options(CLI::App& command, RunOptions& o) {
 void add_manner_options(CLI::App& command, RunOptions& o) {
   command.add_option("--threads", o.threads, "Threads (default: as many as there are cores)")
       ->type_name("N");
-  add_memory_options(command, o.memory, "the run");
+  add_memory_options(command, o.memory, "the run (under mpirun each of its ranks)");
   command.add_flag("--no-vtk", o.no_vtk, "Write no files for ParaView");
   command.add_flag("--no-maps", o.no_maps, "Draw no maps and no report");
   command.add_flag("--dry-run", o.dry_run,

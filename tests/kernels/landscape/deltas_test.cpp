@@ -30,7 +30,8 @@ TEST(Deltas, OnAnEvenFloorAreHalfDiscsOfWhatTheRiverBrings) {
   const Index mouth = shore.grid.cell(5, 30);
   const double brought = 1e10;  // 10 m of it: 1000 km2
   shore.volume[mouth] = brought;
-  build_deltas(shore.grid, {}, shore.sea, shore.z, shore.volume, shore.laid);
+  const DeltaLaw level{.front_m = 2.0, .slope = 0.0};
+  build_deltas(shore.grid, level, shore.sea, shore.z, shore.volume, shore.laid);
   const auto filled =
       std::count_if(shore.laid.begin(), shore.laid.end(), [](float m) { return m > 0.0F; });
   ASSERT_NEAR(static_cast<double>(filled), 250.0, 1.0);
@@ -48,13 +49,44 @@ TEST(Deltas, OnAnEvenFloorAreHalfDiscsOfWhatTheRiverBrings) {
   EXPECT_NEAR(2.0 * farthest, std::sqrt(2e3 / std::numbers::pi), 3.0);
 }
 
+// Flats at one height would all drown, or all fall dry, with the least change of the sea's level.
+TEST(Deltas, FallFromTheMouthToTheShoreByTheirSlope) {
+  Shore shore;
+  const int column = 5, row = 30;
+  const Index mouth = shore.grid.cell(column, row);
+  shore.volume[mouth] = 3e10;
+  const DeltaLaw law;
+  build_deltas(shore.grid, law, shore.sea, shore.z, shore.volume, shore.laid);
+  const auto plain_m = [&](int i) {
+    const Index c = shore.grid.cell(i, row);
+    return shore.z[c] + shore.laid[c];
+  };
+  int last = column;
+  while (shore.laid[shore.grid.cell(last + 1, row)] > 0.0F) ++last;
+  ASSERT_GT(last - column, 10);
+  const double step_m = 2e3;
+  for (int i = column; i < last; ++i) {
+    EXPECT_NEAR(plain_m(i) - plain_m(i + 1), law.slope * step_m, 1e-5);
+  }
+  EXPECT_NEAR(plain_m(last), law.front_m, 2.0 * law.slope * step_m);
+}
+
+TEST(Deltas, AreNoHigherThanTheLandThatTheRiverComesFrom) {
+  Shore shore;
+  for (float& z : shore.z) z = z > 0.0F ? 1.0F : z;
+  const Index mouth = shore.grid.cell(5, 30);
+  shore.volume[mouth] = 3e10;
+  build_deltas(shore.grid, {}, shore.sea, shore.z, shore.volume, shore.laid);
+  EXPECT_EQ(shore.z[mouth] + shore.laid[mouth], 1.0F);
+}
+
 TEST(Deltas, StopWhereTheWaterIsDeepAndSmallRiversBuildNone) {
   Shore shore(4.0F);
   const Index mouth = shore.grid.cell(5, 10), brook = shore.grid.cell(5, 50);
   shore.volume[mouth] = 1e13;
-  shore.volume[brook] = 9.0 * shore.grid.area_m2(0);
+  shore.volume[brook] = 8.4 * shore.grid.area_m2(0);
   build_deltas(shore.grid, {}, shore.sea, shore.z, shore.volume, shore.laid);
-  EXPECT_EQ(shore.volume[brook], 9.0 * shore.grid.area_m2(0));
+  EXPECT_EQ(shore.volume[brook], 8.4 * shore.grid.area_m2(0));
   EXPECT_GT(shore.volume[mouth], 0.0);
   for (Index c = 0; c < shore.grid.size(); ++c) {
     if (shore.laid[c] > 0.0F) {

@@ -86,7 +86,7 @@ TEST(Island, BlueprintsClimateHoldsAtTheIslandsOwnPlaces) {
     StageIo io(state, stage.info());
     stage.run(io, context);
   }
-  IslandParameters p = around(mouth_of(great_rivers(1).front()));
+  IslandParameters p = around(place_of(mouth_of(great_rivers(1).front())));
   p.climate_smoothing_km = 0.0;
   const auto stage = make_island_stage(p);
   StageIo io(state, stage->info());

@@ -95,11 +95,11 @@ std::vector<Index> great_rivers(std::size_t count, const State& whole) {
   return rivers;
 }
 
-Centre mouth_of(Index river) {
-  const auto receiver = planet().read(field::flow_receiver);
-  const auto z = planet().read(field::elevation);
+Index mouth_of(Index river, const State& whole) {
+  const auto receiver = whole.read(field::flow_receiver);
+  const auto z = whole.read(field::elevation);
   while (receiver[river] != river && z[receiver[river]] >= 0.0F) river = receiver[river];
-  return place_of(river);
+  return river;
 }
 
 bool on_edge(const Grid& grid, Index c) { return grid.is_open_edge(grid.column(c), grid.row(c)); }

@@ -30,7 +30,7 @@ Centre place_of(Index planet_cell, const Grid& grid = planet().grid());
 /// flows on.
 std::vector<Index> great_rivers(std::size_t count, const State& whole = planet());
 /// Where a river reaches the sea: there is land and sea around.
-Centre mouth_of(Index river);
+Index mouth_of(Index river, const State& whole = planet());
 
 bool on_edge(const Grid& grid, Index c);
 /// All land drains to the sea, off the edge or into a lake.

@@ -262,16 +262,20 @@ Straight straight_rivers(const std::vector<State>& islands) {
   return found;
 }
 
-// A planet's cells are as large as these windows: what lies between them is the island's own.
+// A planet's cells are as large as these windows: what lies between them is the island's own. Among
+// the mouths are plains that are all but even.
 TEST(Island, RiversBetweenThePlanetsCellsDoNotFollowTheGrid) {
   std::vector<State> islands;
-  for (const Index river : great_rivers(3)) {
-    for (const Centre place : {place_of(river), mouth_of(river)}) {
-      IslandParameters p;
-      p.nx = 512;
-      p.ny = 256;
-      p.center = text(place);
-      islands.push_back(make(p).island);
+  for (const std::uint64_t seed : {3U, 4U}) {
+    const State whole = make_planet(seed);
+    for (const Index river : great_rivers(3, whole)) {
+      for (const Index cell : {river, mouth_of(river, whole)}) {
+        IslandParameters p;
+        p.nx = 512;
+        p.ny = 256;
+        p.center = text(place_of(cell, whole.grid()));
+        islands.push_back(make(p, whole).island);
+      }
     }
   }
   const Straight found = straight_rivers(islands);

@@ -52,7 +52,7 @@ TEST(Island, MeansOverThePlanetsCellsAreThePlanetsWithinTheDetail) {
 TEST(Island, CoastsWindAboutThePlanetsAndTakeAsMuchAsTheyGive) {
   double shore_m = 0.0, gained_m2 = 0.0, lost_m2 = 0.0, fray = 0.0;
   for (const Index river : great_rivers(4)) {
-    IslandParameters p = around(mouth_of(river));
+    IslandParameters p = around(place_of(mouth_of(river)));
     p.detail_amplitude = p.least_roughness_m = 0.0;
     p.erosion_steps = 0;
     fray = p.coast_fray;

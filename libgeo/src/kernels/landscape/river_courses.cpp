@@ -348,7 +348,7 @@ class Tracing {
   }
   /// The courses with how far each may sink below the level that the planet has for it.
   [[nodiscard]] RiverCourses take() {
-    constexpr float kShare = 0.25F, kAnywhere_m = 30.0F;
+    constexpr float kShare = 0.1F, kAnywhere_m = 30.0F;
     RiverCourses courses = network_.take();
     courses.shortcut = std::max(courses.shortcut, 2 * beds_.quarter());
     for (std::size_t k = 0; k < courses.cell.size(); ++k) {

@@ -136,8 +136,9 @@ void unit_detail_near_edge(const Grid& fine, const DetailLaw& law, double seam_m
 
 double with_detail(double height_m, double detail_m, double inland) {
   const double plainly = height_m + detail_m;
-  if (!(detail_m < 0.0 && height_m > 0.0 && inland > 0.0)) return plainly;
-  return plainly + inland * (height_m * std::exp(detail_m / height_m) - plainly);
+  if (!(detail_m < 0.0 && inland > 0.0)) return plainly;
+  const double above = height_m > 0.0 ? height_m * std::exp(detail_m / height_m) : height_m;
+  return plainly + inland * (above - plainly);
 }
 
 double edge_ramp(const Grid& fine, int column, int row, double width_m) {

@@ -83,6 +83,37 @@ std::vector<float> strip_widths_m(const PlanetCells& cells, std::uint64_t seed) 
   return width_m;
 }
 
+/// Detail of a surface in m, and what of it is there near the edge.
+struct Detail {
+  std::vector<float> inside_m, near_edge_m;
+};
+
+/// No ground is quite even: terraces, levees and dunes are there below 10 km on the flattest plain.
+/// Adds as much of them as makes the roughness at that length the least; on a plain that is even
+/// rivers would run straight along the grid. `roughness_m`: of each planet cell, at the length of
+/// `law`.
+void add_least_roughness(const PlanetCells& cells, const IslandParameters& p, const DetailLaw& law,
+                         std::uint64_t seed, std::span<const float> roughness_m, Detail& detail) {
+  constexpr double kLength_m = 10e3, kHurst = 0.5;
+  const Grid& fine = cells.fine();
+  DetailLaw plain;
+  plain.wavelength_m = std::min(kLength_m, law.wavelength_m);
+  plain.octaves = std::max(1, static_cast<int>(std::log2(0.5 * plain.wavelength_m / p.cell_m)) + 1);
+  plain.gain = std::exp2(-kHurst);
+  const double share_there = std::pow(plain.wavelength_m / law.wavelength_m, p.detail_hurst);
+  std::vector<float> inside(fine.size());
+  unit_detail(fine, plain, seed, "island.plain", inside);
+  std::vector<float> near_edge = inside;
+  unit_detail_near_edge(fine, plain, seam_m(cells), seed, "island.plain", near_edge);
+  on_cells(fine, [&](int i, int j, Index c) {
+    const double there_m = share_there * std::max(0.0, cells.interpolate(roughness_m, i, j));
+    const double lacks_m2 = p.least_roughness_m * p.least_roughness_m - there_m * there_m;
+    const auto more_m = static_cast<float>(p.detail_amplitude * std::sqrt(std::max(0.0, lacks_m2)));
+    detail.inside_m[c] += more_m * inside[c];
+    detail.near_edge_m[c] += more_m * near_edge[c];
+  });
+}
+
 }  // namespace
 
 void add_rough_detail(const PlanetCells& cells, const PlanetTerrain& planet,
@@ -91,29 +122,30 @@ void add_rough_detail(const PlanetCells& cells, const PlanetTerrain& planet,
   const Grid& fine = cells.fine();
   DetailLaw law = detail_law(cells, p.cell_m);
   law.gain = std::exp2(-p.detail_hurst);
-  std::vector<float> detail(fine.size()), roughness(cells.size());
-  unit_detail(fine, law, seed, "island.detail", detail);
-  std::vector<float> near_edge = detail;
-  unit_detail_near_edge(fine, law, seam_m(cells), seed, "island.detail", near_edge);
+  std::vector<float> roughness_m(cells.size());
+  Detail detail{std::vector<float>(fine.size()), {}};
+  unit_detail(fine, law, seed, "island.detail", detail.inside_m);
+  detail.near_edge_m = detail.inside_m;
+  unit_detail_near_edge(fine, law, seam_m(cells), seed, "island.detail", detail.near_edge_m);
   if (exemplars != nullptr) {
-    take_exemplars(cells, planet, p, law, *exemplars, seed, planet_m, detail, near_edge);
+    take_exemplars(cells, planet, p, law, *exemplars, seed, planet_m, detail.inside_m,
+                   detail.near_edge_m);
   }
-  local_roughness(cells, planet.elevation_m, roughness);
-  for (float& rough_m : roughness) {
-    rough_m = std::max(rough_m, static_cast<float>(p.least_roughness_m));
-  }
+  local_roughness(cells, planet.elevation_m, roughness_m);
   on_cells(fine, [&](int i, int j, Index c) {
-    const double rough_m = std::max(0.0, cells.interpolate(roughness, i, j));
-    detail[c] *= static_cast<float>(p.detail_amplitude * rough_m);
-    near_edge[c] *= static_cast<float>(p.detail_amplitude * rough_m);
+    const double rough_m = std::max(0.0, cells.interpolate(roughness_m, i, j));
+    detail.inside_m[c] *= static_cast<float>(p.detail_amplitude * rough_m);
+    detail.near_edge_m[c] *= static_cast<float>(p.detail_amplitude * rough_m);
   });
-  const std::vector<float> mean = cells.means(detail, {}, 0.0F);
+  add_least_roughness(cells, p, law, seed, roughness_m, detail);
+  const std::vector<float> mean = cells.means(detail.inside_m, {}, 0.0F);
   const std::vector<float> dry = all_round(cells, planet.elevation_m, /*land=*/true);
   const std::vector<float> strip_m = strip_widths_m(cells, seed);
   on_cells(fine, [&](int i, int j, Index c) {
     const double mean_m = cells.interpolate(mean, i, j), ramp = edge_ramp(fine, i, j, strip_m[c]);
     // The edge keeps the planet's heights: hollows close behind it would have no way out.
-    const double detail_m = std::max(near_edge[c] - ramp * mean_m, ramp * (detail[c] - mean_m));
+    const double detail_m =
+        std::max(detail.near_edge_m[c] - ramp * mean_m, ramp * (detail.inside_m[c] - mean_m));
     z[c] = static_cast<float>(
         with_detail(z[c], detail_m, std::clamp(cells.interpolate(dry, i, j), 0.0, 1.0)));
   });

@@ -32,7 +32,7 @@ std::vector<Parameter> detail_rows(IslandParameters& p) {
       real("island.detail_hurst", p.detail_hurst, "1", 0.0, 1.0,
            "Hurst exponent of detail that follows roughness", "huang1989"),
       real("island.least_roughness_m", p.least_roughness_m, "m", 0.0, 1000.0,
-           "roughness that even plains and flat shores have", "design"),
+           "roughness below 10 km that even plains and flat shores have", "design"),
       real(
           "island.coast_fray", p.coast_fray, "1", 0.0, 1.0,
           "standard deviation by which bays and headlands displace a coast, in cells of the planet",

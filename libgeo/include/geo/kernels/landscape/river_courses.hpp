@@ -33,7 +33,7 @@ inline constexpr std::int32_t kCourseEnds = -1;
 /// variance, s = 1 at the edge to 0 an eighth of a planet cell from it, over the fine surface. It
 /// keeps clear of other courses, of the edge and of the sea where it can. Courses end at the sea,
 /// at the edge or at the bottom of an endorheic basin. On lakes the level is that of their outlet,
-/// and does not sink; elsewhere it may sink to a quarter of the planet's, and by 30 m anywhere:
+/// and does not sink; elsewhere it may sink to a tenth of the planet's, and by 30 m anywhere:
 /// plains near the level of the sea have no other way out. `elevation_m`: one value per fine cell.
 /// Cost: n log n in the fine cells that each step passes. The same bits for any number of threads.
 /// `water`: as for find_inflow. `elevation_m`: one value per fine cell; Bug otherwise.

@@ -39,7 +39,8 @@ void unit_detail_near_edge(const Grid& fine, const DetailLaw& law, double seam_m
                            std::uint64_t seed, std::string_view stream, std::span<float> detail);
 
 /// A height with detail on it. Plains near the level of the sea would become flats at it wherever
-/// detail dips further: `inland` (0 to 1), h exp(d / h) stays above it and drains.
+/// detail dips further: `inland` (0 to 1), h exp(d / h) stays above it and drains; what lies below
+/// it there does not dip further.
 [[nodiscard]] double with_detail(double height_m, double detail_m, double inland);
 
 /// Smooth step from 0 at the edge of a plane to 1 at `width_m` from it, at one cell.

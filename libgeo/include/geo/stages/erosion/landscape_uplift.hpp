@@ -17,11 +17,7 @@ void Landscape<V>::raise() {
     const Number field = uplift_m_yr_.empty() ? Number(0.0) : Number(uplift_m_yr_[cell]);
     return Number((field + everywhere) * dt);
   };
-  on_land([&](Index cell) {
-    // Subsidence ends at the sea: a step that drowned land would move the coast without a
-    // routing.
-    z_[cell] = greater(V(0.0F), V(Number(z_[cell]) + uplift_m(cell)));
-  });
+  on_land([&](Index cell) { z_[cell] = as_land(Number(Number(z_[cell]) + uplift_m(cell))); });
   account_land(rock_.uplifted, [&](Index cell) { return rise_of_land(cell, uplift_m(cell)); });
   if (!thickening_m_yr_.empty()) thicken(dt);
   record_raising();
@@ -74,13 +70,13 @@ void Landscape<V>::rebound() {
   before_.assign(z_.begin(), z_.end());
   const auto comes_m = [&](Index cell) { return Number(part * Number(response[cell])); };
   on_land([&](Index cell) {
-    z_[cell] = greater(V(0.0F), V(z_[cell] + V(comes_m(cell))));
+    z_[cell] = as_land(Number(z_[cell] + V(comes_m(cell))));
     owed_m_[cell] -= V(part) * owed_m_[cell];
   });
   account_land(rock_.rebound, [&](Index cell) { return rise_of_land(cell, comes_m(cell)); });
   if (deposits()) {
     at_sea_floor([&](Index cell) {
-      z_[cell] = lesser(V(z_[cell] + V(comes_m(cell))), greater(z_[cell], V(-kShallowest_m)));
+      z_[cell] = as_sea_floor(V(z_[cell] + V(comes_m(cell))), z_[cell]);
       owed_m_[cell] -= V(part) * owed_m_[cell];
     });
     account_sea_floor(rock_.rebound,
