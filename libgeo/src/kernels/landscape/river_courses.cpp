@@ -165,7 +165,7 @@ class Network {
   /// Cost of a metre at a cell: low ground is easy, no ground is quite even, and the edge, which is
   /// nothing on the ground, does not lead rivers along it, nor along a line at a distance from it.
   [[nodiscard]] double resistance(Index c, const End& from, const End& to) const {
-    constexpr double kDigging_m = 20.0, kHollow_m = 100.0, kWinding = 1.6, kStrip = 6.0,
+    constexpr double kDigging_m = 20.0, kHollow_m = 100.0, kWinding = 2.0, kStrip = 6.0,
                      kUneven = 0.5;
     const double di = fine_.column(to.cell) - fine_.column(from.cell);
     const double dj = fine_.row(to.cell) - fine_.row(from.cell);
@@ -348,13 +348,10 @@ class Tracing {
   }
   /// The courses with how far each may sink below the level that the planet has for it.
   [[nodiscard]] RiverCourses take() {
-    constexpr float kShare = 0.1F, kAnywhere_m = 30.0F;
     RiverCourses courses = network_.take();
     courses.shortcut = std::max(courses.shortcut, 2 * beds_.quarter());
     for (std::size_t k = 0; k < courses.cell.size(); ++k) {
-      const float level_m = courses.level_m[k];
-      const float sunk_m = std::max(0.0F, std::min(kShare * level_m, level_m - kAnywhere_m));
-      courses.least_m.push_back(on_lake_[k] != 0 ? level_m : sunk_m);
+      courses.least_m.push_back(on_lake_[k] != 0 ? courses.level_m[k] : 0.0F);
       // What sank upstream of a lake would drain it.
       if (const std::int32_t next = courses.next[k]; next != kCourseEnds) {
         courses.least_m[k] = std::max(courses.least_m[k], courses.least_m[next]);

@@ -28,13 +28,13 @@ inline constexpr std::int32_t kCourseEnds = -1;
 /// that near the centre of the next, or to another course that goes there as well; at the edge,
 /// from or to where it crosses. Brooks come last and end in the first course they meet. It is the
 /// path of least
-///   integral of exp(1.6 n) (1 + 6 s^2) (1 + max(0, z - b) / 20 m) ds,
+///   integral of exp(2 n) (1 + 6 s^2) (1 + max(0, z - b) / 20 m) ds,
 /// b = level - min(level / 2, 100 m), level = the planet's, linear between, n = noise of unit
 /// variance, s = 1 at the edge to 0 an eighth of a planet cell from it, over the fine surface. It
 /// keeps clear of other courses, of the edge and of the sea where it can. Courses end at the sea,
 /// at the edge or at the bottom of an endorheic basin. On lakes the level is that of their outlet,
-/// and does not sink; elsewhere it may sink to a tenth of the planet's, and by 30 m anywhere:
-/// plains near the level of the sea have no other way out. `elevation_m`: one value per fine cell.
+/// and does not sink; elsewhere it may sink to the level of the sea: the ground of detail between
+/// the planet's cells is as low in places. `elevation_m`: one value per fine cell.
 /// Cost: n log n in the fine cells that each step passes. The same bits for any number of threads.
 /// `water`: as for find_inflow. `elevation_m`: one value per fine cell; Bug otherwise.
 RiverCourses trace_river_courses(const PlanetCells& cells, const PlanetWater& water,

@@ -225,22 +225,18 @@ class Landscape {
     return std::abs(missed_m) <= kFew * std::max(std::abs(now_m), std::abs(before_m)) ? missed_m
                                                                                       : 0.0;
   }
-  /// Where the coast is told anew in each step, crust that sinks takes land below the sea, and floor
-  /// that rises comes out of it. Else subsidence and rise end at the shore.
+  /// Where the coast is told anew in each step, crust that sinks takes land below the sea. Else
+  /// subsidence ends at the shore.
   [[nodiscard]] bool coast_moves() const { return !thickening_m_yr_.empty(); }
   [[nodiscard]] V as_land(const Number& height_m) const {
     return coast_moves() ? V(height_m) : greater(V(0.0F), V(height_m));
-  }
-  [[nodiscard]] V as_sea_floor(const V& height_m, const V& before_m) const {
-    return coast_moves() ? height_m : lesser(height_m, greater(before_m, V(-kShallowest_m)));
   }
   /// How far land rises that is to rise so far.
   [[nodiscard]] Number rise_of_land(Index cell, const Number& by_m) const {
     return coast_moves() ? by_m : greater(by_m, Number(-Number(before_[cell])));
   }
-  /// The same of the floor of the sea.
+  /// The same of the floor of the sea, which stays below it.
   [[nodiscard]] Number rise_of_sea_floor(Index cell, const Number& by_m) const {
-    if (coast_moves()) return by_m;
     const Number before_m(before_[cell]);
     return lesser(by_m, Number(greater(Number(-kShallowest_m), before_m) - before_m));
   }

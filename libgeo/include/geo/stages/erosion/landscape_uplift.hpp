@@ -76,7 +76,7 @@ void Landscape<V>::rebound() {
   account_land(rock_.rebound, [&](Index cell) { return rise_of_land(cell, comes_m(cell)); });
   if (deposits()) {
     at_sea_floor([&](Index cell) {
-      z_[cell] = as_sea_floor(V(z_[cell] + V(comes_m(cell))), z_[cell]);
+      z_[cell] = lesser(V(z_[cell] + V(comes_m(cell))), greater(z_[cell], V(-kShallowest_m)));
       owed_m_[cell] -= V(part) * owed_m_[cell];
     });
     account_sea_floor(rock_.rebound,
