@@ -80,16 +80,21 @@ void serve_pages(RankMessages& messages, const std::function<void(pid_t)>& begin
   KeptPages kept;
   for (;;) {
     const auto [from, bytes] = next_message(messages);
-    KeptPages::Page message = kept.room(bytes);
-    messages.receive(from, message);
     PageRequest request;
-    std::memcpy(&request, message.data(), sizeof request);
+    KeptPages::Page page;
+    if (bytes == sizeof request) {
+      messages.receive(from, std::as_writable_bytes(std::span(&request, 1)));
+    } else {
+      page = kept.room(bytes);
+      messages.receive(from, page);
+      std::memcpy(&request, page.data(), sizeof request);
+    }
     switch (request.wish) {
       case Wish::begin:
         if (request.pages == this_machine()) begins(static_cast<pid_t>(request.first));
         break;
       case Wish::keep:
-        kept.keep(request.first, std::move(message));
+        kept.keep(request.first, std::move(page));
         break;
       case Wish::hand_on:
         messages.send(from, kept.content(request.first));

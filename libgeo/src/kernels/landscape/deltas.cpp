@@ -5,7 +5,6 @@
 #include <functional>
 #include <limits>
 #include <map>
-#include <set>
 #include <tuple>
 #include <vector>
 
@@ -75,7 +74,6 @@ class Deltas {
   /// Returns the longest way from the mouth.
   double fill(const Delta& delta) {
     filled_.clear();
-    done_.clear();
     heap_.assign(1, {0.0, 0.0, delta.mouth});
     cost_ = {{delta.mouth, 0.0}};
     double left_m3 = volume_m3_[delta.mouth], longest_m = 0.0;
@@ -83,7 +81,7 @@ class Deltas {
       std::pop_heap(heap_.begin(), heap_.end(), std::greater<>());
       const Next next = heap_.back();
       heap_.pop_back();
-      if (next.cost > cost_.at(next.cell) || !done_.insert(next.cell).second) continue;
+      if (next.cost > cost_.at(next.cell)) continue;
       const float rise = rise_m(next.cell, plain_m(delta, next.way_m));
       const double room_m3 = static_cast<double>(rise) * grid_.area_m2(grid_.row(next.cell));
       if (!may_fill(next.cell) || left_m3 < room_m3) break;
@@ -139,7 +137,6 @@ class Deltas {
   std::span<float> laid_m_;
   std::vector<Next> heap_;
   std::vector<Filled> filled_;
-  std::set<Index> done_;
   std::map<Index, double> cost_;
 };
 
