@@ -33,7 +33,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libgeographiclib-dev")
 # What the component `io` links to.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "libnetcdf-dev, libhdf5-dev, libvtk9-dev, libtiff-dev, libgeotiff-dev, \
-libpng-dev, libcairo2-dev, libproj-dev, libxxhash-dev, libudunits2-dev, libdeflate-dev, libpugixml-dev, libtinygltf-dev, \
+libpng-dev, libcairo2-dev, libproj-dev, libxxhash-dev, libudunits2-dev, libdeflate-dev, libisal-dev, libpugixml-dev, libtinygltf-dev, \
 libtomlplusplus-dev")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Grids, fields, kernels and stages of a planet's surface as functions over
 spans: headers, a static library and the package that find_package(terrane)

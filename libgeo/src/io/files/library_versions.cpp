@@ -1,6 +1,7 @@
 #include <GeographicLib/Config.h>
 #include <fmt/format.h>
 #include <hdf5.h>
+#include <isa-l.h>
 #include <libdeflate.h>
 #include <netcdf.h>
 #include <proj.h>
@@ -27,6 +28,8 @@ std::map<std::string, std::string> library_versions() {
           {"VTK", vtkVersion::GetVTKVersion()},
           {"fmt", fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100,
                               FMT_VERSION % 100)},
+          {"ISA-L",
+           fmt::format("{}.{}.{}", ISAL_MAJOR_VERSION, ISAL_MINOR_VERSION, ISAL_PATCH_VERSION)},
           {"libdeflate", LIBDEFLATE_VERSION_STRING},
           {"netCDF", netcdf.substr(0, netcdf.find(' '))},
           {"nlohmann-json", fmt::format("{}.{}.{}", NLOHMANN_JSON_VERSION_MAJOR,

@@ -1,7 +1,6 @@
 #include "chunk_writer.hpp"
 
 #include <hdf5.h>
-#include <libdeflate.h>
 
 #include <algorithm>
 #include <cstring>
@@ -11,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "chunk_compressor.hpp"
 #include "geo/io/files/background_writer.hpp"
 #include "netcdf_file.hpp"
 
@@ -20,13 +20,6 @@ namespace {
 void require(bool good) {
   if (!good) throw nc::Failure(NC_EHDFERR);
 }
-
-struct FreeCompressor {
-  void operator()(libdeflate_compressor* compressor) const {
-    libdeflate_free_compressor(compressor);
-  }
-};
-using Compressor = std::unique_ptr<libdeflate_compressor, FreeCompressor>;
 
 /// A dataset that closes itself. The library is one thread's at a time: it is taken for each call,
 /// so that others read while chunks are packed.
@@ -73,11 +66,10 @@ class Packer {
  public:
   Packer(ChunkShape chunk, int level)
       : chunk_(chunk),
-        compressor_(libdeflate_alloc_compressor(level)),
+        compressor_(level),
         raw_(chunk.rows * chunk.columns),
         shuffled_(raw_.size() * sizeof(T)) {
-    if (!compressor_) throw std::bad_alloc();
-    packed_.resize(libdeflate_zlib_compress_bound(compressor_.get(), shuffled_.size()));
+    packed_.resize(compressor_.bound(shuffled_.size()));
   }
   /// Of the raster the chunk that begins at a row and a column; what `copy(row, column, count, to)`
   /// gives are values of a part of a row. Allocates nothing.
@@ -93,8 +85,7 @@ class Packer {
     }
     shuffle<sizeof(T)>(reinterpret_cast<const unsigned char*>(raw_.data()), raw_.size(),
                        shuffled_.data());
-    size_ = libdeflate_zlib_compress(compressor_.get(), shuffled_.data(), shuffled_.size(),
-                                     packed_.data(), packed_.size());
+    size_ = compressor_.compress(shuffled_, packed_);
   }
   void write(hid_t dataset, int slice, int leading) const {
     require(size_ > 0);
@@ -105,7 +96,7 @@ class Packer {
 
  private:
   ChunkShape chunk_;
-  Compressor compressor_;
+  ChunkCompressor compressor_;
   std::vector<T> raw_;
   std::vector<unsigned char> shuffled_, packed_;
   std::size_t row_ = 0, column_ = 0, size_ = 0;
