@@ -3,6 +3,7 @@
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <malloc.h>
+#include <omp.h>
 #include <pthread.h>
 #include <sys/mman.h>
 #include <unistd.h>
@@ -39,6 +40,26 @@ void prefer_large_pages(void* block, std::size_t size) {
   const auto at = reinterpret_cast<std::uintptr_t>(block);
   const std::uintptr_t begin = (at + kPage - 1) / kPage * kPage, end = (at + size) / kPage * kPage;
   madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
+}
+
+/// The system clears a page when it is first touched. Most containers are filled with zeros where
+/// they are made, by one thread: the pages of a large one are asked for by all before. Only by the
+/// thread that computes, as a team of OpenMP's is its own; where the system does not know this,
+/// nothing changes.
+void touch_side_by_side(void* block, std::size_t size) {
+#ifdef MADV_POPULATE_WRITE
+  constexpr std::uintptr_t kPart = std::uintptr_t(2) << 20;
+  if (size < 4 * kPart || omp_in_parallel() != 0 || omp_get_max_threads() == 1 ||
+      ::gettid() != ::getpid()) {
+    return;
+  }
+  const auto at = reinterpret_cast<std::uintptr_t>(block);
+  const std::uintptr_t first = at / kPart + 1, last = (at + size) / kPart;
+#pragma omp parallel for schedule(static)
+  for (std::uintptr_t part = first; part < last; ++part) {
+    madvise(reinterpret_cast<void*>(part * kPart), kPart, MADV_POPULATE_WRITE);
+  }
+#endif
 }
 
 /// Address space that the program takes, bytes; 0 if the system does not tell. Allocates nothing.
@@ -229,6 +250,7 @@ void* operator new(std::size_t size) {
     if (void* block = terrane::capped_block(size)) return block;
     if (void* block = terrane::lacks_scratch(size) ? nullptr : allocate(size == 0 ? 1 : size)) {
       terrane::prefer_large_pages(block, size);
+      terrane::touch_side_by_side(block, size);
       return block;
     }
     if (const std::new_handler handler = std::get_new_handler()) {

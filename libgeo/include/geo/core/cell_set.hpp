@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -16,12 +17,17 @@ namespace geo {
 class CellSet {
  public:
   CellSet() = default;
-  /// Those of `cells` cells for which `holds` is true. One thread.
+  /// Those of `cells` cells for which `holds` is true, which all threads ask.
   template <class Holds>
   CellSet(Index cells, Holds&& holds)
       : words_(static_cast<std::size_t>(cells) / kBits + 1), before_(words_.size()), cells_(cells) {
-    for (Index cell = 0; cell < cells; ++cell) {
-      if (holds(cell)) words_[word(cell)] |= bit(cell);
+#pragma omp parallel for schedule(static)
+    for (std::size_t w = 0; w < words_.size(); ++w) {
+      const auto first = static_cast<Index>(w * kBits);
+      const Index end = std::min(cells, static_cast<Index>(first + static_cast<Index>(kBits)));
+      for (Index cell = first; cell < end; ++cell) {
+        if (holds(cell)) words_[w] |= bit(cell);
+      }
     }
     for (std::size_t w = 0; w < words_.size(); ++w) {
       before_[w] = static_cast<std::uint32_t>(size_);

@@ -59,13 +59,25 @@ double daily_insolation_w_m2(double latitude_deg, const Sun& sun, double obliqui
 }
 
 double annual_insolation_w_m2(double latitude_deg, const Orbit& orbit, double solar_constant_w_m2) {
+  const std::array<double, 1> latitude{latitude_deg};
+  return annual_insolation_w_m2(latitude, orbit, solar_constant_w_m2).front();
+}
+
+std::vector<double> annual_insolation_w_m2(std::span<const double> latitudes_deg,
+                                           const Orbit& orbit, double solar_constant_w_m2) {
   constexpr int kSteps = 720;
-  double sum = 0.0;
-  for (int step = 0; step < kSteps; ++step) {
-    sum += daily_insolation_w_m2(latitude_deg, sun_at(orbit, (step + 0.5) / kSteps),
-                                 orbit.obliquity_deg, solar_constant_w_m2);
+  std::array<Sun, kSteps> suns;
+  for (int step = 0; step < kSteps; ++step) suns[step] = sun_at(orbit, (step + 0.5) / kSteps);
+  std::vector<double> means;
+  means.reserve(latitudes_deg.size());
+  for (const double latitude_deg : latitudes_deg) {
+    double sum = 0.0;
+    for (const Sun& sun : suns) {
+      sum += daily_insolation_w_m2(latitude_deg, sun, orbit.obliquity_deg, solar_constant_w_m2);
+    }
+    means.push_back(sum / kSteps);
   }
-  return sum / kSteps;
+  return means;
 }
 
 std::array<double, kMonths> monthly_insolation_w_m2(double latitude_deg, const Orbit& orbit,

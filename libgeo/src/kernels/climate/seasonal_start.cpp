@@ -51,11 +51,11 @@ void SeasonalYear::warm() {
   // Evaporation in series with the energy that the sun gives through the year.
   constexpr double kWattsEvaporating = 28.36;
   most_evaporation_mm_d_.resize(ny);
+  const std::vector<double> sun_w_m2 =
+      annual_insolation_w_m2(latitude_deg_, model_.energy.orbit, model_.energy.solar_constant_w_m2);
   for (int j = 0; j < ny; ++j) {
-    const double sun_w_m2 = annual_insolation_w_m2(latitude_deg_[j], model_.energy.orbit,
-                                                   model_.energy.solar_constant_w_m2);
     most_evaporation_mm_d_[j] =
-        std::max(1.0e-6, model_.moisture.evaporating_share * sun_w_m2 / kWattsEvaporating);
+        std::max(1.0e-6, model_.moisture.evaporating_share * sun_w_m2[j] / kWattsEvaporating);
   }
   ParallelErrors errors;
 #pragma omp parallel for schedule(dynamic, 1)

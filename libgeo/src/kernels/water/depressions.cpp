@@ -1,9 +1,12 @@
 #include "geo/kernels/water/depressions.hpp"
 
+#include <omp.h>
+
 #include <algorithm>
 
 #include "catchments.hpp"
 #include "geo/core/array_sizes.hpp"
+#include "geo/core/work_array.hpp"
 
 namespace geo {
 namespace {
@@ -106,18 +109,26 @@ class Ancestors {
 void measure(const Grid& grid, std::span<const float> z, DepressionHierarchy& hierarchy) {
   auto& nodes = hierarchy.depressions;
   const Ancestors ancestors(nodes);
-  std::vector<std::int32_t> holder(grid.size());
+  WorkArray<std::int32_t> holder(grid.size());
 #pragma omp parallel for schedule(static)
   for (Index cell = 0; cell < grid.size(); ++cell) {
     holder[cell] = ancestors.lowest_above(hierarchy.leaf_of_cell[cell], z[cell]);
   }
   std::vector<double> height_area_m3(nodes.size(), 0.0);
-  for (int j = 0; j < grid.ny(); ++j) {
-    const double area = grid.area_m2(j);
-    for (Index cell = grid.cell(0, j); cell < grid.cell(0, j) + grid.nx(); ++cell) {
-      if (holder[cell] == kSea) continue;
-      nodes[holder[cell]].area_m2 += area;
-      height_area_m3[holder[cell]] += area * z[cell];
+  // Each depression is left to one thread, which adds up in the order of cells: the same sums for
+  // any number of threads.
+  const int threads = std::max(1, omp_get_max_threads());
+#pragma omp parallel for schedule(static, 1) num_threads(threads)
+  for (int thread = 0; thread < threads; ++thread) {
+    const auto first = static_cast<std::int32_t>(nodes.size() * thread / threads);
+    const auto end = static_cast<std::int32_t>(nodes.size() * (thread + 1) / threads);
+    for (int j = 0; j < grid.ny(); ++j) {
+      const double area = grid.area_m2(j);
+      for (Index cell = grid.cell(0, j); cell < grid.cell(0, j) + grid.nx(); ++cell) {
+        if (holder[cell] < first || holder[cell] >= end) continue;
+        nodes[holder[cell]].area_m2 += area;
+        height_area_m3[holder[cell]] += area * z[cell];
+      }
     }
   }
   for (std::size_t at = 0; at < nodes.size(); ++at) {  // children stand before parents

@@ -1,15 +1,21 @@
 #include "geo/kernels/water/lakes.hpp"
 
+#include <omp.h>
+
 #include <algorithm>
+#include <cstdint>
 #include <numeric>
 
 #include "catchments.hpp"
 #include "geo/core/array_sizes.hpp"
+#include "geo/core/parallel_errors.hpp"
 
 namespace geo {
 namespace {
 
 using Number = std::int32_t;
+
+constexpr int kMostThreads = 255;
 
 /// Sums over ranges of a line of numbers that change one at a time (Fenwick 1994).
 class RangeSums {
@@ -101,13 +107,30 @@ class Balance {
     return leaf;
   }
 
+  /// About as many leaves to each thread.
+  [[nodiscard]] std::vector<std::uint8_t> share_out(int threads) const {
+    std::vector<std::uint8_t> thread_of_leaf(hierarchy_.leaves);
+    for (std::size_t leaf = 0; leaf < thread_of_leaf.size(); ++leaf) {
+      const auto place = static_cast<std::size_t>(begin_[tree_of_leaf_[leaf]]);
+      thread_of_leaf[leaf] = static_cast<std::uint8_t>(place * threads / thread_of_leaf.size());
+    }
+    return thread_of_leaf;
+  }
+
   void gather(std::span<const double> runoff) {
-    for (Index cell = 0; cell < grid_.size(); ++cell) {
-      const Number leaf = hierarchy_.leaf_of_cell[cell];
-      if (leaf == kSea) continue;
-      inflow_[leaf] += runoff[cell];
-      const Number at = flooding(cell, leaf);
-      if (at != kSea) capacity_[at] += loss_[cell];
+    // Each tree of depressions is left to one thread, which adds up in the order of cells: the same
+    // sums for any number of threads.
+    const int threads = std::clamp(omp_get_max_threads(), 1, kMostThreads);
+    const std::vector<std::uint8_t> thread_of_leaf = share_out(threads);
+#pragma omp parallel for schedule(static, 1) num_threads(threads)
+    for (int thread = 0; thread < threads; ++thread) {
+      for (Index cell = 0; cell < grid_.size(); ++cell) {
+        const Number leaf = hierarchy_.leaf_of_cell[cell];
+        if (leaf == kSea || thread_of_leaf[leaf] != thread) continue;
+        inflow_[leaf] += runoff[cell];
+        const Number at = flooding(cell, leaf);
+        if (at != kSea) capacity_[at] += loss_[cell];
+      }
     }
     for (std::size_t n = 0; n < nodes_.size(); ++n) {
       if (nodes_[n].parent == kSea) continue;
@@ -203,21 +226,37 @@ class Balance {
     result_.lakes.back().area_m2 = lake.outlet == kNoCell ? 0.0 : nodes_[n].area_m2;
   }
 
+  /// Cells that an endorheic lake would flood if it were full, in their order, each with its lake.
+  [[nodiscard]] std::vector<std::pair<Number, Index>> cells_below_sills() const {
+    std::vector<std::vector<std::pair<Number, Index>>> of_row(grid_.ny());
+    ParallelErrors errors;
+#pragma omp parallel for schedule(dynamic, 16)
+    for (int j = 0; j < grid_.ny(); ++j) {
+      errors.guard([&] {
+        for (Index cell = grid_.cell(0, j); cell < grid_.cell(0, j) + grid_.nx(); ++cell) {
+          const Number leaf = hierarchy_.leaf_of_cell[cell];
+          const Number lake = leaf == kSea ? -1 : result_.lake_of_leaf[leaf];
+          if (lake < 0 || result_.lakes[lake].outlet != kNoCell) continue;
+          if (z_[cell] < nodes_[result_.lakes[lake].depression].sill_m) {
+            of_row[j].emplace_back(lake, cell);
+          }
+        }
+      });
+    }
+    errors.rethrow();
+    std::vector<std::pair<Number, Index>> all;
+    for (const auto& row : of_row) all.insert(all.end(), row.begin(), row.end());
+    return all;
+  }
+
   /// Levels of endorheic lakes: their cells from the lowest up, until the loss equals the inflow.
   void flood_endorheic() {
     std::vector<Index> begin(result_.lakes.size() + 1, 0);
-    const auto for_cells = [&](auto&& visit) {
-      for (Index cell = 0; cell < grid_.size(); ++cell) {
-        const Number leaf = hierarchy_.leaf_of_cell[cell];
-        const Number lake = leaf == kSea ? -1 : result_.lake_of_leaf[leaf];
-        if (lake < 0 || result_.lakes[lake].outlet != kNoCell) continue;
-        if (z_[cell] < nodes_[result_.lakes[lake].depression].sill_m) visit(lake, cell);
-      }
-    };
-    for_cells([&](Number lake, Index) { ++begin[lake + 1]; });
+    const std::vector<std::pair<Number, Index>> within = cells_below_sills();
+    for (const auto& [lake, cell] : within) ++begin[lake + 1];
     std::partial_sum(begin.begin(), begin.end(), begin.begin());
     std::vector<Index> cells(begin.back()), next(begin.begin(), begin.end() - 1);
-    for_cells([&](Number lake, Index cell) { cells[next[lake]++] = cell; });
+    for (const auto& [lake, cell] : within) cells[next[lake]++] = cell;
 #pragma omp parallel for schedule(dynamic, 16)
     for (std::size_t lake = 0; lake < result_.lakes.size(); ++lake) {
       if (result_.lakes[lake].outlet != kNoCell) continue;

@@ -6,6 +6,7 @@
 
 #include "geo/core/parallel_errors.hpp"
 #include "geo/core/release.hpp"
+#include "geo/core/work_array.hpp"
 #include "geo/kernels/landscape/river_sediment.hpp"
 #include "geo/kernels/water/depressions.hpp"
 #include "geo/kernels/water/lakes.hpp"
@@ -29,8 +30,8 @@ void keep_at_least(const Grid& grid, double least_per_m2, std::span<double> valu
 void shed_rain(const ErosionParameters& p, const Grid& grid, std::span<const float> elevation_m,
                std::span<const std::uint8_t> outlets, const LandClimate& climate,
                std::span<double> shed) {
-  std::vector<float> loss_m3_s(grid.size());
-  std::vector<std::uint8_t> sea(grid.size());
+  WorkArray<float> loss_m3_s(grid.size());
+  WorkArray<std::uint8_t> sea(grid.size());
 #pragma omp parallel for schedule(static)
   for (Index c = 0; c < grid.size(); ++c) sea[c] = elevation_m[c] < 0.0F ? 1 : 0;
   land_water(grid, sea, climate.on_cells(climate.precipitation_mm_yr, grid),
@@ -38,10 +39,10 @@ void shed_rain(const ErosionParameters& p, const Grid& grid, std::span<const flo
   const double m2_per_m3_s = kSecondsPerYear / (1e-3 * p.reference_runoff_mm_yr);
   const double least = p.least_runoff_mm_yr / p.reference_runoff_mm_yr / m2_per_m3_s;
   keep_at_least(grid, least, shed);
-  std::vector<Index> receiver(grid.size());
+  WorkArray<Index> receiver(grid.size());
   steepest_receivers(grid, elevation_m, outlets, receiver);
   const auto hierarchy = build_depression_hierarchy(grid, elevation_m, outlets, receiver);
-  release(receiver);
+  receiver = {};
   const Lakes lakes = balance_lakes(grid, elevation_m, hierarchy, shed, loss_m3_s);
 #pragma omp parallel for schedule(static)
   for (Index c = 0; c < grid.size(); ++c) shed[c] *= m2_per_m3_s;
@@ -106,6 +107,7 @@ void drain(const ErosionParameters& p, const Grid& grid, std::span<const float> 
   if (climate != nullptr) shed_rain(p, grid, elevation_m, outlets, *climate, area_m2);
   Routing routing = route_unordered(grid, elevation_m, outlets, spread);
   graph = std::move(routing.graph);
+#pragma omp parallel for schedule(static)
   for (std::size_t c = 0; c < inflow_area_m2.size(); ++c) area_m2[c] += inflow_area_m2[c];
   const auto put_in_order = [&] { graph.put_in_order(); };
   if (spread) {

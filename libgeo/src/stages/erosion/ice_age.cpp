@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <optional>
 
 #include "climate_of_land.hpp"
@@ -149,7 +150,9 @@ void IceAge::settle(const LandClimate& climate, const Age& age,
     surface_ = plastic_ice_surface(grid_, k_m_, bed_m_, ground_, reach);
     balance(cold, age, elevation_m, balance_m_yr);
     flux_ = ice_flux(grid_, bed_m_, ground_, surface_, balance_m_yr);
-    for (const Index c : cold.cells) {
+#pragma omp parallel for schedule(static)
+    for (std::size_t n = 0; n < cold.cells.size(); ++n) {
+      const Index c = cold.cells[n];
       next_[c] = flux_.share.of(c) > kLeastShare ? IceGround::iced : IceGround::bare;
     }
   }
@@ -205,11 +208,19 @@ void IceAge::sort_ground(const LandClimate& climate, const Age& age,
 IceAge::Cold IceAge::cold_cells(const LandClimate& climate) const {
   Cold cold;
   std::vector<std::size_t> first_of_row(static_cast<std::size_t>(grid_.ny()) + 1, 0);
-  for (int j = 0; j < grid_.ny(); ++j) {
+  const auto visit_row = [&](int j, auto&& visit) {
     for (Index c = grid_.cell(0, j); c < grid_.cell(0, j) + grid_.nx(); ++c) {
-      if (next_[c] != IceGround::away) cold.cells.push_back(c);
+      if (next_[c] != IceGround::away) visit(c);
     }
-    first_of_row[j + 1] = cold.cells.size();
+  };
+#pragma omp parallel for schedule(static)
+  for (int j = 0; j < grid_.ny(); ++j) visit_row(j, [&](Index) { ++first_of_row[j + 1]; });
+  std::partial_sum(first_of_row.begin(), first_of_row.end(), first_of_row.begin());
+  cold.cells.resize(first_of_row.back());
+#pragma omp parallel for schedule(static)
+  for (int j = 0; j < grid_.ny(); ++j) {
+    std::size_t next = first_of_row[j];
+    visit_row(j, [&](Index c) { cold.cells[next++] = c; });
   }
   const auto gather = [&](const std::vector<float>& field) {
     std::vector<float> values(cold.cells.size());

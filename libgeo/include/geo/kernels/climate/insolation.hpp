@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <span>
+#include <vector>
 
 namespace geo {
 
@@ -36,6 +38,10 @@ struct Sun {
 /// below 1e-5.
 [[nodiscard]] double annual_insolation_w_m2(double latitude_deg, const Orbit& orbit,
                                             double solar_constant_w_m2);
+/// The same at many.
+[[nodiscard]] std::vector<double> annual_insolation_w_m2(std::span<const double> latitudes_deg,
+                                                         const Orbit& orbit,
+                                                         double solar_constant_w_m2);
 
 /// Insolation at the middle of each month, W m-2.
 [[nodiscard]] std::array<double, kMonths> monthly_insolation_w_m2(double latitude_deg,

@@ -9,6 +9,7 @@
 #include "geo/core/array_sizes.hpp"
 #include "geo/core/grid.hpp"
 #include "geo/core/numeric.hpp"
+#include "geo/core/work_array.hpp"
 #include "geo/kernels/numerics/area_sum.hpp"
 #include "geo/kernels/numerics/diffusion.hpp"
 
@@ -34,11 +35,12 @@ void lay_at_sea(const Grid& grid, std::span<const std::uint8_t> sea, const Numbe
                 std::span<const Number> room_m, std::span<Number> supply_m) {
   check_sizes("lay_at_sea", grid.size(),
               {{"sea", sea.size()}, {"room_m", room_m.size()}, {"supply_m", supply_m.size()}});
-  std::vector<std::uint8_t> land(sea.size());
+  WorkArray<std::uint8_t> land(sea.size());
 #pragma omp parallel for schedule(static)
   for (Index cell = 0; cell < grid.size(); ++cell) land[cell] = sea[cell] == 0 ? 1 : 0;
-  std::vector<Number> afloat(supply_m.begin(), supply_m.end());
-  std::fill(supply_m.begin(), supply_m.end(), Number(0.0));
+  auto afloat = WorkArray<Number>::copy_of(supply_m);
+#pragma omp parallel for schedule(static)
+  for (Index cell = 0; cell < grid.size(); ++cell) supply_m[cell] = Number(0.0);
   const auto settle = [&] {
 #pragma omp parallel for schedule(static)
     for (Index cell = 0; cell < grid.size(); ++cell) {
@@ -63,7 +65,7 @@ void lay_at_sea(const Grid& grid, std::span<const std::uint8_t> sea, const Numbe
   for (const Spread& spread : {Spread{1.0, 2}, Spread{3.0, 1}}) {
     const Number brought = area_sum<Number>(grid, [&](Index cell) { return afloat[cell]; });
     apply_linear<Number, 1>(
-        std::span<Number>(afloat), {length_m},
+        std::span<Number>(afloat.data(), afloat.size()), {length_m},
         [&](auto values, const std::array<double, 1>& length) {
           const double spread_m = spread.reach * length[0];
           diffuse(

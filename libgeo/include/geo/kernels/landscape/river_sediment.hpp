@@ -13,6 +13,7 @@
 #include "geo/core/cell_set.hpp"
 #include "geo/core/grid.hpp"
 #include "geo/core/numeric.hpp"
+#include "geo/core/work_array.hpp"
 #include "geo/kernels/landscape/stream_power.hpp"
 #include "geo/kernels/water/flow_graph.hpp"
 
@@ -26,7 +27,7 @@ std::vector<std::uint8_t> flooded_cells(const FlowGraph& graph, std::span<const 
   check_sizes("flooded_cells", graph.receiver.size(),
               {{"order", graph.order.size()}, {"elevation_m", elevation_m.size()}});
   std::vector<std::uint8_t> flooded(elevation_m.size(), 0);
-  std::vector<float> surface_m(elevation_m.size());
+  WorkArray<float> surface_m(elevation_m.size());
   walk_upstream(graph, [&](Index cell) {
     const Index to = graph.receiver[cell];
     const auto ground_m = static_cast<float>(value_of(elevation_m[cell]));
@@ -115,9 +116,7 @@ class SedimentSweeps {
         sea_level_m_(sea_level_m),
         flooded_(flooded),
         z_(elevation_m),
-        source_m2_(source_area(grid, graph)),
-        lowering_m_(elevation_m.size()),
-        follows_(elevation_m.size()) {
+        source_m2_(source_area(grid, graph)) {
     if (!flooded.empty()) find_lake_levels();
   }
 
@@ -144,8 +143,8 @@ class SedimentSweeps {
   using Area = std::conditional_t<std::is_same_v<Z, float>, float, double>;
 
   /// A* of every cell.
-  static std::vector<Area> source_area(const Grid& grid, const FlowGraph& graph) {
-    std::vector<double> area_m2(static_cast<std::size_t>(grid.size()));
+  static WorkArray<Area> source_area(const Grid& grid, const FlowGraph& graph) {
+    WorkArray<double> area_m2(static_cast<std::size_t>(grid.size()));
 #pragma omp parallel for schedule(static)
     for (int j = 0; j < grid.ny(); ++j) {
       std::fill_n(area_m2.begin() + grid.cell(0, j), grid.nx(), grid.area_m2(j));
@@ -154,12 +153,7 @@ class SedimentSweeps {
     if constexpr (std::is_same_v<Area, double>) {
       return area_m2;
     } else {
-      std::vector<Area> rounded(area_m2.size());
-#pragma omp parallel for schedule(static)
-      for (Index cell = 0; cell < grid.size(); ++cell) {
-        rounded[cell] = static_cast<Area>(area_m2[cell]);
-      }
-      return rounded;
+      return WorkArray<Area>::copy_of(area_m2);
     }
   }
 
@@ -188,8 +182,13 @@ class SedimentSweeps {
   /// bring: V = lowering + follows e of its own.
   template <class Factor>
   void eliminate(const Factor& factor) {
-    std::fill(lowering_m_.begin(), lowering_m_.end(), Number(0.0));
-    std::fill(follows_.begin(), follows_.end(), Number(0.0));
+    if (lowering_m_.empty()) {
+      lowering_m_ = WorkArray<Number>(z_.size(), Number(0.0));
+      follows_ = WorkArray<Number>(z_.size(), Number(0.0));
+    } else {
+      lowering_m_.fill(Number(0.0));
+      follows_.fill(Number(0.0));
+    }
     walk_downstream(graph_, [&](Index cell) {
       const Index to = graph_.receiver[cell];
       if (to == cell) return;
@@ -239,8 +238,8 @@ class SedimentSweeps {
   std::span<const std::uint8_t> flooded_;
   std::span<const Z> z_;
   SparseValues<Z> lake_level_m_;
-  std::vector<Area> source_m2_;
-  std::vector<Number> lowering_m_, follows_;
+  WorkArray<Area> source_m2_;
+  WorkArray<Number> lowering_m_, follows_;
 };
 
 /// Slopes of a law that is not linear in them: F s^(n-1) at the drops of the last solution, damped

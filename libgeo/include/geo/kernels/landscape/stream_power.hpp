@@ -10,6 +10,7 @@
 #include "geo/core/array_sizes.hpp"
 #include "geo/core/grid.hpp"
 #include "geo/core/numeric.hpp"
+#include "geo/core/work_array.hpp"
 #include "geo/kernels/water/flow_graph.hpp"
 #include "geo/kernels/water/receiver_distance.hpp"
 #include "geo/kernels/water/valley_width.hpp"
@@ -117,10 +118,10 @@ template <class T>
 
 /// F = K dt A^m / d^n of every cell.
 template <class K, class T>
-std::vector<K> incision_factors(const Grid& grid, const FlowGraph& graph,
-                                std::span<const double> area_m2, std::span<const K> erodibility,
-                                const BasicStreamPower<T>& law) {
-  std::vector<K> factor(grid.size());
+WorkArray<K> incision_factors(const Grid& grid, const FlowGraph& graph,
+                              std::span<const double> area_m2, std::span<const K> erodibility,
+                              const BasicStreamPower<T>& law) {
+  WorkArray<K> factor(grid.size());
 #pragma omp parallel for schedule(static)
   for (int j = 0; j < grid.ny(); ++j) {
     const ReceiverDistance distance(grid, j);

@@ -274,11 +274,11 @@ class Landscape {
   }
   /// What rivers bring while the sea stands where it does builds land at their mouths; `volume_m3`
   /// keeps what is left. Not where numbers carry derivatives: a cell is filled or it is not.
-  void build_at_mouths(const std::vector<std::uint8_t>& sea, std::vector<Number>& volume_m3);
+  void build_at_mouths(std::span<const std::uint8_t> sea, std::vector<Number>& volume_m3);
   /// What has been laid on land and taken from it since `before_`.
   void record_layers();
   void record_released(const FlowGraph& graph, const std::vector<Number>& volume_m3);
-  void record_at_sea(const std::vector<V>& laid_m);
+  void record_at_sea(std::span<const V> laid_m);
   /// Airy rebound of the eroded load, and subsidence under what is laid, spread by the plate and
   /// delayed by the mantle: the part 1 - exp(-dt / tau) of what is still owed comes in each step.
   /// At sea rock takes the place of water.

@@ -41,7 +41,7 @@ void Landscape<V>::let_ice_work(const FlowGraph& graph, const IceWork& ice,
     records_.crust_change_m[cell] += Number(z_[cell]) - Number(before_[cell]);
   }
   if (deposits()) {
-    std::vector<double> let_out_m3(static_cast<std::size_t>(grid_.size()), 0.0);
+    WorkArray<double> let_out_m3(static_cast<std::size_t>(grid_.size()), 0.0);
     for (SparseValues<double>& part : let_out) {
       part.set()->visit([&](Index cell) { let_out_m3[cell] += part.of(cell); });
       part = {};
@@ -50,7 +50,7 @@ void Landscape<V>::let_ice_work(const FlowGraph& graph, const IceWork& ice,
     std::vector<double> volume_m3 = outflow(graph, before_rivers, before_);
 #pragma omp parallel for schedule(static)
     for (Index cell = 0; cell < grid_.size(); ++cell) volume_m3[cell] += let_out_m3[cell];
-    release(let_out_m3);
+    let_out_m3 = {};
     record_layers();
     record_released(graph, volume_m3);
     if (graph_done) graph_done();
@@ -63,14 +63,14 @@ void Landscape<V>::let_ice_work(const FlowGraph& graph, const IceWork& ice,
 
 template <class V>
 void Landscape<V>::spread_at_sea(std::vector<Number>& volume_m3) {
-  std::vector<std::uint8_t> sea(grid_.size());
+  WorkArray<std::uint8_t> sea(grid_.size());
   const Number wave_base_m = active_(p_.wave_base_m);
 #pragma omp parallel for schedule(static)
   for (Index cell = 0; cell < grid_.size(); ++cell) {
     sea[cell] = outlets_[cell] != 0 && value_of(z_[cell]) < 0.0 ? 1 : 0;
   }
   build_at_mouths(sea, volume_m3);
-  std::vector<Number> room_m(grid_.size(), Number(0.0)), supply_m(grid_.size(), Number(0.0));
+  WorkArray<Number> room_m(grid_.size(), Number(0.0)), supply_m(grid_.size(), Number(0.0));
 #pragma omp parallel for schedule(static)
   for (Index cell = 0; cell < grid_.size(); ++cell) {
     if (sea[cell] == 0) continue;
@@ -84,8 +84,8 @@ void Landscape<V>::spread_at_sea(std::vector<Number>& volume_m3) {
   });
   release(volume_m3);
   lay_at_sea<Number>(grid_, sea, 1e3 * active_(p_.dispersal_km), room_m, supply_m);
-  release(room_m);
-  std::vector<V> laid_m(grid_.size(), V(0.0F));
+  room_m = {};
+  WorkArray<V> laid_m(grid_.size(), V(0.0F));
 #pragma omp parallel for schedule(static)
   for (Index cell = 0; cell < grid_.size(); ++cell) {
     if (sea[cell] == 0) continue;
@@ -102,7 +102,7 @@ void Landscape<V>::spread_at_sea(std::vector<Number>& volume_m3) {
 }
 
 template <class V>
-void Landscape<V>::build_at_mouths(const std::vector<std::uint8_t>& sea,
+void Landscape<V>::build_at_mouths(std::span<const std::uint8_t> sea,
                                    std::vector<Number>& volume_m3) {
   if constexpr (kRecords) {
     if (!builds_deltas_ || p_.highstand_yr <= 0.0) return;
@@ -110,14 +110,17 @@ void Landscape<V>::build_at_mouths(const std::vector<std::uint8_t>& sea,
     const auto brought_m3 = [&](Index cell) {
       return sea[cell] != 0 ? std::max(0.0, share * volume_m3[cell]) : 0.0;
     };
-    std::vector<float> laid_m(grid_.size());
-    std::vector<double> left_m3(grid_.size());
+    WorkArray<float> laid_m(grid_.size());
+    WorkArray<double> left_m3(grid_.size());
+#pragma omp parallel for schedule(static)
     for (Index cell = 0; cell < grid_.size(); ++cell) left_m3[cell] = brought_m3(cell);
     build_deltas(grid_, {}, sea, z_, left_m3, laid_m);
+#pragma omp parallel for schedule(static)
     for (Index cell = 0; cell < grid_.size(); ++cell) {
       volume_m3[cell] -= brought_m3(cell) - left_m3[cell];
     }
-    release(left_m3);
+    left_m3 = {};
+#pragma omp parallel for schedule(static)
     for (Index cell = 0; cell < grid_.size(); ++cell) {
       if (laid_m[cell] == 0.0F) continue;
       const float floor = z_[cell];
@@ -164,7 +167,7 @@ void Landscape<V>::record_released(const FlowGraph& graph, const std::vector<Num
 }
 
 template <class V>
-void Landscape<V>::record_at_sea(const std::vector<V>& laid_m) {
+void Landscape<V>::record_at_sea(std::span<const V> laid_m) {
   if constexpr (kRecords) {
 #pragma omp parallel for schedule(static)
     for (Index cell = 0; cell < grid_.size(); ++cell) {
