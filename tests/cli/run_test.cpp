@@ -155,6 +155,29 @@ TEST_F(Run, PredictsTheFilesOfAnIslandOfAnySize) {
   EXPECT_LT(predicted, 2.5 * written);
 }
 
+// A raster world was told to take 3 s whatever its map, and took 20 and 130.
+TEST_F(Run, PredictsMoreTimeForLargerRasterWorldsAndLessForTiles) {
+  const auto told_s = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"run",  "--preset",      "raster",    "--grid",    "64x64",
+                                       "--to", "plates",        "--no-maps", "--threads", "1",
+                                       "-o",   folder_ / "out", "--dry-run"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const std::string out = terrane(arguments).out;
+    const auto at = out.find("time    about ");
+    EXPECT_NE(at, std::string::npos) << out;
+    double seconds = 0.0, number = 0.0;
+    std::istringstream words(out.substr(at + 14));
+    for (std::string unit; words >> number >> unit && (unit == "min" || unit == "s");) {
+      seconds += unit == "min" ? 60.0 * number : number;
+    }
+    return seconds;
+  };
+  const double usual_s = told_s({});
+  EXPECT_GT(told_s({"--set", "plates.raster.map_columns=1024"}), 3.0 * usual_s);
+  EXPECT_LT(told_s({"--set", "plates.raster.cycles=1"}), 0.8 * usual_s);
+  EXPECT_LT(told_s({"--topology", "torus"}), 0.5 * usual_s);
+}
+
 // Most of a small run is its climates, three of them, which cost what their air does. A machine
 // that is busy with other tests slows some down and not others, so that only the two runs are held
 // against each other closely, and each against its prediction within an order of size.

@@ -73,6 +73,7 @@ TEST_F(Torus, SaysInOneLineWhatATorusHasNot) {
       {{"--set", "isostasy.crust=margins"}, "isostasy.crust must be simulated"},
       {{"--to", "island"}, "a torus is none"},
       {{"--grid", "64x32"}, "plates.raster.map_rows = 64"},
+      {{"--set", "plates.raster.plate_speed=1,fast"}, "plate_speed: entry 1 is \"fast\""},
       {{"--dem", "relief.nc"}, "run.topology = torus"},
   };
   for (const Wrong& wrong : wrongs) {
@@ -80,6 +81,7 @@ TEST_F(Torus, SaysInOneLineWhatATorusHasNot) {
     EXPECT_EQ(outcome.code, 2) << outcome.err;
     EXPECT_NE(outcome.err.find(wrong.told), std::string::npos) << outcome.err;
     EXPECT_EQ(lines_of(outcome.err).size(), 1U) << outcome.err;
+    EXPECT_FALSE(fs::exists(out_)) << "a folder was begun";
     fs::remove_all(out_);
   }
 }

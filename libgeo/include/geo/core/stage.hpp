@@ -74,6 +74,7 @@ struct PlateReconstruction;  // kernels/plates/plate_reconstruction.hpp
 struct StageCost {
   double per_cell_ns = 500.0;  ///< time for each cell of its grid
   double fixed_s = 0.0;        ///< time whatever the grid
+  double on_sphere_s = 0.0;    ///< the same, where the grid is no torus
   double cell_bytes = 150.0;   ///< memory per cell at its peak, all fields included
   double fixed_bytes = 0.0;    ///< memory whatever the grid
 };

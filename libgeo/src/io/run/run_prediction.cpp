@@ -21,7 +21,7 @@ constexpr double kMaps_bytes = 12e6;
 constexpr double kMapWidth_px = 1800.0;
 constexpr double kPictures_bytes = 60e6;        // memory of all maps at that width, drawn at once
 constexpr double kPicturesOfCell_bytes = 90.0;  // of the fields that they are drawn from
-constexpr double kParallelShare = 0.67;         // of the time, Amdahl
+constexpr double kParallelShare = 0.75;         // of the time, Amdahl
 constexpr double kReference_s = 0.0102;  // MachineSpeed::one_thread_s where the costs were measured
 
 double value_bytes(const FieldSpec& spec) {
@@ -51,12 +51,14 @@ std::optional<double> cells_of_own_grid(Stage& stage) {
   return cells;
 }
 
-}  // namespace
-
-double share_of_vtk(int compression) { return compression > 0 ? kVtkCompression : 1.0; }
-
-Prediction predict(const Pipeline& pipeline, int first, int last, double cells,
-                   const MachineSpeed& speed, double vtk_share, double map_width_px) {
+/// `vtk_share` is 0 where no VTK files are written, else share_of_vtk.
+Prediction predict_with(double vtk_share, const RunConfiguration& run, const RunPlan& plan,
+                        double cells, const MachineSpeed& speed) {
+  const Pipeline& pipeline = run.pipeline;
+  const int first = plan.first, last = plan.last;
+  const double map_width_px =
+      run.settings.maps ? static_cast<double>(run.settings.map_width_px) : 0.0;
+  const bool on_sphere = run.settings.topology == "sphere";
   Prediction sum;
   const std::vector<Parameter> configuration = pipeline.parameters();
   for (int at = first; at <= last; ++at) {
@@ -71,7 +73,8 @@ Prediction predict(const Pipeline& pipeline, int first, int last, double cells,
     for (const FieldSpec* spec : info.writes) bytes += value_bytes(*spec);
     const double writing_ns =
         (at == last ? kLastWriting_ns : kWriting_ns) * static_cast<double>(info.writes.size());
-    sum.seconds += cost.fixed_s + (cost.per_cell_ns + writing_ns) * 1e-9 * own_cells;
+    sum.seconds += cost.fixed_s + (on_sphere ? cost.on_sphere_s : 0.0) +
+                   (cost.per_cell_ns + writing_ns) * 1e-9 * own_cells;
     sum.disk_bytes += bytes * own_cells * (kCompression + vtk_share);
   }
   const double map_area = std::pow(map_width_px / kMapWidth_px, 2);
@@ -88,14 +91,16 @@ Prediction predict(const Pipeline& pipeline, int first, int last, double cells,
   return sum;
 }
 
+}  // namespace
+
+double share_of_vtk(int compression) { return compression > 0 ? kVtkCompression : 1.0; }
+
 Prediction predict(const RunConfiguration& run, const RunPlan& plan, double cells,
                    const MachineSpeed& speed) {
   const RunSettings& settings = run.settings;
-  const double map_width_px = settings.maps ? static_cast<double>(settings.map_width_px) : 0.0;
   const double vtk_share = share_of_vtk(static_cast<int>(settings.vtk_compression));
   const auto predicted = [&](bool vtk) {
-    return predict(run.pipeline, plan.first, plan.last, cells, speed, vtk ? vtk_share : 0.0,
-                   map_width_px);
+    return predict_with(vtk ? vtk_share : 0.0, run, plan, cells, speed);
   };
   Prediction sum = predicted(settings.vtk);
   if (settings.globe) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "geo/core/error.hpp"
 #include "hypsography.hpp"
@@ -32,7 +33,10 @@ class PlatesStage final : public Stage {
     constexpr double kMesh_s = 0.45;     // plates that grow, on a mesh of their own
     constexpr double kDrift_ns = 136.0;  // per sample and million years
     constexpr double kRivers_ns = 225.0;
-    constexpr double kRaster_s = 3.0;
+    // 1200 steps of maps of 512 columns: on a torus, and on a lattice of samples on the sphere,
+    // which outgrows the processor's caches.
+    constexpr double kTorus_s = 1.3, kRaster_s = 15.0, kColumns = 512.0, kSteps = 1200.0;
+    constexpr double kMoreColumns = 2.5;
     constexpr double kSample_bytes = 290.0;
     const std::string& model = parameters_.model;
     const bool is_full = parameters_.landscape == "full";
@@ -45,22 +49,30 @@ class PlatesStage final : public Stage {
         1e-9 * step_ns * static_cast<double>(parameters_.samples) *
             (parameters_.time_myr + parameters_.spin_up_myr) +
         (climates > 0.0 ? climates * DriftLandscape::climate_seconds(configuration) : 0.0);
+    const RasterParameters& raster = parameters_.raster;
+    const double steps = static_cast<double>(raster.cycles * raster.cycle_steps) / kSteps;
+    const double wider = static_cast<double>(raster.columns) / kColumns;
+    const double torus_s = steps * wider * wider * kTorus_s;
     return {.per_cell_ns = 500.0,
             .fixed_s = model == "sphere"   ? drift_s
-                       : model == "raster" ? kRaster_s
+                       : model == "raster" ? torus_s
                        : model == "growth" ? kMesh_s
                                            : 0.0,
+            .on_sphere_s = model == "raster"
+                               ? steps * std::pow(wider, kMoreColumns) * kRaster_s - torus_s
+                               : 0.0,
             .cell_bytes = 55.0,
             .fixed_bytes =
                 model == "sphere" ? kSample_bytes * static_cast<double>(parameters_.samples) : 0.0};
   }
 
-  void check(const Grid& /*grid*/,
+  void check(const Grid& grid,
              const std::function<bool(const FieldSpec&)>& /*has*/) const override {
     if (parameters_.landscape == "full" && parameters_.model != "sphere") {
       throw ConfigurationError(
           "plates.landscape = \"full\" is of plates that drift: plates.model must be \"sphere\"");
     }
+    if (parameters_.model == "raster") check_rasters(parameters_, grid);
   }
 
   void run(StageIo& io, Context& context) const override {

@@ -13,12 +13,9 @@ struct Prediction {
   double disk_bytes = 0.0;
 };
 
-/// Predicts stages first..last of a pipeline on `cells` cells from what each says that it costs,
-/// scaled to the speed of this machine. `vtk_share` is 0 where no VTK files are written,
-/// else share_of_vtk; `map_width_px` is 0 where no maps are drawn.
-Prediction predict(const Pipeline& pipeline, int first, int last, double cells,
-                   const MachineSpeed& speed, double vtk_share, double map_width_px);
-/// The stages of a plan that are still to be computed, with all files that the settings ask for.
+/// Predicts the stages of a plan that are still to be computed on `cells` cells, with all files
+/// that the settings ask for, from what each stage says that it costs (StageCost), scaled to the
+/// speed of this machine.
 Prediction predict(const RunConfiguration& run, const RunPlan& plan, double cells,
                    const MachineSpeed& speed);
 /// What VTK files take of the bytes of their values, by RunSettings::vtk_compression.

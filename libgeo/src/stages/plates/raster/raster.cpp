@@ -64,6 +64,11 @@ RasterSettings settings_of(const PlatesParameters& parameters, double width_km) 
   return s;
 }
 
+double width_of(const Grid& grid) {
+  return grid.topology() == Topology::torus ? 1e-3 * grid.nx() * grid.spacing_east_m(0)
+                                            : 2e-3 * std::numbers::pi * grid.figure().radius_m;
+}
+
 /// A tile is not stretched.
 void check_shape(const Grid& grid, const RasterParameters& p) {
   const double height = grid.ny() * grid.step_north_m() / (grid.nx() * grid.spacing_east_m(0));
@@ -109,16 +114,20 @@ double wanted_ocean(const Context& context) {
   return context.planet.sea_level == "fraction" ? context.planet.ocean_fraction : 1.0;
 }
 
+void check_rasters(const PlatesParameters& parameters, const Grid& grid) {
+  if (grid.topology() == Topology::torus) check_shape(grid, parameters.raster);
+  static_cast<void>(settings_of(parameters, width_of(grid)));
+}
+
 void collide_rasters(const PlatesParameters& parameters, StageIo& io, Context& context) {
   const Grid& grid = io.grid();
   if (grid.topology() == Topology::plane) {
     throw InputError("plates: the grid must be a whole sphere or a torus");
   }
+  check_rasters(parameters, grid);
   context.advance(0.0);
   const bool on_torus = grid.topology() == Topology::torus;
-  const double width_km = on_torus ? 1e-3 * grid.nx() * grid.spacing_east_m(0)
-                                   : 2e-3 * std::numbers::pi * grid.figure().radius_m;
-  if (on_torus) check_shape(grid, parameters.raster);
+  const double width_km = width_of(grid);
   RasterScale scale;
   scale.cell_km = width_km / static_cast<double>(parameters.raster.columns);
   scale.step_myr = parameters.sphere.law.step_myr;
