@@ -18,9 +18,11 @@ import time
 from pathlib import Path
 
 SIZE = ["--grid", "24x12", "--no-maps", "--no-vtk", "--quiet", "--overwrite", "--threads", "1"]
-SMALL = {"island.nx": 32, "island.ny": 32, "plates.sphere.samples": 2000, "climate.resolution_deg": 10}
+SMALL = {"island.nx": 32, "island.ny": 32, "plates.sphere.samples": 2000, "plates.raster.map_columns": 64,
+         "plates.raster.map_rows": 32, "climate.resolution_deg": 10}
 # What says how long, how large or where, but not what the planet is like.
-APART = {"run.grid", "run.threads", "plates.sphere.samples", "island.nx", "island.ny", "calibration."}
+APART = {"run.grid", "run.threads", "plates.sphere.samples", "plates.raster.map_columns", "plates.raster.map_rows",
+         "island.nx", "island.ny", "calibration."}
 PRESETS = ["preview", "tectonica", "sphere", "raster", "hypsography"]
 SECONDS = 120
 # Air of half a degree has a thousand times the cells of these planets.
