@@ -112,6 +112,8 @@ bool is_one_of_several() {
 }
 
 int run_as_rank(const std::function<int()>& program) {
+  // Others may die while MPI begins.
+  if (rank_by_launcher() == 0) std::signal(SIGTERM, end_with_job);
   const std::unique_ptr<RankMessages> messages(load_messages());
   if (!messages) {
     if (rank_by_launcher() > 0) return static_cast<int>(geo::ErrorKind::configuration);
@@ -129,6 +131,8 @@ int run_as_rank(const std::function<int()>& program) {
     others = messages.get();
     begin_page_servers(*messages);
     std::signal(SIGTERM, end_with_job);
+  } else {
+    std::signal(SIGTERM, SIG_DFL);
   }
   const int code = program();
   end_page_servers(*messages);
