@@ -24,7 +24,7 @@ CellSet some_of(Index cells, std::uint64_t seed, std::vector<Index>& held) {
 }
 
 TEST(CellSet, PlacesAreThoseInAscendingOrder) {
-  for (const Index cells : {1, 63, 64, 65, 1000, 4096}) {
+  for (const Index cells : {1, 63, 64, 65, 1000, 4096, 200000}) {
     std::vector<Index> held;
     const CellSet set = some_of(cells, 7, held);
     ASSERT_EQ(set.size(), held.size()) << cells;

@@ -21,7 +21,8 @@ class CellSet {
   template <class Holds>
   CellSet(Index cells, Holds&& holds)
       : words_(static_cast<std::size_t>(cells) / kBits + 1), before_(words_.size()), cells_(cells) {
-#pragma omp parallel for schedule(static)
+    constexpr std::size_t kMany = 1000;
+#pragma omp parallel for schedule(static) if (words_.size() >= kMany)
     for (std::size_t w = 0; w < words_.size(); ++w) {
       const auto first = static_cast<Index>(w * kBits);
       const Index end = std::min(cells, static_cast<Index>(first + static_cast<Index>(kBits)));

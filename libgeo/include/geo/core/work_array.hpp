@@ -1,15 +1,14 @@
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <utility>
 
 namespace geo {
 
-/// Working memory of a kernel: as many elements as it is made with, which all threads set at first.
-/// A vector has one thread set them, and the system clear the pages that this one touches: on
-/// rasters that takes longer than many a loop over them.
+/// Working memory of a kernel: as many elements as it is made with, which all threads set at first
+/// if there are many. A vector has one thread set them, and the system clear the pages that this
+/// one touches: on rasters that takes longer than many a loop over them.
 template <class T>
 class WorkArray {
  public:
@@ -51,7 +50,8 @@ class WorkArray {
  private:
   template <class Set>
   void each(const Set& set) {
-#pragma omp parallel for schedule(static)
+    constexpr std::size_t kMany = 50'000;
+#pragma omp parallel for schedule(static) if (size_ >= kMany)
     for (std::size_t n = 0; n < size_; ++n) set(n);
   }
 
