@@ -15,7 +15,7 @@ namespace {
 
 using Number = std::int32_t;
 
-constexpr int kMostThreads = 255;
+constexpr int kMostThreads = 255;  // their numbers are kept in bytes
 
 /// Sums over ranges of a line of numbers that change one at a time (Fenwick 1994).
 class RangeSums {
