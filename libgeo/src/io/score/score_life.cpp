@@ -63,7 +63,9 @@ void measure_biomes(const State& state, Figures& figures) {
   const auto shares = land_shares(state.grid(), [&](Index c) { return int(biome[c]); });
   const auto share = [&](Biome b) { return shares[static_cast<int>(b)]; };
   figures["biome_desert"] = share(Biome::hot_desert);
-  figures["biome_rainforest"] = share(Biome::tropical_rainforest);
+  // Moist forests of the tropics and the subtropics are one biome of Olson's.
+  figures["biome_rainforest"] =
+      share(Biome::tropical_rainforest) + share(Biome::subtropical_forest);
   figures["biome_savanna"] = share(Biome::tropical_savanna);
   figures["biome_boreal"] = share(Biome::boreal_forest);
   figures["biome_temperate"] = share(Biome::temperate_forest);

@@ -85,6 +85,10 @@ bool has_dry_summers(const KoppenIndices& c) {
   return c.summer_driest_mm < 40 && c.summer_driest_mm < c.winter_wettest_mm / 3;
 }
 
+bool is_always_wet(const KoppenIndices& c) {
+  return c.driest_mm >= std::min(60.0, 100.0 - c.annual_mm / 25.0);
+}
+
 std::int8_t koppen_class(const KoppenIndices& c) {
   const double threshold_mm = dryness_threshold_mm(c);
   if (c.annual_mm < threshold_mm) {
@@ -94,7 +98,7 @@ std::int8_t koppen_class(const KoppenIndices& c) {
   }
   if (c.coldest_c >= 18) {
     if (c.driest_mm >= 60) return kAf;
-    return c.driest_mm >= 100 - c.annual_mm / 25 ? kAm : kAw;
+    return is_always_wet(c) ? kAm : kAw;
   }
   if (c.warmest_c <= 10) return c.warmest_c > 0 ? kET : kEF;
 

@@ -82,6 +82,19 @@ BiomeSet biomes_in_season(const KoppenIndices& climate) {
   return has_dry_summers(climate) ? cooler : cooler.without(Biome::mediterranean_scrub);
 }
 
+Biome seasonal_biome(const KoppenIndices& climate, bool with_tundra) {
+  constexpr int kBorealMonths = 3;
+  const BiomeSet among = biomes_in_season(climate);
+  const Biome nearest = nearest_biome(climate.mean_c, climate.annual_mm,
+                                      with_tundra ? among : among.without(Biome::tundra));
+  if (nearest == Biome::boreal_forest || nearest == Biome::temperate_forest) {
+    return climate.months_above_10c > kBorealMonths ? Biome::temperate_forest
+                                                    : Biome::boreal_forest;
+  }
+  const bool canopy = among.has(Biome::tropical_rainforest) && is_always_wet(climate);
+  return canopy && nearest == Biome::tropical_savanna ? Biome::tropical_rainforest : nearest;
+}
+
 GrowingSeason growing_season(double mean_c, double range_k, double threshold_c) {
   constexpr double kYear_days = 365.25;
   const double half = 0.5 * range_k;

@@ -35,17 +35,16 @@ class Treeline {
   /// The biome of a land cell before rivers and smoothing.
   [[nodiscard]] Biome biome(int i, int j, double elevation_m, double range_k,
                             const KoppenIndices& climate) const {
-    const double temperature_c = climate.mean_c, precipitation_mm = climate.annual_mm;
-    const BiomeSet among = p_.seasons ? biomes_in_season(climate) : kClimaticBiomes;
+    const double temperature_c = climate.mean_c;
     if (!thermal_) {
-      const Biome open = nearest_biome(temperature_c, precipitation_mm, among);
+      const Biome open = by_climate(climate, true);
       return grows_at_treeline(open) && above_fixed_line(i, j, elevation_m) ? Biome::alpine : open;
     }
     const double cold_k = treeline_deficit_k(temperature_c, range_k);
     const double spread_k = p_.treeline_noise_m * lapse_k_m_;
     const double shift_k = std::abs(cold_k) < spread_k ? spread_k * noise(i, j) : 0.0;
     if (cold_k + shift_k <= 0) {
-      return nearest_biome(temperature_c, precipitation_mm, among.without(Biome::tundra));
+      return by_climate(climate, false);
     }
     // Treeless by height where what stands above the foothills cools by more than the sea level
     // there lacks, else by latitude: the border of the two follows the terrain, not a parallel.
@@ -57,6 +56,11 @@ class Treeline {
   }
 
  private:
+  [[nodiscard]] Biome by_climate(const KoppenIndices& climate, bool with_tundra) const {
+    if (p_.seasons) return seasonal_biome(climate, with_tundra);
+    return nearest_biome(climate.mean_c, climate.annual_mm,
+                         with_tundra ? kClimaticBiomes : kClimaticBiomes.without(Biome::tundra));
+  }
   static bool grows_at_treeline(Biome b) {
     return b == Biome::boreal_forest || b == Biome::temperate_forest ||
            b == Biome::tropical_rainforest || b == Biome::subtropical_forest ||
@@ -248,7 +252,8 @@ std::vector<Parameter> BiomesParameters::declarations() {
   return {
       flag("biomes.seasons", seasons,
            "only biomes whose seasons the climate has: tropical ones where no month is below 18 "
-           "degC, Mediterranean scrub where summers are dry",
+           "degC, rainforest wherever the dry season is short, boreal forest where at most three "
+           "months reach 10 degC, Mediterranean scrub where summers are dry",
            "kottek2006"),
       choice("biomes.treeline", treeline, {"thermal", "fixed"},
              "where trees end: where the growing season is too cold or short, or at a fixed height",
