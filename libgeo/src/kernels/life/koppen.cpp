@@ -85,7 +85,7 @@ bool has_dry_summers(const KoppenIndices& c) {
   return c.summer_driest_mm < 40 && c.summer_driest_mm < c.winter_wettest_mm / 3;
 }
 
-bool is_always_wet(const KoppenIndices& c) {
+bool keeps_rainforest(const KoppenIndices& c) {
   return c.driest_mm >= std::min(60.0, 100.0 - c.annual_mm / 25.0);
 }
 
@@ -98,7 +98,7 @@ std::int8_t koppen_class(const KoppenIndices& c) {
   }
   if (c.coldest_c >= 18) {
     if (c.driest_mm >= 60) return kAf;
-    return is_always_wet(c) ? kAm : kAw;
+    return keeps_rainforest(c) ? kAm : kAw;
   }
   if (c.warmest_c <= 10) return c.warmest_c > 0 ? kET : kEF;
 

@@ -91,7 +91,7 @@ Biome seasonal_biome(const KoppenIndices& climate, bool with_tundra) {
     return climate.months_above_10c > kBorealMonths ? Biome::temperate_forest
                                                     : Biome::boreal_forest;
   }
-  const bool canopy = among.has(Biome::tropical_rainforest) && is_always_wet(climate);
+  const bool canopy = among.has(Biome::tropical_rainforest) && keeps_rainforest(climate);
   return canopy && nearest == Biome::tropical_savanna ? Biome::tropical_rainforest : nearest;
 }
 

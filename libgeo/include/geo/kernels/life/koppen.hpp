@@ -32,9 +32,10 @@ KoppenIndices harmonic_indices(double mean_c, double range_k, double annual_mm, 
 /// and a third of the wettest one in winter.
 bool has_dry_summers(const KoppenIndices& climate);
 
-/// Whether a tropical climate keeps a rainforest, as in Af and Am: no month below 60 mm, or below
-/// 100 mm less a 25th of the year's precipitation, which outlasts a short dry season.
-bool is_always_wet(const KoppenIndices& climate);
+/// Whether a tropical climate keeps a rainforest, as in Af and Am (Kottek et al. 2006): no month
+/// below 60 mm, or below 100 mm less a 25th of the year's precipitation, which outlasts a short dry
+/// season.
+bool keeps_rainforest(const KoppenIndices& climate);
 
 /// Köppen-Geiger class, numbered 1 (Af) to 30 (EF) as in Beck et al. (2018), whose rules these are
 /// (after Peel et al. 2007): arid B before everything, then A, C, D and polar E. Peel tests E
