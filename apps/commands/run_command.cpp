@@ -55,6 +55,7 @@ bool configure(Configuration& configuration, const RunOptions& options) {
 
 void print_prediction(const geo::io::RunSession& session, const RunOptions& options, int threads) {
   const auto prediction = session.prediction(geo::io::measure_machine(threads));
+  double seconds = prediction.seconds;
   const auto& grid = session.grid();
   fmt::print("grid    {} x {}, {} cells\n", grid.nx(), grid.ny(), grid.size());
   fmt::print("stages  {}\n", fmt::join(session.stages_to_run(), " "));
@@ -65,11 +66,12 @@ void print_prediction(const geo::io::RunSession& session, const RunOptions& opti
     fmt::print("memory  about {}\n", shown_bytes(prediction.memory_bytes));
   } else {
     const auto taken = memory_under_cap(options.memory.bytes(), prediction.memory_bytes);
+    seconds *= taken.times_as_long;
     fmt::print("memory  about {}\n", shown_bytes(taken.resident_bytes));
     fmt::print("scratch about {} in {}\n", shown_bytes(taken.scratch_bytes),
                options.memory.scratch_folder(options.folder));
   }
-  fmt::print("time    about {} on {} thread{}\n", shown_seconds(prediction.seconds), threads,
+  fmt::print("time    about {} on {} thread{}\n", shown_seconds(seconds), threads,
              threads == 1 ? "" : "s");
   fmt::print("files   about {} in {}\n", shown_bytes(prediction.disk_bytes), options.folder);
 }
@@ -126,8 +128,9 @@ void run(const RunOptions& options) {
   if (options.dry_run) print_prediction(session, options, threads);
   if (!options.memory.is_given() && other_ranks() == nullptr) refuse_beyond_memory(session);
   if (options.dry_run) return;
+  const double wanted = session.prediction({}).memory_bytes;
+  if (cap != nullptr) cap->expect(wanted);
   if (ranks != nullptr) {
-    const double wanted = session.prediction({}).memory_bytes;
     cap = std::make_unique<MemoryCap>(options.memory.bytes_of_rank(ranks->count(), wanted), *ranks,
                                       wanted);
   }

@@ -12,13 +12,14 @@ class RemotePages;
 
 /// Keeps the memory that the program has resident below a cap, from its construction to its end.
 ///
-/// Large blocks then lie in a region of addresses of their own. Up to two fifths of the cap
-/// they have memory as usual; the rest lies in pages that can be elsewhere: in a scratch file,
-/// whose room on the disk is reserved block by block, or with the other ranks of the job. A thread
-/// looks every millisecond how much is resident. Near the cap it drops pages of freed blocks and
-/// then, going round, those that can be elsewhere. One that was dropped comes back when it is
-/// touched: from the system's cache of files as long as the machine has memory to spare, from the
-/// disk, from its rank. Nothing of this changes what a kernel reads or writes.
+/// Large blocks then lie in a region of addresses of their own. Up to two fifths of the cap, or
+/// seven tenths of one that holds most of what is wanted, they have memory as usual; the rest lies
+/// in pages that can be elsewhere: in a scratch file, whose room on the disk is reserved block by
+/// block, or with the other ranks of the job. A thread looks every millisecond how much is
+/// resident. Near the cap it drops pages of freed blocks and then, going round, those that can be
+/// elsewhere. One that was dropped comes back when it is touched: from the system's cache of files
+/// as long as the machine has memory to spare, from the disk, from its rank. Nothing of this
+/// changes what a kernel reads or writes.
 ///
 /// The scratch file has no name and ends with the program, however that ends. One cap at a time;
 /// blocks may outlive it.
@@ -31,6 +32,9 @@ class MemoryCap {
   /// `uncapped_bytes`: what the run takes without a cap; pages are as large as that many need.
   MemoryCap(double cap_bytes, RankMessages& ranks, double uncapped_bytes);
   ~MemoryCap();
+  /// What the run takes without a cap, as soon as that is known: of a cap that holds most of it,
+  /// more is memory as usual.
+  void expect(double uncapped_bytes);
   MemoryCap(const MemoryCap&) = delete;
   MemoryCap& operator=(const MemoryCap&) = delete;
 
@@ -42,6 +46,7 @@ class MemoryCap {
  private:
   void begin(double cap_bytes);
 
+  double cap_bytes_ = 0.0;
   std::unique_ptr<MemoryPager> pager_;
   const RemotePages* remote_ = nullptr;
 };
@@ -49,10 +54,10 @@ class MemoryCap {
 /// The most that this process ever had resident; 0 if the system does not tell.
 double peak_resident_bytes();
 
-/// What a run that takes so much without a cap takes under one: of memory, and of the scratch
-/// region.
+/// What a run that takes so much without a cap takes under one: of memory, of the scratch region,
+/// and of time, in times of that without.
 struct MemoryUnderCap {
-  double resident_bytes = 0.0, scratch_bytes = 0.0;
+  double resident_bytes = 0.0, scratch_bytes = 0.0, times_as_long = 1.0;
 };
 MemoryUnderCap memory_under_cap(double cap_bytes, double uncapped_bytes);
 
