@@ -95,21 +95,27 @@ Pair planets(std::uint64_t seed, int columns) {
 
 constexpr std::array kFields{"elevation", "eroded", "crust_age", "crust_thickness"};
 
-/// A field of both planets at the cells of the turned one, weighed by their areas.
+/// A field of both planets between two latitudes of the turned one, weighed by areas. As
+/// interpolation smooths, each planet is read at its own cells and between them, at the other's.
 struct Both {
   std::vector<double> turned, plain, area;
 
   Both(const Pair& pair, const std::string& name, double south_deg, double north_deg) {
-    const Grid& grid = *pair.turned.grid;
-    for (int j = 0; j < grid.ny(); ++j) {
-      const double latitude = grid.latitude_deg(j);
-      if (latitude < south_deg || latitude > north_deg) continue;
-      for (int i = 0; i < grid.nx(); ++i) {
-        turned.push_back(pair.turned.fields.at(name)[grid.cell(i, j)]);
-        plain.push_back(value_at(pair.plain, name, grid.unit_vector(i, j)));
-        area.push_back(grid.area_m2(j));
+    const Grid& frame = *pair.turned.grid;
+    const auto read = [&](const Relief& at_cells, std::vector<double>& own, const Relief& between,
+                          std::vector<double>& interpolated) {
+      const Grid& grid = *at_cells.grid;
+      for (Index cell = 0; cell < grid.size(); ++cell) {
+        const Vector3 place = grid.unit_vector(grid.column(cell), grid.row(cell));
+        const double latitude = std::asin(std::clamp(frame.to_axis(place)[2], -1.0, 1.0)) / kDegree;
+        if (latitude < south_deg || latitude > north_deg) continue;
+        own.push_back(at_cells.fields.at(name)[cell]);
+        interpolated.push_back(value_at(between, name, place));
+        area.push_back(grid.area_m2(grid.row(cell)));
       }
-    }
+    };
+    read(pair.turned, turned, pair.plain, plain);
+    read(pair.plain, plain, pair.turned, turned);
   }
   /// Share of the area where both are on the same side of a level.
   [[nodiscard]] double agreement(double level) const {
@@ -120,17 +126,20 @@ struct Both {
     }
     return same / all;
   }
-  [[nodiscard]] double quantile(const std::vector<double>& values, double share) const {
-    std::vector<std::size_t> order(values.size());
-    std::iota(order.begin(), order.end(), 0U);
-    std::sort(order.begin(), order.end(),
-              [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
-    double left = share * std::accumulate(area.begin(), area.end(), 0.0);
-    for (const std::size_t k : order) {
-      left -= area[k];
-      if (left <= 0.0) return values[k];
+  /// Mean difference between values of the same rank: the area between the two distributions.
+  [[nodiscard]] double distance_of_distributions() const {
+    std::vector<std::array<double, 2>> steps;  // a value and by how much the two then differ
+    for (std::size_t k = 0; k < area.size(); ++k) {
+      steps.push_back({turned[k], area[k]});
+      steps.push_back({plain[k], -area[k]});
     }
-    return values[order.back()];
+    std::sort(steps.begin(), steps.end());
+    double ahead = 0.0, between = 0.0;
+    for (std::size_t k = 0; k + 1 < steps.size(); ++k) {
+      ahead += steps[k][1];
+      between += std::abs(ahead) * (steps[k + 1][0] - steps[k][0]);
+    }
+    return between / std::accumulate(area.begin(), area.end(), 0.0);
   }
   [[nodiscard]] double deviation(const std::vector<double>& values) const {
     double sum = 0.0, squares = 0.0, all = 0.0;
@@ -186,36 +195,43 @@ void expect_the_same_distribution(const Pair& pair) {
     const Both cap(pair, name, 60.0, 90.0);
     const double spread = cap.deviation(cap.plain);
     EXPECT_NEAR(cap.deviation(cap.turned), spread, 0.05 * spread) << name;
-    for (const double share : {0.05, 0.25, 0.5, 0.75, 0.95}) {
-      const double expected = cap.quantile(cap.plain, share);
-      EXPECT_NEAR(cap.quantile(cap.turned, share), expected,
-                  0.05 * spread + 0.05 * std::abs(expected))
-          << name << ", quantile " << share;
-    }
+    // Rivers find other ways on other cells.
+    const double most = std::string(name) == "eroded" ? 0.03 : 0.01;
+    EXPECT_LT(cap.distance_of_distributions(), most * spread) << name;
   }
 }
 
-void expect_the_same_slopes(const Pair& pair) {
+/// How much steeper each field is eastwards than northwards on the turned planet, as logarithms.
+using Grain = std::map<std::string, double>;
+
+void expect_the_same_slopes(const Pair& pair, Grain& grain) {
   for (const auto* name : kFields) {
     const Grid& frame = *pair.turned.grid;
     const Steepness turned(pair.turned, name, frame, 75.0), plain(pair.plain, name, frame, 75.0);
-    // Continents have a grain of their own: what the frame adds to it is what counts.
+    // A continent has a grain of its own, a belt that runs across the cap: what the frame adds to
+    // it is what counts.
     EXPECT_NEAR(turned.ratio() / plain.ratio(), 1.0, 0.08) << name;
-    EXPECT_GT(turned.ratio(), 0.8) << name;
-    EXPECT_LT(turned.ratio(), 1.25) << name;
     EXPECT_NEAR(std::sqrt(turned.east / plain.east), 1.0, 0.15) << name;
+    grain[name] += std::log(turned.ratio());
   }
 }
 
-// Cells of 40 km: a continental slope is a few of them wide. On cells of 80 km a cap holds so few
-// of a slope's that a quantile which falls on one moves by 100 m with where the centres lie.
+// Cells of 40 km: a continental slope is a few of them wide.
 TEST(TurnedPlanet, LooksTheSameWithAContinentOnThePole) {
-  for (const std::uint64_t seed : {2, 3, 4, 5}) {
+  constexpr std::array<std::uint64_t, 4> kSeeds{2, 3, 4, 5};
+  Grain grain;
+  for (const std::uint64_t seed : kSeeds) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     const Pair pair = planets(seed, 1024);
     expect_the_same_land(pair);
     expect_the_same_distribution(pair);
-    expect_the_same_slopes(pair);
+    expect_the_same_slopes(pair, grain);
+  }
+  // Belts lie any way on their planets: a grain that all of them share would be the frame's.
+  for (const auto& [name, sum] : grain) {
+    const double mean = std::exp(sum / kSeeds.size());
+    EXPECT_GT(mean, 0.85) << name;
+    EXPECT_LT(mean, 1.0 / 0.85) << name;
   }
 }
 

@@ -48,6 +48,21 @@ TEST(ConvergentMargins, TheOceanGoesDownAndDistancesAreTrueOnes) {
   }
 }
 
+TEST(ConvergentMargins, AThirdPlateIsOnTheSideWhereItLies) {
+  EquatorialTrench t;
+  for (Index cell = 0; cell < t.grid.size(); ++cell) {
+    if (t.grid.row(cell) < 118) t.plate[cell] = 2;
+    if (t.grid.row(cell) >= 138) t.plate[cell] = 3;
+  }
+  const auto margins =
+      convergent_margins(t.grid, t.plate, t.type, t.strength, t.fraction, t.age, t.east, t.north);
+  for (Index cell = 0; cell < t.grid.size(); ++cell) {
+    const int row = t.grid.row(cell);
+    if (row == 127 || row == 128) continue;  // the boundary itself
+    ASSERT_EQ(margins.across_km[cell] > 0.0F, row > 128) << row;
+  }
+}
+
 TEST(ConvergentMargins, ClosingIsTheConvergenceAcrossTheBoundary) {
   EquatorialTrench t;
   const auto closing = [&] {

@@ -28,10 +28,10 @@ struct IsostasyParameters {
   double continental_km = 36.4;
   double ocean_depth_m = 3750.0;
   double oceanic_km = 7.0;
-  double thickness_noise_km = 4.5;
-  double collision_km = 18.0;
-  double collision_shortening = 0.08;
-  double subduction_shortening = 0.027;
+  double thickness_noise_km = 5.4;
+  double collision_km = 20.5;
+  double collision_shortening = 0.1;
+  double subduction_shortening = 0.033;
   double front_shortening = 0.55;
   double arc_km = 13.0;
   double rift_km = 20.0;
@@ -40,7 +40,7 @@ struct IsostasyParameters {
   double coast_smoothing_km = 80.0;
 
   double lithosphere = 1.22;
-  double craton_compensation = 0.95;
+  double craton_compensation = 0.958;
   double swell_m = 345.0;
   double ocean_swell_m = 430.0;
   double margin_tilt_m = 760.0;

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <numeric>
+#include <queue>
+#include <utility>
 
 #include "geo/core/array_sizes.hpp"
 #include "geo/core/random.hpp"
@@ -73,6 +76,75 @@ void place_cratons(const Cratons& model, const CubedSphere& mesh,
   }
 }
 
+/// By how much sea floor lowers the potential at some distance from where it is made or taken down.
+double lowered(double share, double distance_km, double clearance_km) {
+  constexpr double kDeep = 6.0;
+  if (!(clearance_km > 0.0)) return 0.0;
+  return kDeep * std::clamp(share, 0.0, 1.0) * std::exp(-distance_km / clearance_km);
+}
+
+double lowered_by_ridges(const Cratons& model, const Oceans& oceans, double rifting,
+                         std::int32_t cell) {
+  return lowered(0.65 + 3.0 * rifting, oceans.to_ridge.angle[cell] * model.radius_km,
+                 model.ridge_clearance_km);
+}
+
+double lowered_before_trenches(const Cratons& model, const Oceans& oceans, double rifting,
+                               std::span<const std::int16_t> plate, std::int32_t cell) {
+  const std::int32_t trench = oceans.to_trench.source[cell];
+  if (trench < 0 || oceans.going_down[trench] != plate[cell]) return 0.0;
+  return lowered(0.5 + 15.0 * (0.03 - rifting), oceans.to_trench.angle[cell] * model.radius_km,
+                 model.trench_clearance_km);
+}
+
+/// The highest of each place and those around it.
+std::vector<float> highest_around(const CubedSphere& mesh, std::span<const float> values) {
+  std::vector<float> highest(values.begin(), values.end());
+  for (std::int32_t cell = 0; cell < mesh.size(); ++cell) {
+    for (const std::int32_t next : mesh.neighbours(cell)) {
+      if (next >= 0) highest[cell] = std::max(highest[cell], values[next]);
+    }
+  }
+  return highest;
+}
+
+/// The least potential that has to be passed on the way to the deepest place, for each place.
+std::vector<float> straits(const CubedSphere& mesh, std::span<const float> potential) {
+  using Strait = std::pair<float, std::int32_t>;
+  std::priority_queue<Strait, std::vector<Strait>, std::greater<>> shore;
+  std::vector<float> strait(potential.size());
+  std::vector<std::uint8_t> reached(potential.size(), 0);
+  const auto reach = [&](std::int32_t cell, float passed) {
+    if (reached[cell] != 0) return;
+    reached[cell] = 1;
+    strait[cell] = std::max(potential[cell], passed);
+    shore.emplace(strait[cell], cell);
+  };
+  const auto deepest = std::min_element(potential.begin(), potential.end()) - potential.begin();
+  reach(static_cast<std::int32_t>(deepest), potential[deepest]);
+  while (!shore.empty()) {
+    const auto [passed, cell] = shore.top();
+    shore.pop();
+    for (const std::int32_t next : mesh.neighbours(cell)) {
+      if (next >= 0) reach(next, passed);
+    }
+  }
+  return strait;
+}
+
+/// Raises the potential of every basin to that of the strait by which it is joined to the deepest
+/// one and somewhat above: a sea without a strait has closed. Straits are three cells wide at least
+/// and deep enough that what frays coasts leaves them open.
+void close_inland_seas(const CubedSphere& mesh, std::span<float> potential) {
+  constexpr float kFrays = 0.25F;
+  const std::vector<float> narrowed = highest_around(mesh, potential);
+  const std::vector<float> strait = straits(mesh, narrowed);
+  for (std::size_t cell = 0; cell < potential.size(); ++cell) {
+    if (strait[cell] <= narrowed[cell]) continue;
+    potential[cell] = std::max(potential[cell], strait[cell] + kFrays);
+  }
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> continental_plates(const CubedSphere& mesh,
@@ -117,18 +189,31 @@ CratonNoise craton_noise(const CubedSphere& mesh, std::uint64_t seed) {
   return noise;
 }
 
-NearestCells nearest_ridges(const Cratons& model, const CubedSphere& mesh,
-                            std::span<const BoundaryPoint> boundaries) {
-  std::vector<std::int32_t> ridge;
+Oceans find_oceans(const Cratons& model, const CubedSphere& mesh,
+                   std::span<const BoundaryPoint> boundaries, const std::vector<Plate>& plates) {
+  std::vector<std::int32_t> ridge, trench;
+  Oceans oceans;
+  const auto speed = [&](std::int16_t plate, std::int32_t cell) {
+    return length(cross(plates[plate].rotation_rad_myr, mesh.position(cell)));
+  };
   for (const BoundaryPoint& point : boundaries) {
     if (point.type == BoundaryType::divergent) ridge.push_back(point.cell);
+    if (point.type != BoundaryType::convergent) continue;
+    if (speed(point.plate, point.cell) < speed(point.other, point.cell)) continue;
+    trench.push_back(point.cell);
+    oceans.going_down.push_back(point.plate);
   }
-  return nearest_cells(mesh, ridge, 4.0 * model.ridge_clearance_km / model.radius_km);
+  const auto within = [&](const std::vector<std::int32_t>& sources, double clearance_km) {
+    return nearest_cells(mesh, sources, 4.0 * clearance_km / model.radius_km);
+  };
+  oceans.to_ridge = within(ridge, model.ridge_clearance_km);
+  oceans.to_trench = within(trench, model.trench_clearance_km);
+  return oceans;
 }
 
 std::vector<float> craton_potential(const Cratons& model, const CubedSphere& mesh,
                                     std::span<const std::int16_t> plate,
-                                    const std::vector<Plate>& plates, const NearestCells& to_ridge,
+                                    const std::vector<Plate>& plates, const Oceans& oceans,
                                     const CratonNoise& noise, std::uint64_t seed) {
   const auto area_sr = plate_areas_sr(mesh, plate, plates.size());
   const auto carries = continental_plates(mesh, plate, plates, model.plate_share);
@@ -152,12 +237,11 @@ std::vector<float> craton_potential(const Cratons& model, const CubedSphere& mes
       const double far = length(add(craton.centre, bent, -1.0)) / craton.radius;
       sum += std::exp(-far * far);
     }
-    const double ridge_km = to_ridge.angle[cell] * model.radius_km;
-    // Some ridges have made oceans, others only begin to tear a continent.
-    const double begun = std::clamp(0.65 + 3.0 * noise.rifting[cell], 0.0, 1.0);
-    const double opened = 6.0 * begun * std::exp(-ridge_km / model.ridge_clearance_km);
-    potential[cell] = static_cast<float>(std::log(sum + 1e-26) - opened);
+    potential[cell] = static_cast<float>(
+        std::log(sum + 1e-26) - lowered_by_ridges(model, oceans, noise.rifting[cell], cell) -
+        lowered_before_trenches(model, oceans, noise.rifting[cell], plate, cell));
   }
+  close_inland_seas(mesh, potential);
   return potential;
 }
 

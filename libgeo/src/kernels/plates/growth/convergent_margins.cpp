@@ -46,9 +46,16 @@ struct Sources {
   }
 };
 
-bool touches_another_plate(const Grid& grid, std::span<const std::int16_t> plate, Index cell) {
-  return std::any_of(kSides.begin(), kSides.end(),
-                     [&](int k) { return plate[grid.neighbour(cell, k)] != plate[cell]; });
+/// Length of a cell's sides towards other plates, in heights of a row.
+double side_towards_others(const Grid& grid, std::span<const std::int16_t> plate, Index cell) {
+  const double parallel = std::cos(grid.latitude_deg(grid.row(cell)) * std::numbers::pi / 180.0);
+  const double width = 2.0 * parallel * grid.ny() / grid.nx();
+  double length = 0.0;
+  for (const int k : kSides) {
+    if (plate[grid.neighbour(cell, k)] == plate[cell]) continue;
+    length += k == kNorth || k == kSouth ? width : 1.0;
+  }
+  return length;
 }
 
 /// What one plate is like near a point of its boundary.
@@ -57,7 +64,7 @@ struct Side {
   double fraction = 0.0, floor_myr = 0.0, speed = 0.0;
   Vector3 centre{};
   Index nearest = 0;
-  int cells = 0, floor_cells = 0;
+  double weight = 0.0, floor_weight = 0.0;
 };
 
 /// A velocity along the ground, in the frame of the grid's axis.
@@ -157,69 +164,77 @@ struct PlateFields {
   std::span<const float> continental_fraction, age_myr, east_mm_yr, north_mm_yr;
 };
 
-/// The cells about one, of which a window of constant size holds about as many along as across.
-class Window {
+/// The cells within a distance of one, as many along a parallel as along a meridian, whatever the
+/// latitude; on coarse grids those around it.
+class Disc {
  public:
-  Window(const Grid& grid, Index centre, double reach_m)
+  Disc(const Grid& grid, Index centre, double reach_m)
       : grid_(grid),
-        column_(grid.column(centre)),
-        row_(grid.row(centre)),
-        rows_(std::max(1, static_cast<int>(reach_m / grid.spacing_north_m(grid.ny() / 2)))),
-        columns_(
-            std::clamp(static_cast<int>(reach_m / grid.spacing_east_m(row_)), 1, grid.nx() / 4)),
-        stride_(std::max(1, columns_ / (2 * rows_))) {}
+        centre_(centre),
+        reach_(std::max(reach_m / grid.figure().radius_m, 1.5 * std::numbers::pi / grid.ny())) {}
 
-  /// Hands a cell on with the square of how far it is from the middle.
+  /// Hands a cell on with its distance from the middle over the disc's radius, and the area that it
+  /// stands for, in squares of a row's height.
   template <class Visit>
   void each(Visit&& visit) const {
-    for (int dj = -rows_; dj <= rows_; ++dj) {
-      const int j = row_ + dj;
-      if (j < 0 || j >= grid_.ny()) continue;
-      for (int di = -columns_; di <= columns_; di += stride_) {
-        const Index there = grid_.cell((column_ + di + grid_.nx()) % grid_.nx(), j);
-        visit(there, di * di / (stride_ * stride_) + dj * dj);
+    const int column = grid_.column(centre_), row = grid_.row(centre_);
+    const double spacing = std::numbers::pi / grid_.ny();
+    const int rows = std::max(1, static_cast<int>(reach_ / spacing));
+    const Vector3 middle = grid_.unit_vector(column, row);
+    for (int j = std::max(0, row - rows); j <= std::min(grid_.ny() - 1, row + rows); ++j) {
+      const double wide = std::cos(grid_.latitude_deg(j) * std::numbers::pi / 180.0);
+      const double step = 2.0 * std::numbers::pi * wide / grid_.nx();
+      const int stride = std::clamp(static_cast<int>(spacing / step), 1, grid_.nx() / 3);
+      const double area = stride * step / spacing;
+      const int most = std::min((grid_.nx() - 1) / 2, static_cast<int>(2.0 * reach_ / step) + 1);
+      for (int di = -(most / stride) * stride; di <= most; di += stride) {
+        const int i = (column + di + grid_.nx()) % grid_.nx();
+        const double far = length(add(grid_.unit_vector(i, j), middle, -1.0)) / reach_;
+        if (far < 1.0) visit(grid_.cell(i, j), far, area);
       }
     }
   }
 
  private:
   const Grid& grid_;
-  int column_, row_, rows_, columns_, stride_;
+  Index centre_;
+  double reach_;
 };
 
 /// The plates on both sides of a boundary at a cell of the first one, as means over a window; none
 /// where no other plate is in it.
 std::optional<std::array<Side, 2>> sides_at(const Grid& grid, const PlateFields& fields, Index cell,
                                             double reach_m) {
-  const Window window(grid, cell, reach_m);
+  const Disc disc(grid, cell, reach_m);
   std::array<Side, 2> sides;
   sides[0].plate = fields.plate[cell];
   sides[0].nearest = cell;
-  int nearest = 1 << 20;
-  window.each([&](Index there, int far) {
+  double nearest = 1.0;
+  disc.each([&](Index there, double far, double /*area*/) {
     if (fields.plate[there] == sides[0].plate || far >= nearest) return;
     nearest = far;
     sides[1].plate = fields.plate[there];
     sides[1].nearest = there;
   });
   if (sides[1].plate < 0) return std::nullopt;
-  window.each([&](Index there, int) {
+  disc.each([&](Index there, double far, double area) {
+    const double weight = area * (1.0 - far * far);
     for (Side& s : sides) {
       if (fields.plate[there] != s.plate) continue;
-      s.fraction += fields.continental_fraction[there];
-      s.speed += std::hypot(fields.east_mm_yr[there], fields.north_mm_yr[there]);
-      s.centre = add(s.centre, grid.unit_vector(grid.column(there), grid.row(there)), 1.0);
-      ++s.cells;
+      s.weight += weight;
+      s.fraction += weight * fields.continental_fraction[there];
+      s.speed += weight * std::hypot(fields.east_mm_yr[there], fields.north_mm_yr[there]);
+      s.centre = add(s.centre, grid.unit_vector(grid.column(there), grid.row(there)), weight);
       if (fields.continental_fraction[there] >= 0.5F) continue;  // of another age
-      s.floor_myr += fields.age_myr[there];
-      ++s.floor_cells;
+      s.floor_myr += weight * fields.age_myr[there];
+      s.floor_weight += weight;
     }
   });
   for (Side& s : sides) {
-    s.fraction /= s.cells;
-    s.floor_myr /= std::max(1, s.floor_cells);
-    s.speed /= s.cells;
-    s.centre = add({}, s.centre, 1.0 / s.cells);
+    s.fraction /= s.weight;
+    if (s.floor_weight > 0.0) s.floor_myr /= s.floor_weight;
+    s.speed /= s.weight;
+    s.centre = add({}, s.centre, 1.0 / s.weight);
   }
   return sides;
 }
@@ -230,19 +245,25 @@ struct Subduction {
   std::int16_t down;
   std::array<std::int16_t, 2> plates;
   std::array<double, 2> floor_myr;  // of the two
+  double boundary = 0.0;            // its length there
 
   [[nodiscard]] double floor_down_myr() const { return floor_myr[down == plates[0] ? 0 : 1]; }
+  /// Whether a plate goes down there. Another than the two is on the side of that of the place.
+  [[nodiscard]] bool takes_down(std::int16_t plate) const {
+    return down == (plate == plates[1] ? plate : plates[0]);
+  }
 };
 
 /// Sea floor subducts below a continent, the older of two floors, the faster of two continents.
-Subduction subduction_of(const std::array<Side, 2>& sides) {
+Subduction subduction_of(const std::array<Side, 2>& sides, double boundary) {
   constexpr double kContinental = 0.45;
   const Side &first = sides[0], &second = sides[1];
   const auto subducts = [&](bool is_first, Convergence kind) {
     return Subduction{kind,
                       is_first ? first.plate : second.plate,
                       {first.plate, second.plate},
-                      {first.floor_myr, second.floor_myr}};
+                      {first.floor_myr, second.floor_myr},
+                      boundary};
   };
   const auto decides = [&](double left, double right) {
     return left < right || (left == right && first.plate < second.plate);
@@ -253,14 +274,14 @@ Subduction subduction_of(const std::array<Side, 2>& sides) {
   return subducts(decides(second.floor_myr, first.floor_myr), Convergence::oceans);
 }
 
-/// Of every two plates that meet as oceans, the one whose floor is older on the mean of the places
-/// where they do subducts at all of them.
+/// Of every two plates that meet as oceans, the one whose floor is older on the mean along their
+/// boundary subducts at all of it.
 void hold_slabs_together(std::vector<Subduction>& subductions) {
   std::map<std::pair<std::int16_t, std::int16_t>, double> older_myr;  // the first of them
   const auto pair_of = [](const Subduction& s) { return std::minmax(s.plates[0], s.plates[1]); };
   for (const Subduction& s : subductions) {
     if (s.kind != Convergence::oceans) continue;
-    const double by_myr = s.floor_myr[0] - s.floor_myr[1];
+    const double by_myr = s.boundary * (s.floor_myr[0] - s.floor_myr[1]);
     older_myr[pair_of(s)] += s.plates[0] < s.plates[1] ? by_myr : -by_myr;
   }
   for (Subduction& s : subductions) {
@@ -288,7 +309,7 @@ ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int1
                {"east_mm_yr", east_mm_yr.size()},
                {"north_mm_yr", north_mm_yr.size()}});
   constexpr auto kConvergent = static_cast<std::int8_t>(BoundaryType::convergent);
-  constexpr double kWindow_m = 220e3, kWidest_rad = 0.35, kHandicap_m = 150e3;
+  constexpr double kWindow_m = 310e3, kWidest_rad = 0.35, kHandicap_m = 150e3;
   // On small planets a window of that width holds all plates.
   const double window_m = std::min(kWindow_m, kWidest_rad * grid.figure().radius_m);
   const PlateFields fields{plate, continental_fraction, age_myr, east_mm_yr, north_mm_yr};
@@ -296,10 +317,12 @@ ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int1
   std::vector<Subduction> subductions;
   std::vector<float> closing;
   for (Index cell = 0; cell < grid.size(); ++cell) {
-    if (boundary_type[cell] != kConvergent || !touches_another_plate(grid, plate, cell)) continue;
+    if (boundary_type[cell] != kConvergent) continue;
+    const double boundary = side_towards_others(grid, plate, cell);
+    if (boundary == 0.0) continue;
     const auto sides = sides_at(grid, fields, cell, window_m);
     if (!sides) continue;
-    subductions.push_back(subduction_of(*sides));
+    subductions.push_back(subduction_of(*sides, boundary));
     closing.push_back(static_cast<float>(
         closing_speed(grid, sides->front(), sides->back(), east_mm_yr, north_mm_yr)));
     sources.add(grid, cell, kHandicap_m * (1.0 - boundary_strength[cell]));
@@ -322,7 +345,7 @@ ConvergentMargins convergent_margins(const Grid& grid, std::span<const std::int1
 #pragma omp parallel for schedule(static)
   for (Index cell = 0; cell < grid.size(); ++cell) {
     const std::int32_t source = sources.nearest[cell];
-    const double side = plate[cell] == subductions[source].down ? -1.0 : 1.0;
+    const double side = subductions[source].takes_down(plate[cell]) ? -1.0 : 1.0;
     margins.across_km[cell] = static_cast<float>(side * sources.distance_km(grid, cell));
     margins.strength[cell] = boundary_strength[sources.cell[source]];
     margins.kind[cell] = subductions[source].kind;

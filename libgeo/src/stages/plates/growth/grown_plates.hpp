@@ -54,7 +54,7 @@ class GrownPlates {
     }
     Cratons cratons = p_.cratons;
     cratons.radius_km = radius_km_;
-    NearestCells nearest_ridge;
+    Oceans oceans;
 #pragma omp parallel sections
     {
 #pragma omp section
@@ -62,14 +62,14 @@ class GrownPlates {
           [&] { nearest_convergent_ = nearest_cells(mesh_, convergent, 2000.0 / radius_km); });
 #pragma omp section
       errors.guard([&] {
-        if (has_cratons) nearest_ridge = nearest_ridges(cratons, mesh_, boundaries_);
+        if (has_cratons) oceans = find_oceans(cratons, mesh_, boundaries_, plates_);
       });
 #pragma omp section
       errors.guard([&] { nearest_ = nearest_cells(mesh_, all, 6.0 * mesh_.spacing()); });
     }
     errors.rethrow();
     if (has_cratons) {
-      potential_ = craton_potential(cratons, mesh_, plate_, plates_, nearest_ridge, noise, seed_);
+      potential_ = craton_potential(cratons, mesh_, plate_, plates_, oceans, noise, seed_);
     }
     for (float& angle : nearest_convergent_.angle) angle = std::min(angle, 1.0F);
     age_myr_ =
