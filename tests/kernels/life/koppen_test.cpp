@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "geo/core/random.hpp"
 
@@ -140,6 +141,37 @@ TEST(Koppen, DrynessThresholdFollowsTheWetSeason) {
 
 TEST(Koppen, AridComesBeforePolar) {
   EXPECT_EQ(koppen_class(harmonic_indices(2, 14, 30, 0)), 5) << "Beck: BWk, Peel would say ET";
+}
+
+TEST(Koppen, AClassTellsTheSeasonsThatMadeIt) {
+  const auto same = [](const KoppenSeasons& a, const KoppenSeasons& b) {
+    if (a.tropical) return b.tropical && a.rainforest == b.rainforest;
+    return !b.tropical && a.dry_summers == b.dry_summers && a.short_summers == b.short_summers;
+  };
+  std::set<int> classes;
+  for (double mean_c = -25.0; mean_c <= 30.0; mean_c += 1.0) {
+    // Where the year has a range of 60 K, letter a comes with three months above 10 °C.
+    for (double range_k = 1.0; range_k <= 46.0; range_k += 5.0) {
+      for (double annual_mm = 300.0; annual_mm <= 3300.0; annual_mm += 300.0) {
+        for (double s = -0.95; s <= 0.95; s += 0.1) {
+          const KoppenIndices climate = harmonic_indices(mean_c, range_k, annual_mm, s);
+          const auto own = koppen_class(climate);
+          const KoppenSeasons told = seasons_of(own, {}), from_months = seasons_of(climate);
+          if (own >= 29 || (own >= 4 && own <= 7)) continue;  // E and B do not tell
+          ASSERT_TRUE(same(told, from_months)) << int{own} << ": " << mean_c << " " << range_k;
+          classes.insert(own);
+        }
+      }
+    }
+  }
+  EXPECT_GE(classes.size(), 18U);
+}
+
+TEST(Koppen, TheMonthsOfAClassComeBeforeHarmonics) {
+  const KoppenIndices long_summer = harmonic_indices(3.0, 32.0, 600.0, 0.3);
+  EXPECT_FALSE(seasons_of(long_summer).short_summers);
+  EXPECT_TRUE(seasons_of(27, long_summer).short_summers) << "Dfc";
+  EXPECT_FALSE(seasons_of(29, long_summer).short_summers) << "ET does not tell";
 }
 
 }  // namespace

@@ -89,6 +89,29 @@ bool keeps_rainforest(const KoppenIndices& c) {
   return c.driest_mm >= std::min(60.0, 100.0 - c.annual_mm / 25.0);
 }
 
+KoppenSeasons seasons_of(const KoppenIndices& c) {
+  return {.tropical = c.coldest_c >= 18,
+          .dry_summers = has_dry_summers(c),
+          .rainforest = keeps_rainforest(c),
+          .short_summers = c.months_above_10c <= 3};
+}
+
+KoppenSeasons seasons_of(std::int8_t koppen_class, const KoppenIndices& climate) {
+  constexpr int kLettersOfC = 3, kLettersOfD = 4, kCold = 2;  // a, b, c, d
+  if (koppen_class >= kAf && koppen_class <= kAw) {
+    return {.tropical = true, .rainforest = koppen_class != kAw};
+  }
+  if (koppen_class >= kCsa && koppen_class < kDsa) {
+    return {.dry_summers = koppen_class < kCwa,
+            .short_summers = (koppen_class - kCsa) % kLettersOfC >= kCold};
+  }
+  if (koppen_class >= kDsa && koppen_class < kET) {
+    return {.dry_summers = koppen_class < kDwa,
+            .short_summers = (koppen_class - kDsa) % kLettersOfD >= kCold};
+  }
+  return seasons_of(climate);
+}
+
 std::int8_t koppen_class(const KoppenIndices& c) {
   const double threshold_mm = dryness_threshold_mm(c);
   if (c.annual_mm < threshold_mm) {

@@ -73,25 +73,23 @@ Biome nearest_biome(double temperature_c, double precipitation_mm_yr, BiomeSet a
   return biome;
 }
 
-BiomeSet biomes_in_season(const KoppenIndices& climate) {
-  constexpr double kTropics_c = 18.0;
-  if (climate.coldest_c >= kTropics_c) {
+BiomeSet biomes_in_season(const KoppenSeasons& seasons) {
+  if (seasons.tropical) {
     return {Biome::tropical_rainforest, Biome::tropical_savanna, Biome::hot_desert};
   }
   const BiomeSet cooler = kClimaticBiomes.without(Biome::tropical_rainforest);
-  return has_dry_summers(climate) ? cooler : cooler.without(Biome::mediterranean_scrub);
+  return seasons.dry_summers ? cooler : cooler.without(Biome::mediterranean_scrub);
 }
 
-Biome seasonal_biome(const KoppenIndices& climate, bool with_tundra) {
-  constexpr int kBorealMonths = 3;
-  const BiomeSet among = biomes_in_season(climate);
-  const Biome nearest = nearest_biome(climate.mean_c, climate.annual_mm,
+Biome seasonal_biome(double temperature_c, double precipitation_mm_yr, const KoppenSeasons& seasons,
+                     bool with_tundra) {
+  const BiomeSet among = biomes_in_season(seasons);
+  const Biome nearest = nearest_biome(temperature_c, precipitation_mm_yr,
                                       with_tundra ? among : among.without(Biome::tundra));
   if (nearest == Biome::boreal_forest || nearest == Biome::temperate_forest) {
-    return climate.months_above_10c > kBorealMonths ? Biome::temperate_forest
-                                                    : Biome::boreal_forest;
+    return seasons.short_summers ? Biome::boreal_forest : Biome::temperate_forest;
   }
-  const bool canopy = among.has(Biome::tropical_rainforest) && keeps_rainforest(climate);
+  const bool canopy = seasons.tropical && seasons.rainforest;
   return canopy && nearest == Biome::tropical_savanna ? Biome::tropical_rainforest : nearest;
 }
 

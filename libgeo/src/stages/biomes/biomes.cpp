@@ -21,6 +21,12 @@ constexpr double kFullYield = 2500.0;    // g m-2 yr-1, tropical rainforest
 
 constexpr std::int8_t id(Biome biome) { return static_cast<std::int8_t>(biome); }
 
+/// What a biome needs to know of a climate.
+struct Climate {
+  double temperature_c, rain_mm_yr;
+  KoppenSeasons seasons;
+};
+
 /// Treelines that fray: a coherent noise shifts them up and down by position alone.
 class Treeline {
  public:
@@ -34,8 +40,8 @@ class Treeline {
 
   /// The biome of a land cell before rivers and smoothing.
   [[nodiscard]] Biome biome(int i, int j, double elevation_m, double range_k,
-                            const KoppenIndices& climate) const {
-    const double temperature_c = climate.mean_c;
+                            const Climate& climate) const {
+    const double temperature_c = climate.temperature_c;
     if (!thermal_) {
       const Biome open = by_climate(climate, true);
       return grows_at_treeline(open) && above_fixed_line(i, j, elevation_m) ? Biome::alpine : open;
@@ -50,15 +56,17 @@ class Treeline {
     // there lacks, else by latitude: the border of the two follows the terrain, not a parallel.
     const double at_sea_level_c = temperature_c + std::max(elevation_m, 0.0) * lapse_k_m_;
     const double lacking_k = std::max(0.0, treeline_deficit_k(at_sea_level_c, range_k));
-    if (lacking_k > 0.0 && climate.warmest_c < 0.0) return Biome::tundra;  // or the ice on it
+    if (lacking_k > 0.0 && temperature_c + 0.5 * range_k < 0.0)
+      return Biome::tundra;  // or the ice on it
     const double cooled_k = (elevation_m - p_.mountain_m) * lapse_k_m_;
     return cooled_k > lacking_k ? Biome::alpine : Biome::tundra;
   }
 
  private:
-  [[nodiscard]] Biome by_climate(const KoppenIndices& climate, bool with_tundra) const {
-    if (p_.seasons) return seasonal_biome(climate, with_tundra);
-    return nearest_biome(climate.mean_c, climate.annual_mm,
+  [[nodiscard]] Biome by_climate(const Climate& climate, bool with_tundra) const {
+    const auto& [temperature_c, rain_mm, seasons] = climate;
+    if (p_.seasons) return seasonal_biome(temperature_c, rain_mm, seasons, with_tundra);
+    return nearest_biome(temperature_c, rain_mm,
                          with_tundra ? kClimaticBiomes : kClimaticBiomes.without(Biome::tundra));
   }
   static bool grows_at_treeline(Biome b) {
@@ -175,10 +183,11 @@ class BiomesStage final : public Stage {
     f.biome[c] = f.koppen[c] = 0;
     f.productivity[c] = f.settlement[c] = 0;
     if (f.elevation[c] < 0) return false;
-    const KoppenIndices climate =
+    const KoppenIndices harmonics =
         harmonic_indices(f.temperature[c], f.range[c], f.rain[c], f.seasonality[c]);
+    f.koppen[c] = from_months > 0 ? from_months : koppen_class(harmonics);
+    const Climate climate{f.temperature[c], f.rain[c], seasons_of(f.koppen[c], harmonics)};
     f.biome[c] = id(treeline.biome(i, j, f.elevation[c], f.range[c], climate));
-    f.koppen[c] = from_months > 0 ? from_months : koppen_class(climate);
     if (!f.lake.empty() && f.lake[c] > 0) return false;
     f.productivity[c] = static_cast<float>(miami_productivity(f.temperature[c], f.rain[c]));
     return true;

@@ -37,6 +37,17 @@ bool has_dry_summers(const KoppenIndices& climate);
 /// season.
 bool keeps_rainforest(const KoppenIndices& climate);
 
+/// What decides among biomes of like means.
+struct KoppenSeasons {
+  bool tropical = false;       ///< no month below 18 °C
+  bool dry_summers = false;    ///< second letter s
+  bool rainforest = false;     ///< `keeps_rainforest`
+  bool short_summers = false;  ///< third letters c and d: at most three months reach 10 °C
+};
+KoppenSeasons seasons_of(const KoppenIndices& climate);
+/// The same where a class tells it: one of A, C and D. Of others, what `climate` says.
+KoppenSeasons seasons_of(std::int8_t koppen_class, const KoppenIndices& climate);
+
 /// Köppen-Geiger class, numbered 1 (Af) to 30 (EF) as in Beck et al. (2018), whose rules these are
 /// (after Peel et al. 2007): arid B before everything, then A, C, D and polar E. Peel tests E
 /// first; the two differ for cold deserts alone.

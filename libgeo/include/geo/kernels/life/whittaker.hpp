@@ -48,15 +48,16 @@ Biome nearest_biome(double temperature_c, double precipitation_mm_yr,
 
 /// The climatic biomes whose seasons a climate has. Where no month is below 18 °C (Köppen's
 /// tropics) these are rainforest, savanna and desert; elsewhere all but the rainforest, and
-/// Mediterranean scrub only where summers are the dry season (third letter s of Köppen and Geiger).
-BiomeSet biomes_in_season(const KoppenIndices& climate);
+/// Mediterranean scrub only where summers are the dry season.
+BiomeSet biomes_in_season(const KoppenSeasons& seasons);
 
 /// The biome of a climate by its means and seasons: the nearest centroid among those of
 /// biomes_in_season. In the tropics a climate of Köppen's classes Af and Am, without a dry season
-/// or with rain that outlasts it, is rainforest all the same; a cool forest is boreal where at most
-/// three months reach 10 °C (third letters c and d), temperate where more do. Tundra, which is a
-/// matter of trees and not of means, only `with_tundra`.
-Biome seasonal_biome(const KoppenIndices& climate, bool with_tundra);
+/// or with rain that outlasts it, is rainforest all the same; a cool forest is boreal where summers
+/// are short, temperate elsewhere. Tundra, which is a matter of trees and not of means, only
+/// `with_tundra`.
+Biome seasonal_biome(double temperature_c, double precipitation_mm_yr, const KoppenSeasons& seasons,
+                     bool with_tundra);
 
 /// Part of the harmonic year T = mean + range / 2 cos(θ) that is warmer than a threshold.
 struct GrowingSeason {
