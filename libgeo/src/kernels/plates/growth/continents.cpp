@@ -136,7 +136,7 @@ std::vector<float> straits(const CubedSphere& mesh, std::span<const float> poten
 /// one and somewhat above: a sea without a strait has closed. Straits are three cells wide at least
 /// and deep enough that what frays coasts leaves them open.
 void close_inland_seas(const CubedSphere& mesh, std::span<float> potential) {
-  constexpr float kFrays = 0.25F;
+  constexpr float kFrays = 0.7F;
   const std::vector<float> narrowed = highest_around(mesh, potential);
   const std::vector<float> strait = straits(mesh, narrowed);
   for (std::size_t cell = 0; cell < potential.size(); ++cell) {
