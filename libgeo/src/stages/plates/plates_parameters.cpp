@@ -84,7 +84,7 @@ std::vector<Parameter> growth_continent_rows(PlatesParameters& p) {
       real("plates.growth.ridge_clearance_km", p.cratons.ridge_clearance_km, "km", 0.0, 5000.0,
            "length over which a spreading ridge thins out continents", "design"),
       real("plates.growth.trench_clearance_km", p.cratons.trench_clearance_km, "km", 0.0, 5000.0,
-           "length over which sea floor is left before a trench, on the plate that goes down",
+           "length over which sea floor is left before a trench, on the subducting plate",
            "forsyth1975"),
       real("plates.growth.coast_roughness", p.coast_roughness, "1", 0.0, 5.0,
            "deviation of the noise that frays the continents' edges, in e-foldings of a craton",

@@ -105,9 +105,9 @@ int places_cut_off(const CubedSphere& mesh, std::span<const float> potential, fl
 }
 
 TEST(Continents, EncloseNoSea) {
-  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     const GrownContinents grown(Cratons{}, seed);
-    for (const float level : {-3.0F, -1.0F, 0.0F}) {
+    for (const float level : {-3.0F, -2.0F, -1.0F, -0.5F, 0.0F, 0.5F}) {
       EXPECT_EQ(places_cut_off(grown.mesh, grown.potential, level), 0)
           << "seed " << seed << ", level " << level;
     }

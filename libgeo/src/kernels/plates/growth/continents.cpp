@@ -92,7 +92,7 @@ double lowered_by_ridges(const Cratons& model, const Oceans& oceans, double rift
 double lowered_before_trenches(const Cratons& model, const Oceans& oceans, double rifting,
                                std::span<const std::int16_t> plate, std::int32_t cell) {
   const std::int32_t trench = oceans.to_trench.source[cell];
-  if (trench < 0 || oceans.going_down[trench] != plate[cell]) return 0.0;
+  if (trench < 0 || oceans.subducting[trench] != plate[cell]) return 0.0;
   return lowered(0.5 + 15.0 * (0.03 - rifting), oceans.to_trench.angle[cell] * model.radius_km,
                  model.trench_clearance_km);
 }
@@ -108,41 +108,88 @@ std::vector<float> highest_around(const CubedSphere& mesh, std::span<const float
   return highest;
 }
 
-/// The least potential that has to be passed on the way to the deepest place, for each place.
-std::vector<float> straits(const CubedSphere& mesh, std::span<const float> potential) {
+/// The ways from the deepest place to all others that climb least.
+struct Ways {
+  std::vector<float> strait;       ///< the highest potential on the way to a place
+  std::vector<std::int32_t> from;  ///< the place before, -1 at the deepest
+};
+
+Ways lowest_ways(const CubedSphere& mesh, std::span<const float> potential) {
   using Strait = std::pair<float, std::int32_t>;
   std::priority_queue<Strait, std::vector<Strait>, std::greater<>> shore;
-  std::vector<float> strait(potential.size());
+  Ways ways{std::vector<float>(potential.size()), std::vector<std::int32_t>(potential.size(), -1)};
   std::vector<std::uint8_t> reached(potential.size(), 0);
-  const auto reach = [&](std::int32_t cell, float passed) {
+  const auto reach = [&](std::int32_t cell, float passed, std::int32_t from) {
     if (reached[cell] != 0) return;
     reached[cell] = 1;
-    strait[cell] = std::max(potential[cell], passed);
-    shore.emplace(strait[cell], cell);
+    ways.strait[cell] = std::max(potential[cell], passed);
+    ways.from[cell] = from;
+    shore.emplace(ways.strait[cell], cell);
   };
   const auto deepest = std::min_element(potential.begin(), potential.end()) - potential.begin();
-  reach(static_cast<std::int32_t>(deepest), potential[deepest]);
+  reach(static_cast<std::int32_t>(deepest), potential[deepest], -1);
   while (!shore.empty()) {
     const auto [passed, cell] = shore.top();
     shore.pop();
     for (const std::int32_t next : mesh.neighbours(cell)) {
-      if (next >= 0) reach(next, passed);
+      if (next >= 0) reach(next, passed, cell);
     }
   }
-  return strait;
+  return ways;
+}
+
+/// Deepens straits that what frays coasts may close: seas that are joined below the level `coast`
+/// are so at `deep` and three cells wide.
+void deepen_straits(const CubedSphere& mesh, std::span<float> potential, float coast, float deep) {
+  const std::vector<float> narrowed = highest_around(mesh, potential);
+  const Ways ways = lowest_ways(mesh, narrowed);
+  std::vector<std::uint8_t> passed(potential.size(), 0);
+  for (std::size_t sea = 0; sea < potential.size(); ++sea) {
+    if (narrowed[sea] >= deep || ways.strait[sea] >= coast) continue;
+    for (auto at = static_cast<std::int32_t>(sea); ways.strait[at] > deep && passed[at] == 0;
+         at = ways.from[at]) {
+      passed[at] = 1;
+      potential[at] = std::min(potential[at], deep);
+      for (const std::int32_t next : mesh.neighbours(at)) {
+        if (next >= 0) potential[next] = std::min(potential[next], deep);
+      }
+    }
+  }
 }
 
 /// Raises the potential of every basin to that of the strait by which it is joined to the deepest
-/// one and somewhat above: a sea without a strait has closed. Straits are three cells wide at least
-/// and deep enough that what frays coasts leaves them open.
-void close_inland_seas(const CubedSphere& mesh, std::span<float> potential) {
-  constexpr float kFrays = 0.7F;
+/// one and `above` it. Straits are three cells wide at least. Whether there was one.
+bool fill_basins(const CubedSphere& mesh, std::span<float> potential, float above) {
   const std::vector<float> narrowed = highest_around(mesh, potential);
-  const std::vector<float> strait = straits(mesh, narrowed);
+  const Ways ways = lowest_ways(mesh, narrowed);
+  bool filled = false;
   for (std::size_t cell = 0; cell < potential.size(); ++cell) {
-    if (strait[cell] <= narrowed[cell]) continue;
-    potential[cell] = std::max(potential[cell], strait[cell] + kFrays);
+    if (ways.strait[cell] <= narrowed[cell]) continue;
+    potential[cell] = std::max(potential[cell], ways.strait[cell] + above);
+    filled = true;
   }
+  return filled;
+}
+
+/// A sea without a strait has closed; what is left of it around what has been filled closes too.
+void close_inland_seas(const CubedSphere& mesh, std::span<float> potential) {
+  constexpr float kAbove = 0.25F;
+  bool filled = fill_basins(mesh, potential, kAbove);
+  while (filled) filled = fill_basins(mesh, potential, 0.0F);
+}
+
+/// The level above which the potential covers a share of the sphere.
+float level_above_which(const CubedSphere& mesh, std::span<const float> potential, double share) {
+  std::vector<std::int32_t> falling(potential.size());
+  std::iota(falling.begin(), falling.end(), 0);
+  std::stable_sort(falling.begin(), falling.end(),
+                   [&](std::int32_t a, std::int32_t b) { return potential[a] > potential[b]; });
+  double area_sr = 0.0;
+  for (const std::int32_t cell : falling) {
+    area_sr += mesh.area_sr(cell);
+    if (area_sr >= 4.0 * kPi * share) return potential[cell];
+  }
+  return potential[falling.back()];
 }
 
 }  // namespace
@@ -201,7 +248,7 @@ Oceans find_oceans(const Cratons& model, const CubedSphere& mesh,
     if (point.type != BoundaryType::convergent) continue;
     if (speed(point.plate, point.cell) < speed(point.other, point.cell)) continue;
     trench.push_back(point.cell);
-    oceans.going_down.push_back(point.plate);
+    oceans.subducting.push_back(point.plate);
   }
   const auto within = [&](const std::vector<std::int32_t>& sources, double clearance_km) {
     return nearest_cells(mesh, sources, 4.0 * clearance_km / model.radius_km);
@@ -241,6 +288,9 @@ std::vector<float> craton_potential(const Cratons& model, const CubedSphere& mes
         std::log(sum + 1e-26) - lowered_by_ridges(model, oceans, noise.rifting[cell], cell) -
         lowered_before_trenches(model, oceans, noise.rifting[cell], plate, cell));
   }
+  constexpr float kFrays = 0.7F;  // what the noise of coasts seldom exceeds
+  const float coast = level_above_which(mesh, potential, model.share);
+  deepen_straits(mesh, potential, coast, coast - kFrays);
   close_inland_seas(mesh, potential);
   return potential;
 }

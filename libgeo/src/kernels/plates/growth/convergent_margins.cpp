@@ -248,7 +248,7 @@ struct Subduction {
   double boundary = 0.0;            // its length there
 
   [[nodiscard]] double floor_down_myr() const { return floor_myr[down == plates[0] ? 0 : 1]; }
-  /// Whether a plate goes down there. Another than the two is on the side of that of the place.
+  /// Whether a plate subducts there. Another than the two is on the side of that of the place.
   [[nodiscard]] bool takes_down(std::int16_t plate) const {
     return down == (plate == plates[1] ? plate : plates[0]);
   }

@@ -46,21 +46,21 @@ struct CratonNoise {
 };
 CratonNoise craton_noise(const CubedSphere& mesh, std::uint64_t seed);
 
-/// Where oceans are: beside ridges, and before trenches on the plate that goes down.
+/// Where oceans are: beside ridges, and before trenches on the subducting plate.
 struct Oceans {
   NearestCells to_ridge;                 ///< as far as ridges matter to cratons
-  NearestCells to_trench;                ///< to cells of the plate that goes down there
-  std::vector<std::int16_t> going_down;  ///< per source of `to_trench`, the plate
+  NearestCells to_trench;                ///< to cells of the plate that subducts there
+  std::vector<std::int16_t> subducting;  ///< per source of `to_trench`, the plate
 };
 
 /// Oceans of the boundaries of plates. Of two plates that carry continents and converge, the faster
-/// goes down: what has drawn it is its own sea floor (Forsyth and Uyeda, 1975).
+/// subducts: what has drawn it is its own sea floor (Forsyth and Uyeda, 1975).
 Oceans find_oceans(const Cratons& model, const CubedSphere& mesh,
                    std::span<const BoundaryPoint> boundaries, const std::vector<Plate>& plates);
 
 /// A potential that is high in continents: the logarithm of a sum of bells about the cratons of
 /// each continental plate, bent by noise, lowered where a ridge has made ocean floor and where
-/// floor is left that a trench still takes down. Some ridges only begin to tear a continent, and
+/// floor is left that a trench still consumes. Some ridges only begin to tear a continent, and
 /// some trenches have closed their ocean. Continents are where the potential exceeds a level; finer
 /// noise may be added first. One value per cell of the mesh.
 std::vector<float> craton_potential(const Cratons& model, const CubedSphere& mesh,
