@@ -195,8 +195,8 @@ void expect_the_same_distribution(const Pair& pair) {
     const Both cap(pair, name, 60.0, 90.0);
     const double spread = cap.deviation(cap.plain);
     EXPECT_NEAR(cap.deviation(cap.turned), spread, 0.05 * spread) << name;
-    // Rivers find other ways on other cells.
-    const double most = std::string(name) == "eroded" ? 0.03 : 0.01;
+    // A place of a boundary may fall to another margin, and rivers find other ways on other cells.
+    const double most = std::string(name) == "eroded" ? 0.03 : 0.015;
     EXPECT_LT(cap.distance_of_distributions(), most * spread) << name;
   }
 }

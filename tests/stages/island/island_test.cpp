@@ -180,7 +180,11 @@ TEST(Island, FadingEdgeSinksBelowTheSea) {
 /// Rivers end at the level of the sea, however deep it is beside the coast: land that were cut
 /// towards its floor would be a plain at sea level.
 TEST(Island, CoastsBesideDeepWaterAreNoPlainAtSeaLevel) {
-  IslandParameters p = coarse_look();
+  // Not that of the first, whose lowlands the planet has at sea level itself.
+  IslandParameters p = around(place_of(mouth_of(great_rivers(2).back())));
+  p.nx = 160;
+  p.ny = 96;
+  p.cell_m = 10e3;
   p.edge_fade = true;
   p.keep_means = false;
   const State island = make(p).island;
