@@ -81,7 +81,7 @@ Eigen::MatrixXd seed_covariance(const Objective& objective, const Problem& probl
 Eigen::MatrixXd rerouted_rates(Objective& objective, const Problem& problem,
                                const Eigen::VectorXd& x, Eigen::MatrixXd frozen) {
   // In fitted scales: over less, single rivers would be seen that jump; over more, bends.
-  constexpr double kReach = 0.02;
+  constexpr double kReach = 0.03;
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     const FreeParameter& free = problem.free[i];
     Eigen::VectorXd below = x, above = x;
@@ -93,6 +93,14 @@ Eigen::MatrixXd rerouted_rates(Objective& objective, const Problem& problem,
   }
   objective.evaluate(x);
   return frozen;
+}
+
+/// How the fitted values follow the target. The fit ends where F^T r = 0 with the derivatives F of
+/// frozen drainage, while the residuals r follow the parameters by those of the model itself, R:
+/// F^T (r + R dx) = 0, so dx = -(F^T R)^-1 F^T r, an estimator by instrumental variables.
+Eigen::MatrixXd gain_of_fit(const Eigen::MatrixXd& frozen, const Eigen::MatrixXd& rerouted) {
+  const Eigen::MatrixXd both = frozen.transpose() * rerouted;
+  return both.completeOrthogonalDecomposition().pseudoInverse() * frozen.transpose();
 }
 
 }  // namespace
@@ -125,13 +133,12 @@ void assess(Objective& objective, const Problem& problem, const Eigen::VectorXd&
     }
     result.directions.push_back(std::move(direction));
   }
-  const Eigen::MatrixXd gain = inverse * jacobian.transpose();
-  const Eigen::MatrixXd covariance = gain * variance.asDiagonal() * gain.transpose();
-  const Eigen::MatrixXd rerouted_gain = rerouted_rates(objective, problem, x, jacobian)
-                                            .completeOrthogonalDecomposition()
-                                            .pseudoInverse();
-  const Eigen::MatrixXd rerouted =
-      rerouted_gain * variance.asDiagonal() * rerouted_gain.transpose();
+  const auto covariance_by = [&](const Eigen::MatrixXd& gain) -> Eigen::MatrixXd {
+    return gain * variance.asDiagonal() * gain.transpose();
+  };
+  const Eigen::MatrixXd frozen = covariance_by(inverse * jacobian.transpose());
+  const Eigen::MatrixXd rerouted = rerouted_rates(objective, problem, x, jacobian);
+  const Eigen::MatrixXd covariance = covariance_by(gain_of_fit(jacobian, rerouted));
   const bool has_spread = objective.statistics().size() >= 3;
   const Eigen::MatrixXd spread =
       has_spread ? seed_covariance(objective, problem, inverse) : Eigen::MatrixXd();
@@ -139,9 +146,8 @@ void assess(Objective& objective, const Problem& problem, const Eigen::VectorXd&
   for (Eigen::Index i = 0; i < count; ++i) {
     const double rate = problem.free[i].rate(x[i]);
     FittedParameter& parameter = result.parameters[i];
-    const bool known = singular[count - 1] * kLargestCondition > largest || covariance(i, i) > 0.0;
-    parameter.standard_error =
-        known ? rate * std::sqrt(std::max(covariance(i, i), rerouted(i, i))) : kNone;
+    const bool known = singular[count - 1] * kLargestCondition > largest || frozen(i, i) > 0.0;
+    parameter.standard_error = known ? rate * std::sqrt(covariance(i, i)) : kNone;
     parameter.seed_error = has_spread ? rate * std::sqrt(spread(i, i)) : kNone;
     for (Eigen::Index j = 0; j < count; ++j) {
       const double both = std::sqrt(covariance(i, i) * covariance(j, j));

@@ -6,14 +6,14 @@
 namespace geo::calibration {
 
 /// Standard errors, correlations, directions and the spread over seeds at a minimum, into `result`:
-///   cov = G diag(v) G^T,  G = (J^T J)^-1 J^T,  v_r = max(s2, e_r^2)
+///   cov = G diag(v) G^T,  G = (J^T R)^-1 J^T,  v_r = max(s2, e_r^2)
 /// in fitted scales, with s2 = 2 cost / (residuals - parameters), what the residuals show, and e_r
 /// the error to which the figure of residual r is known, over its deviation: that of a quantile
 /// where the target or calibration.error_m says it, of terms and priors their deviation. It is the
-/// same for targets of every kind. J: `jacobian`, with drainage frozen; a standard error is that
-/// of central differences over 2 % of planets routed anew if it is larger, as routes and coasts
-/// that follow make the fit of a noisy target less sure. Seeds by the influence of each on the
-/// minimum, (J^T J)^-1 J_s^T r_s (a delete-one jackknife, Wu 1986). Directions are the right
+/// same for targets of every kind. J: `jacobian`, with drainage frozen; R: central differences over
+/// 6 % of planets routed anew. The fit ends where J^T r = 0, and r follows the parameters by R, as
+/// where J holds instrumental variables. Seeds by the influence of each on the minimum,
+/// (J^T J)^-1 J_s^T r_s (a delete-one jackknife, Wu 1986). Directions are the right
 /// singular vectors of J. What is not determined gives warnings in words.
 /// `objective` must have been evaluated and linearised with a Jacobian at `x`, and is left
 /// evaluated there.

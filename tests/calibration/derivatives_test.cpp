@@ -391,7 +391,7 @@ TEST(Derivatives, QuantilesFollowTheMeanOfTheCellsThere) {
   constexpr int kParts = 50;
   // Where rivers lay down, many cells stand at one height, that of wave base: a step then changes
   // which cells a quantile is taken from. A sea that moves follows cells at the shore, which bend.
-  Planet1 p(96, "isostasy.ocean_depth_m=0",
+  Planet1 p(192, "isostasy.ocean_depth_m=0",
             {"erosion.model=detachment", "erosion.strait_sill_m=0"});
   const Grid& grid = p.planet.grid();
   const Ranking ranking(grid, p.planet.with_frozen_drainage<double>(p.model, {}).elevation_m);

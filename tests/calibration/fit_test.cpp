@@ -110,7 +110,7 @@ TEST(Twin, StandardErrorsCoverTheTruthUnderNoise) {
     }
   }
   RecordProperty("covered", covered);
-  EXPECT_GE(covered, 0.9 * runs * double(kTruth.size()));
+  EXPECT_GE(covered, 0.92 * runs * double(kTruth.size()));  // of 0.95
 }
 
 TEST(Fit, GivesTheSameBitsForAnyNumberOfThreads) {

@@ -172,10 +172,24 @@ TEST_F(Run, PredictsMoreTimeForLargerRasterWorldsAndLessForTiles) {
     }
     return seconds;
   };
-  const double usual_s = told_s({});
-  EXPECT_GT(told_s({"--set", "plates.raster.map_columns=1024"}), 3.0 * usual_s);
-  EXPECT_LT(told_s({"--set", "plates.raster.cycles=1"}), 0.8 * usual_s);
-  EXPECT_LT(told_s({"--topology", "torus"}), 0.5 * usual_s);
+  // A prediction is for the machine as busy as it is: the least of several in turn has other work
+  // out, and finds it as busy for one as for the other.
+  const std::array<std::vector<std::string>, 4> worlds{{{},
+                                                        {"--set", "plates.raster.map_columns=1024"},
+                                                        {"--set", "plates.raster.cycles=1"},
+                                                        {"--topology", "torus"}}};
+  std::array<double, 4> least_s;
+  least_s.fill(std::numeric_limits<double>::infinity());
+  constexpr int kPredictions = 3;
+  for (int time = 0; time < kPredictions; ++time) {
+    for (std::size_t k = 0; k < worlds.size(); ++k) {
+      least_s[k] = std::min(least_s[k], told_s(worlds[k]));
+    }
+  }
+  const auto [usual_s, large_s, short_s, tile_s] = least_s;
+  EXPECT_GT(large_s, 3.0 * usual_s);
+  EXPECT_LT(short_s, 0.8 * usual_s);
+  EXPECT_LT(tile_s, 0.5 * usual_s);
 }
 
 // Most of a small run is its climates, three of them, which cost what their air does. A machine
