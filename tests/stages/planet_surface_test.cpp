@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "geo/kernels/numerics/quantiles.hpp"
 #include "geo/stages/erosion/erosion.hpp"
@@ -76,6 +77,44 @@ TEST(PlanetSurface, EachCompensationMakesAnotherRelief) {
     EXPECT_NE(reliefs[0], reliefs[1]) << crust;
     EXPECT_NE(reliefs[1], reliefs[2]) << crust;
   }
+}
+
+// Old floor has more sediment than young floor, and rivers add to what lies there.
+TEST(PlanetErosion, AddsToTheSedimentOfTheSeaFloor) {
+  Made made = planet(256, 9);
+  const Grid& grid = made.state.grid();
+  const auto age_myr = made.state.read(field::crust_age);
+  const auto fraction = made.state.read(field::continental_fraction);
+  const auto thickness_m = made.state.read(field::sediment_thickness);
+  const std::vector<float> before_m(thickness_m.begin(), thickness_m.end());
+  const auto z = made.state.read(field::elevation);
+  const auto mean_m = [&](auto&& counts) {
+    double sum = 0.0, area_m2 = 0.0;
+    for (Index c = 0; c < grid.size(); ++c) {
+      if (!counts(c)) continue;
+      sum += grid.area_m2(grid.row(c)) * before_m[c];
+      area_m2 += grid.area_m2(grid.row(c));
+    }
+    return sum / area_m2;
+  };
+  const double young_m = mean_m([&](Index c) { return fraction[c] < 0.01F && age_myr[c] < 10.0F; });
+  const double old_m = mean_m([&](Index c) { return fraction[c] < 0.01F && age_myr[c] > 80.0F; });
+  EXPECT_LT(young_m, 150.0);
+  EXPECT_GT(old_m, 250.0);
+  EXPECT_EQ(mean_m([&](Index c) { return fraction[c] == 1.0F && z[c] >= 0.0F; }), 0.0);
+
+  run(*make_erosion_stage(), made.state, made.context);
+  const auto after_m = made.state.read(field::sediment_thickness);
+  const auto laid_m_yr = made.state.read(field::deposition_rate);
+  const ErosionParameters p;
+  const double years = static_cast<double>(p.steps) * p.time_step_yr;
+  double added_m = 0.0;
+  for (Index c = 0; c < grid.size(); ++c) {
+    if (fraction[c] > 0.01F || z[c] > -3000.0F) continue;
+    EXPECT_NEAR(after_m[c] - before_m[c], years * laid_m_yr[c], 0.01 + 1e-5 * after_m[c]);
+    added_m += after_m[c] - before_m[c];
+  }
+  EXPECT_GT(added_m, 0.0);
 }
 
 TEST(PlanetErosion, KeepsTheSeaAndClosesItsBudget) {

@@ -209,7 +209,7 @@ const Field<float> erosion_rate{{.name = "erosion_rate",
 const Field<float> sediment_thickness{
     {.name = "sediment_thickness",
      .units = "m",
-     .doc = "sediment deposited on land and at sea, as rock without pores",
+     .doc = "sediment on land and at sea, as rock without pores",
      .type = Type::float32,
      .least = 0.0}};
 const Field<float> crust_thickness_change{{.name = "crust_thickness_change",

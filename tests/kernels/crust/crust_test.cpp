@@ -80,6 +80,18 @@ TEST(OceanDepth, SedimentGrowsWithAgeAndThinsAwayFromLand) {
   EXPECT_EQ(deep_sediment_m(sediment, 0.0, 0.0), 0.0);
 }
 
+TEST(OceanDepth, SedimentHasFewerPoresTheDeeperItLies) {
+  EXPECT_EQ(solid_thickness_m(0.0), 0.0);
+  EXPECT_NEAR(solid_thickness_m(1.0), 0.37, 1e-3);  // 0.63 of it is water
+  // Against a sum over thin layers.
+  double solid_m = 0.0;
+  for (double top_m = 0.0; top_m < 3000.0; top_m += 1.0) {
+    solid_m += 1.0 - 0.63 * std::exp(-(top_m + 0.5) / 1961.0);
+    if (top_m == 499.0) EXPECT_NEAR(solid_thickness_m(500.0), solid_m, 0.01);
+  }
+  EXPECT_NEAR(solid_thickness_m(3000.0), solid_m, 0.01);
+}
+
 std::vector<std::uint8_t> scattered(const Grid& grid, std::uint64_t seed, double share) {
   const RandomStream random(seed, "marks");
   std::vector<std::uint8_t> marked(grid.size());

@@ -69,6 +69,7 @@ class ErosionStage final : public Stage {
       info.writes.insert(info.writes.end(), fields);
     };
     if (deposits) {
+      info.optional.push_back(&field::sediment_thickness);
       also({&field::sediment_thickness, &field::deposition_rate, &field::sediment_flux});
     }
     if (freezes) also({&field::ice_thickness, &field::glacial_erosion});

@@ -99,6 +99,7 @@ ErosionRun::ErosionRun(const ErosionParameters& parameters, StageIo& io, Context
       scoured_m_(unscoured(p_, io)),
       sea_share_(share_of_sea(grid_, elevation_m_)) {
   if (p_.freezes() && follows_rain_) ice_.emplace(p_, grid_, context.planet);
+  if (p_.deposits()) landscape_.begin_with(io.read_optional(field::sediment_thickness));
   // What rates and resistance were made from is needed no more.
   for (const FieldSpec* spec : std::initializer_list<const FieldSpec*>{
            &field::erodibility, &field::boundary_type, &field::boundary_strength,

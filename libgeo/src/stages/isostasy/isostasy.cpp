@@ -24,6 +24,11 @@
 namespace geo {
 namespace {
 
+/// Whether margins and the sea floor have the sediment of their age.
+bool knows_sediment(const IsostasyParameters& p) {
+  return p.crust == "margins" || p.crust == "simulated";
+}
+
 bool keeps_made_crust(const IsostasyParameters& p) {
   return p.crust == "simulated" || p.crust == "given";
 }
@@ -92,6 +97,8 @@ Crust<float> open_crust(const IsostasyParameters& parameters, StageIo& io, const
           .erodibility = io.write(field::erodibility),
           .elevation_m = io.write(field::elevation),
           .thickening_m_yr = io.write(field::thickening_rate),
+          .sediment_m =
+              knows_sediment(parameters) ? io.write(field::sediment_thickness) : std::span<float>{},
           .run_myr = growth_of_belts(parameters, context.configuration)};
 }
 
@@ -191,12 +198,20 @@ const StageInfo& stage_info() {
   return kInfo;
 }
 
+StageInfo covered_by_sediment(StageInfo info) {
+  info.writes.push_back(&field::sediment_thickness);
+  return info;
+}
+
 class IsostasyStage final : public Stage {
  public:
   explicit IsostasyStage(IsostasyParameters parameters) : parameters_(std::move(parameters)) {}
 
   [[nodiscard]] const StageInfo& info() const override {
+    static const StageInfo kCovered = covered_by_sediment(stage_info());
     static const StageInfo kGuided = guided_by_folds(stage_info());
+    static const StageInfo kGuidedCovered = guided_by_folds(kCovered);
+    if (knows_sediment(parameters_)) return follows_exemplars() ? kGuidedCovered : kCovered;
     return follows_exemplars() ? kGuided : stage_info();
   }
   [[nodiscard]] std::vector<Parameter> parameters() override { return parameters_.declarations(); }

@@ -62,4 +62,11 @@ template <class T>
   return pelagic + grown * s.apron_m * exp(-std::fmax(from_continent_km, 0.0) / s.apron_length_km);
 }
 
+/// Thickness of sediment as rock without pores, m: porosity falls from 0.63 at the top by e in
+/// 1961 m, as in shale (Sclater & Christie 1980).
+[[nodiscard]] inline double solid_thickness_m(double thickness_m) {
+  constexpr double kPorosity = 0.63, kCompaction_m = 1961.0;
+  return thickness_m + kPorosity * kCompaction_m * std::expm1(-thickness_m / kCompaction_m);
+}
+
 }  // namespace geo

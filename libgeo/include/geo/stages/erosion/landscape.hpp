@@ -111,6 +111,15 @@ class Landscape {
   /// Where the water leaves the land.
   [[nodiscard]] const std::vector<std::uint8_t>& outlets() const { return outlets_; }
 
+  /// Sediment that lies there before the first step, m as rock without pores, one value per cell:
+  /// the records go on from it. Empty: none is known.
+  void begin_with(std::span<const float> sediment_m) {
+    auto& thickness_m = records_.sediment.thickness_m;
+    if (thickness_m.size() == sediment_m.size()) {
+      std::copy(sediment_m.begin(), sediment_m.end(), thickness_m.begin());
+    }
+  }
+
   /// Whether water cuts down the sills that it crosses.
   [[nodiscard]] bool breaches() const { return p_.depressions == "breach" && p_.steps > 0; }
   /// Lets it do so.

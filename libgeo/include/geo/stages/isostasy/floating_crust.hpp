@@ -16,7 +16,8 @@ void float_margins_crust(const Crust<V>& crust, const CoarseGrid& coarse,
   draw_margins_crust(crust, coarse, frame, tectonics);
 }
 
-/// The sea stands at `level_m` from now on; sediment builds its margins up towards it.
+/// The sea stands at `level_m` from now on; sediment builds its margins up towards it. It sinks
+/// in as far as it weighs on them.
 template <class V>
 void fill_sea(const Crust<V>& crust, const V& level_m) {
   using Number = Arithmetic<V>;
@@ -26,6 +27,7 @@ void fill_sea(const Crust<V>& crust, const V& level_m) {
   const Number edge = crust.active(p.shelf_edge);
   const Number whole_shelf = edge + 0.8 * (1.0 - edge);
   const Number shelf_depth_m = crust.active(p.shelf_depth_m);
+  const double rise_per_sediment = value_of(crust.datum().rise_per_sediment());
 #pragma omp parallel for schedule(static)
   for (Index cell = 0; cell < crust.grid.size(); ++cell) {
     V& z = crust.elevation_m[cell];
@@ -36,7 +38,11 @@ void fill_sea(const Crust<V>& crust, const V& level_m) {
     if (value_of(on_shelf) <= 0.0) continue;
     const Number deep_m(z);
     const Number filled = -shelf_depth_m * log(Number(1.0 - deep_m / shelf_depth_m));
-    z = lesser(V(-1e-3F), V(deep_m + on_shelf * (filled - deep_m)));
+    const Number built_up_m = on_shelf * (filled - deep_m);
+    z = lesser(V(-1e-3F), V(deep_m + built_up_m));
+    if (crust.sediment_m.empty()) continue;
+    const double laid_m = value_of(built_up_m) / rise_per_sediment;
+    crust.sediment_m[cell] += static_cast<float>(solid_thickness_m(laid_m));
   }
 }
 

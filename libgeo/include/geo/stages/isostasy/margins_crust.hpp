@@ -210,9 +210,10 @@ class Columns {
     }
     Number floor_m(0.0);
     if (share < 1.0) {
-      floor_m =
-          sea_floor_m(i, along, floor_age_myr(crust_.in.age_myr[cell], share), island, rough) +
-          hot * (1.0 - kHotLost * share) - kMeanHeat * p_.heat_m;
+      const double age_myr = floor_age_myr(crust_.in.age_myr[cell], share);
+      floor_m = sea_floor_m(i, along, age_myr, island, rough) + hot * (1.0 - kHotLost * share) -
+                kMeanHeat * p_.heat_m;
+      record_sediment(i, along, cell, share, age_myr);
     }
     crust_.thickness_m[cell] =
         V(1e3 * limited(Number(p_.oceanic_km + (land.thickness_km - p_.oceanic_km) * share +
@@ -245,7 +246,9 @@ class Columns {
         kMadeSwell * Number(row.swell_m[i]) - tilt_m + bumps_m + kHotLand * at.hot;
     Number at_sea_m(0.0);
     if (at.share < 1.0) {
-      at_sea_m = floor_cover_m(i, along, crust_.in.age_myr[cell]) + at.hot - kMeanHeat * p_.heat_m;
+      const double age_myr = crust_.in.age_myr[cell];
+      at_sea_m = floor_cover_m(i, along, age_myr) + at.hot - kMeanHeat * p_.heat_m;
+      record_sediment(i, along, cell, at.share, age_myr);
     }
     crust_.density[cell] = V(density_.oceanic_crust +
                              (density_.continental_crust - density_.oceanic_crust) * at.share);
@@ -304,13 +307,23 @@ class Columns {
            island * (kArc_m + kArcRoughness_m * rough + kVolcanoes_m * along.arc_volcanoes[i]) +
            Number(row.trench_m[i]);
   }
+  [[nodiscard]] Number floor_sediment_m(int i, const Row& along, double crust_age_myr) const {
+    const double age_myr = std::min(crust_age_myr, kOldestFloor_myr);
+    const Number in_trench =
+        limited(Number(-Number(along.from_afar.trench_m[i]) / kEmptyTrench_m), 0.0, 1.0);
+    return deep_sediment_m(p_.sediment, age_myr, along.offshore_km[i]) *
+           (1.0 - kTrenchLacks * in_trench);
+  }
+  void record_sediment(int i, const Row& along, Index cell, double share,
+                       double crust_age_myr) const {
+    if (crust_.sediment_m.empty()) return;
+    const double on_floor_m = value_of(floor_sediment_m(i, along, crust_age_myr));
+    crust_.sediment_m[cell] = static_cast<float>(solid_thickness_m(on_floor_m) * (1.0 - share));
+  }
   /// Sediment, swells, hills and seamounts on a floor.
   [[nodiscard]] Number floor_cover_m(int i, const Row& along, double crust_age_myr) const {
     const Tectonics<V>& row = along.from_afar;
-    const double age_myr = std::min(crust_age_myr, kOldestFloor_myr);
-    const Number in_trench = limited(Number(-Number(row.trench_m[i]) / kEmptyTrench_m), 0.0, 1.0);
-    const Number sediment_m = deep_sediment_m(p_.sediment, age_myr, along.offshore_km[i]) *
-                              (1.0 - kTrenchLacks * in_trench);
+    const Number sediment_m = floor_sediment_m(i, along, crust_age_myr);
     const Number buried = 1.0 / (1.0 + sediment_m / kBurying_m);
     return datum_.rise_per_sediment() * sediment_m +
            p_.ocean_swell_m * static_cast<double>(row.ocean_swell[i]) +
