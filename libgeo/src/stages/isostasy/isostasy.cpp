@@ -232,6 +232,7 @@ class IsostasyStage final : public Stage {
       throw InputError("isostasy: the grid must be a whole sphere or a torus");
     }
     const Crust<float> crust = open_crust(parameters_, io, context);
+    std::fill(crust.sediment_m.begin(), crust.sediment_m.end(), 0.0F);
     if (on_torus) return settle_torus(crust, context);
     const CoarseGrid coarse(crust.grid);
     float_crust(crust, coarse, context);
