@@ -8,6 +8,7 @@
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <vector>
 
 #include "geo/core/vector3.hpp"
 #include "geo/kernels/figures/plate_figures.hpp"
@@ -192,6 +193,37 @@ TEST(Plates, AreTheSameAtEveryResolution) {
     EXPECT_GT(land, 0.96) << "seed " << seed;
   }
 }
+
+/// Floor of the sea that continents cut off from the largest ocean, km2.
+double enclosed_floor_km2(const State& state) {
+  const Grid& grid = state.grid();
+  const auto fraction = state.read(field::continental_fraction);
+  std::vector<std::uint8_t> seen(fraction.size(), 0);
+  std::vector<double> seas_km2;
+  for (Index start = 0; start < grid.size(); ++start) {
+    if (fraction[start] >= 0.5F || seen[start] != 0) continue;
+    std::vector<Index> shore{start};
+    seen[start] = 1;
+    double area_m2 = 0.0;
+    while (!shore.empty()) {
+      const Index cell = shore.back();
+      shore.pop_back();
+      area_m2 += grid.area_m2(grid.row(cell));
+      for (int k = 0; k < kDirections; ++k) {
+        const Index next = grid.neighbour(cell, k);
+        if (next == kNoCell || seen[next] != 0 || fraction[next] >= 0.5F) continue;
+        seen[next] = 1;
+        shore.push_back(next);
+      }
+    }
+    seas_km2.push_back(1e-6 * area_m2);
+  }
+  return std::accumulate(seas_km2.begin(), seas_km2.end(), 0.0) -
+         *std::max_element(seas_km2.begin(), seas_km2.end());
+}
+
+// A shallow strait, which the noise of coasts closes, cut off three million km2 of its floor.
+TEST(Plates, LeaveStraitsBetweenOceans) { EXPECT_LT(enclosed_floor_km2(planet(512, 6)), 2e6); }
 
 TEST(Plates, OfManySeedsAndCountsStayInRange) {
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {

@@ -206,12 +206,11 @@ const Field<float> erosion_rate{{.name = "erosion_rate",
                                  .units = "m yr-1",
                                  .doc = "surface lowering by rivers and hillslopes",
                                  .type = Type::float32}};
-const Field<float> sediment_thickness{
-    {.name = "sediment_thickness",
-     .units = "m",
-     .doc = "sediment on land and at sea, as rock without pores",
-     .type = Type::float32,
-     .least = 0.0}};
+const Field<float> sediment_thickness{{.name = "sediment_thickness",
+                                       .units = "m",
+                                       .doc = "sediment on land and at sea, as rock without pores",
+                                       .type = Type::float32,
+                                       .least = 0.0}};
 const Field<float> crust_thickness_change{{.name = "crust_thickness_change",
                                            .units = "m",
                                            .doc = "change of the crust's thickness by shortening, "

@@ -2,8 +2,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <csignal>
 #include <fstream>
+#include <limits>
+#include <string>
+#include <vector>
 
 #include "cli/program.hpp"
 #include "cli/sample_run.hpp"
@@ -179,12 +184,10 @@ TEST(MemoryCap, OfNoSizeOrTooSmallIsRefused) {
   EXPECT_FALSE(fs::exists(folder / "out"));
 }
 
-/// "memory  about 321 MB" of a dry run.
-double predicted_bytes(const std::string& out) {
-  const auto at = out.find("memory  about ");
-  if (at == std::string::npos) return 0.0;
-  constexpr std::size_t kWords = 14;
-  return 1e6 * std::stod(out.substr(at + kWords));
+/// "memory  about 321 MB" of a dry run, or another line of it.
+double predicted_bytes(const std::string& out, const std::string& line = "memory  about ") {
+  const auto at = out.find(line);
+  return at == std::string::npos ? 0.0 : 1e6 * std::stod(out.substr(at + line.size()));
 }
 
 TEST(Memory, IsPredictedWithin15PerCentWithACapAndWithout) {
@@ -204,6 +207,50 @@ TEST(Memory, IsPredictedWithin15PerCentWithACapAndWithout) {
     const double predicted = predicted_bytes(terrane(run).out);
     EXPECT_NEAR(done.peak_bytes / predicted, 1.0, 0.15) << predicted;
   }
+}
+
+TEST(MemoryCap, ThatHoldsMostOfARunLeavesMoreOfItOutOfTheScratchFile) {
+  const TemporaryFolder folder;
+  const auto told = [&](const std::vector<std::string>& more) {
+    auto run = large_run(folder / "out", {"--dry-run"});
+    run.insert(run.end(), more.begin(), more.end());
+    return terrane(run).out;
+  };
+  constexpr double kProgram_bytes = 150e6;
+  const double wanted = predicted_bytes(told({}));
+  const auto own_share = [&](double of_wanted) {
+    const double cap = std::round(1e-6 * of_wanted * wanted);
+    const std::string out = told({"--memory", std::to_string(static_cast<int>(cap)) + "MB"});
+    const double own = wanted - kProgram_bytes - predicted_bytes(out, "scratch about ");
+    return own / (1e6 * cap - kProgram_bytes);
+  };
+  EXPECT_NEAR(own_share(0.7), 0.4, 0.03);  // of the cap, less what the program takes
+  EXPECT_NEAR(own_share(0.8), 0.7, 0.03);
+}
+
+// Pages that come back from a scratch file take time: a cap of a third is told half as long again.
+TEST(MemoryCap, OfAPartOfWhatARunTakesIsToldToTakeLonger) {
+  const TemporaryFolder folder;
+  // A prediction is for the machine as busy as it is: the least of several in turn.
+  std::array<double, 2> least_min;
+  least_min.fill(std::numeric_limits<double>::infinity());
+  const std::array<const char*, 2> caps{"1000GB", "20GB"};
+  constexpr int kPredictions = 3;
+  for (int time = 0; time < kPredictions; ++time) {
+    for (std::size_t k = 0; k < caps.size(); ++k) {
+      const std::string line = "time    about ";
+      const std::string out =
+          terrane({"run", "--grid", "32768x16384", "--to", "erosion", "--no-vtk", "--no-maps",
+                   "--dry-run", "--memory", caps[k], "-o", folder / "out"})
+              .out;
+      const auto at = out.find(line);
+      ASSERT_NE(at, std::string::npos) << out;
+      EXPECT_THAT(out, HasSubstr(" min "));
+      least_min[k] = std::min(least_min[k], std::stod(out.substr(at + line.size())));
+    }
+  }
+  EXPECT_GT(least_min[1], 1.2 * least_min[0]);
+  EXPECT_LT(least_min[1], 1.7 * least_min[0]);
 }
 
 TEST(MemoryCap, ForAGridThatNoMachineHoldsIsPredicted) {

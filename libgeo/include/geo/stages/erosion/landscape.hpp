@@ -114,10 +114,8 @@ class Landscape {
   /// Sediment that lies there before the first step, m as rock without pores, one value per cell:
   /// the records go on from it. Empty: none is known.
   void begin_with(std::span<const float> sediment_m) {
-    auto& thickness_m = records_.sediment.thickness_m;
-    if (thickness_m.size() == sediment_m.size()) {
-      std::copy(sediment_m.begin(), sediment_m.end(), thickness_m.begin());
-    }
+    if (sediment_m.empty()) return;
+    records_.sediment.thickness_m.assign(sediment_m.begin(), sediment_m.end());
   }
 
   /// Whether water cuts down the sills that it crosses.
