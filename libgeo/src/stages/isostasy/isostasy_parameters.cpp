@@ -168,8 +168,12 @@ std::vector<Parameter> land_rows(IsostasyParameters& p) {
   };
 }
 
-std::vector<Parameter> sea_floor_sediment_rows(IsostasyParameters& p) {
+std::vector<Parameter> sediment_rows(IsostasyParameters& p) {
   return {
+      real("isostasy.basin_fill", p.basin_fill, "1", 0.0, 0.95,
+           "share of the subsidence of continental margins and sags that sediment has filled; 0: "
+           "continents are bare",
+           "laske2013"),
       real("isostasy.pelagic_m", p.sediment.early_m, "m", 0.0, 10000.0,
            "sediment that soon covers new sea floor", "muller2008"),
       real("isostasy.pelagic_rate_m_myr", p.sediment.rate_m_myr, "m Myr-1", 0.0, 1000.0,
@@ -185,7 +189,7 @@ std::vector<Parameter> sea_floor_sediment_rows(IsostasyParameters& p) {
 
 std::vector<Parameter> IsostasyParameters::declarations() {
   return joined(*this, {crust_and_plate_rows, belts_rows, thicknesses_rows, mantle_rows,
-                        sea_floor_rows, land_rows, sea_floor_sediment_rows});
+                        sea_floor_rows, land_rows, sediment_rows});
 }
 
 }  // namespace geo

@@ -43,9 +43,9 @@ inline double ocean_heat_flow_mw_m2(double age_myr) {
 /// from the foot of the continent.
 template <class T>
 struct BasicDeepSediment {
-  T early_m{250.0};
+  T early_m{60.0};
   double early_time_myr = 8.0;
-  T rate_m_myr{4.5};
+  T rate_m_myr{2.2};
   T apron_m{3000.0};
   T apron_length_km{320.0};
 };

@@ -36,7 +36,7 @@ struct Crust {
   std::span<float> erodibility;
   std::span<V> elevation_m;
   std::span<V> thickening_m_yr;  ///< by shortening; left to the landscape's run
-  std::span<float> sediment_m;   ///< at sea, as rock without pores; empty where none asks for it
+  std::span<float> sediment_m;   ///< as rock without pores; empty where none asks for it
 
   /// How long belts grow while the landscape runs; 0: they stand as their sections have them.
   Arithmetic<V> run_myr{0.0};

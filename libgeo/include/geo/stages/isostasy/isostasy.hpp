@@ -65,6 +65,7 @@ struct IsostasyParameters {
   double detail_amplitude = 2.0;
   double old_orogeny_myr = 100.0;
   double plain_slope = 0.002;
+  double basin_fill = 0.82;
   DeepSediment sediment;
 
   [[nodiscard]] std::vector<Parameter> declarations();

@@ -215,6 +215,7 @@ class Columns {
                 kMeanHeat * p_.heat_m;
       record_sediment(i, along, cell, share, age_myr);
     }
+    record_cover(cell, share, value_of(belt), value_of(row.swell_m[i]));
     crust_.thickness_m[cell] =
         V(1e3 * limited(Number(p_.oceanic_km + (land.thickness_km - p_.oceanic_km) * share +
                                p_.arc_km * island * (1.0 - share)),
@@ -250,6 +251,7 @@ class Columns {
       at_sea_m = floor_cover_m(i, along, age_myr) + at.hot - kMeanHeat * p_.heat_m;
       record_sediment(i, along, cell, at.share, age_myr);
     }
+    record_cover(cell, at.share, value_of(at.belt), kMadeSwell * value_of(row.swell_m[i]));
     crust_.density[cell] = V(density_.oceanic_crust +
                              (density_.continental_crust - density_.oceanic_crust) * at.share);
     // Roots of cratons that their lithosphere weighs down: they do not show at the surface.
@@ -318,7 +320,19 @@ class Columns {
                        double crust_age_myr) const {
     if (crust_.sediment_m.empty()) return;
     const double on_floor_m = value_of(floor_sediment_m(i, along, crust_age_myr));
-    crust_.sediment_m[cell] = static_cast<float>(solid_thickness_m(on_floor_m) * (1.0 - share));
+    crust_.sediment_m[cell] += static_cast<float>(solid_thickness_m(on_floor_m) * (1.0 - share));
+  }
+  /// Sediment of old basins, as rock without pores: a sag of the continent that has subsided by
+  /// w / (1 - f) is filled by the share f of that and seen to lie lower by w. Belts have thrust
+  /// theirs up and lost it; the foot of continents has that of its apron.
+  void record_cover(Index cell, double share, double belt, double swell_m) const {
+    if (crust_.sediment_m.empty()) return;
+    const double edge = crust_.parameters.shelf_edge, inland = smooth_step(edge, 1.0, share);
+    const double fill = crust_.parameters.basin_fill, sag_m = std::max(0.0, -swell_m);
+    const double rise = 1.0 - value_of(density_.sediment) / value_of(density_.mantle);
+    const double cover_m = fill / (1.0 - fill) * sag_m / rise;
+    crust_.sediment_m[cell] +=
+        static_cast<float>(inland * (1.0 - belt) * solid_thickness_m(cover_m));
   }
   /// Sediment, swells, hills and seamounts on a floor.
   [[nodiscard]] Number floor_cover_m(int i, const Row& along, double crust_age_myr) const {
