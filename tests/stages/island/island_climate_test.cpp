@@ -35,10 +35,25 @@ TEST(Island, RunoffIsThatOfThePlanetOverTheSameGround) {
               planets_m3_s, 0.1 * planets_m3_s);
 }
 
+TEST(Island, RainIsThePlanetsAtTheEdge) {
+  IslandParameters parameters = around(place_of(great_rivers(1).front()));
+  parameters.climate_smoothing_km = 0.0;
+  const State island = make(parameters).island;
+  const Grid& fine = island.grid();
+  const auto planets_p = planet().read(field::precipitation);
+  const auto p = island.read(field::precipitation);
+  for (Index c = 0; c < fine.size(); ++c) {
+    if (!on_edge(fine, c)) continue;
+    const CatmullRom stencil(planet().grid(), fine.position(fine.column(c), fine.row(c)));
+    const double rain = std::max(0.0, stencil.of(planets_p));
+    ASSERT_NEAR(p[c], rain, 1e-3 * rain + 0.1) << "cell " << c;
+  }
+}
+
 TEST(Island, ClimateJoinsThePlanetsAtTheEdge) {
   IslandParameters parameters = around(place_of(great_rivers(1).front()));
   parameters.climate_smoothing_km = 0.0;  // it mixes heights
-  const State island = make(parameters).island;
+  const State island = make_smooth(parameters).island;
   const Grid& fine = island.grid();
   const auto planets_z = planet().read(field::elevation);
   const auto planets_t = planet().read(field::temperature);

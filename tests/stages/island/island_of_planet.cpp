@@ -32,13 +32,35 @@ const State& planet() {
   return kPlanet;
 }
 
-Made make(IslandParameters p, State state, std::uint64_t seed) {
-  Context context;
-  context.seed = seed;
+namespace {
+
+Made make_in(Context context, IslandParameters p, State state) {
   const auto stage = make_island_stage(std::move(p));
   StageIo io(state, stage->info());
   stage->run(io, context);
   return {io.result(), context.budget};
+}
+
+}  // namespace
+
+Made make(IslandParameters p, State state, std::uint64_t seed) {
+  Context context;
+  context.seed = seed;
+  return make_in(std::move(context), std::move(p), std::move(state));
+}
+
+Made make_smooth(IslandParameters p) {
+  const Pipeline pipeline = make_pipeline();
+  Context context;
+  context.seed = 3;
+  context.configuration = pipeline.parameters();
+  for (const char* name :
+       {"hydrology.carving", "hydrology.breach_depth_m", "hydrology.gorge_factor"}) {
+    find_parameter(context.configuration, name)->set_text("0");
+  }
+  p.detail_amplitude = p.least_roughness_m = p.coast_fray = 0.0;
+  p.erosion_steps = 0;
+  return make_in(std::move(context), std::move(p), planet());
 }
 
 std::string text(Centre place) {

@@ -23,6 +23,8 @@ Made make(IslandParameters p, State state = planet(), std::uint64_t seed = 3);
 std::string text(Centre place);
 /// Ten planet cells wide at the equator, six high.
 IslandParameters around(Centre place);
+/// The planet's surface alone, but for the ways of its rivers: no detail, bays, erosion or valleys.
+Made make_smooth(IslandParameters p);
 Centre place_of(Index planet_cell, const Grid& grid = planet().grid());
 
 /// Cells that the largest rivers of different basins pass through half-way, away from the poles and

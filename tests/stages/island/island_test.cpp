@@ -29,9 +29,9 @@ TEST(Island, MeansOverThePlanetsCellsAreThePlanetsWithinTheDetail) {
   std::vector<float> roughness_m(cells.size());  // the standard deviation of detail
   local_roughness(cells, planets_m, roughness_m);
   const auto mean_m = cells.means(island.read(field::elevation), {}, 0.0F);
-  IslandParameters smooth = around(place_of(great_rivers(1).front()));
-  smooth.detail_amplitude = smooth.least_roughness_m = 0.0;
-  const State ground = make(smooth).island;
+  IslandParameters even = around(place_of(great_rivers(1).front()));
+  even.detail_amplitude = even.least_roughness_m = 0.0;
+  const State ground = make(even).island;
   const auto ground_m = cells.means(ground.read(field::elevation), {}, 0.0F);
   int whole = 0;
   double bias_m = 0.0, detail_m = 0.0;
@@ -144,7 +144,7 @@ TEST(Island, HasNoLandBetweenThePlanetsCellsOfSeaAndNoSeaBetweenThoseOfLand) {
 }
 
 TEST(Island, EdgeKeepsThePlanetsHeightsExceptInRiverGaps) {
-  const State& island = example().island;
+  const State island = make_smooth(around(place_of(great_rivers(1).front()))).island;
   const Grid& fine = island.grid();
   const auto planets_m = planet().read(field::elevation);
   const auto z = island.read(field::elevation);
@@ -158,6 +158,50 @@ TEST(Island, EdgeKeepsThePlanetsHeightsExceptInRiverGaps) {
     if (z[c] > there_m - 1.0) ++same;
   }
   EXPECT_GT(same, 0.8 * edge);
+}
+
+/// Root mean square and mean of the height of an island's land above the planet's surface, at the
+/// edge and well inside.
+struct OnThePlanet {
+  double rms_m[2] = {}, mean_m[2] = {};
+};
+OnThePlanet detail_of(const std::vector<State>& islands) {
+  constexpr int kInside_cells = 25;
+  OnThePlanet found;
+  double count[2] = {};
+  const auto planets_m = planet().read(field::elevation);
+  for (const State& island : islands) {
+    const Grid& fine = island.grid();
+    const auto z = island.read(field::elevation);
+    for (Index c = 0; c < fine.size(); ++c) {
+      const int i = fine.column(c), j = fine.row(c);
+      const int from_edge = std::min({i, fine.nx() - 1 - i, j, fine.ny() - 1 - j});
+      if (z[c] < 0.0F || (from_edge > 0 && from_edge < kInside_cells)) continue;
+      const double above_m = z[c] - CatmullRom(planet().grid(), fine.position(i, j)).of(planets_m);
+      const int inside = from_edge > 0 ? 1 : 0;
+      found.rms_m[inside] += above_m * above_m;
+      found.mean_m[inside] += above_m;
+      count[inside] += 1.0;
+    }
+  }
+  for (const int k : {0, 1}) {
+    found.rms_m[k] = std::sqrt(found.rms_m[k] / count[k]);
+    found.mean_m[k] /= count[k];
+  }
+  return found;
+}
+
+// An even rim would be a frame round the map, and rivers would run along it.
+TEST(Island, EdgeIsAsRoughAsTheInside) {
+  std::vector<State> islands;
+  for (const Index river : great_rivers(6)) {
+    islands.push_back(make(around(place_of(river))).island);
+  }
+  const OnThePlanet found = detail_of(islands);
+  const auto& [edge_m, inside_m] = found.rms_m;
+  EXPECT_GT(edge_m, 0.75 * inside_m);
+  EXPECT_LT(edge_m, 1.33 * inside_m);
+  EXPECT_LT(std::abs(found.mean_m[0]), 0.25 * inside_m);
 }
 
 TEST(Island, FadingEdgeSinksBelowTheSea) {

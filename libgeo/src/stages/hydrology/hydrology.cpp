@@ -117,10 +117,13 @@ Bytes with_scoured_basins(const Grid& grid, std::span<const float> z,
   return outlets;
 }
 
-/// Water does not leave where it comes in.
-Bytes without_inflow(Bytes outlets, std::span<const double> inflow_area) {
+/// Water does not leave where it comes in, nor where the edge is shut.
+Bytes open_outlets(Bytes outlets, std::span<const double> inflow_area, const Bytes& shut) {
   for (std::size_t c = 0; c < inflow_area.size(); ++c) {
     if (inflow_area[c] > 0) outlets[c] = 0;
+  }
+  for (std::size_t c = 0; c < shut.size(); ++c) {
+    if (shut[c] != 0) outlets[c] = 0;
   }
   return outlets;
 }
@@ -137,7 +140,8 @@ double add_inflow(std::span<const float> inflow_m3_s, std::span<double> water) {
 
 class HydrologyStage final : public Stage {
  public:
-  explicit HydrologyStage(HydrologyParameters parameters) : p_(std::move(parameters)) {}
+  HydrologyStage(HydrologyParameters parameters, Bytes shut)
+      : p_(std::move(parameters)), shut_(std::move(shut)) {}
   [[nodiscard]] const StageInfo& info() const override { return info_; }
   [[nodiscard]] std::vector<Parameter> parameters() override { return p_.declarations(); }
   [[nodiscard]] StageCost cost(std::span<const Parameter> /*configuration*/) const override {
@@ -150,7 +154,7 @@ class HydrologyStage final : public Stage {
     const auto z = io.write(field::elevation);
     const auto inflow_area = io.read_optional(field::inflow_area);
     const Bytes sea = sea_cells(z);
-    const Bytes outlets = without_inflow(find_outlets(grid, z), inflow_area);
+    const Bytes outlets = open_outlets(find_outlets(grid, z), inflow_area, shut_);
 
     std::vector<double> water(grid.size());
     std::vector<float> loss(grid.size());
@@ -302,6 +306,7 @@ class HydrologyStage final : public Stage {
   }
 
   HydrologyParameters p_;
+  Bytes shut_;
   StageInfo info_{"hydrology",
                   "runoff, lakes, rivers and basins; valleys carved by rivers",
                   {&field::elevation, &field::temperature, &field::precipitation,
@@ -361,8 +366,9 @@ std::vector<Parameter> HydrologyParameters::declarations() {
   };
 }
 
-std::unique_ptr<Stage> make_hydrology_stage(HydrologyParameters parameters) {
-  return std::make_unique<HydrologyStage>(std::move(parameters));
+std::unique_ptr<Stage> make_hydrology_stage(HydrologyParameters parameters,
+                                            std::vector<std::uint8_t> shut) {
+  return std::make_unique<HydrologyStage>(std::move(parameters), std::move(shut));
 }
 
 }  // namespace geo

@@ -16,8 +16,10 @@
 #include "geo/stages/erosion/erosion.hpp"
 #include "geo/stages/hydrology/hydrology.hpp"
 #include "island_climate.hpp"
+#include "island_edge.hpp"
 #include "island_erosion.hpp"
 #include "island_surface.hpp"
+#include "island_window.hpp"
 #include "stages/climate/climate_events.hpp"
 #include "stages/isostasy/guided_by_folds.hpp"
 
@@ -93,7 +95,7 @@ class IslandStage final : public Stage {
   }
   [[nodiscard]] std::vector<Parameter> parameters() override { return p_.declarations(); }
   [[nodiscard]] StageCost cost(std::span<const Parameter> /*configuration*/) const override {
-    return {.per_cell_ns = 2500.0, .cell_bytes = 400.0, .fixed_bytes = 35e6};
+    return {.per_cell_ns = 2900.0, .cell_bytes = 420.0, .fixed_bytes = 35e6};
   }
 
   void check(const Grid& grid,
@@ -108,20 +110,16 @@ class IslandStage final : public Stage {
   }
 
   void run(StageIo& io, Context& context) const override {
-    State state(std::make_shared<const Grid>(
-        Grid::equal_area(static_cast<int>(p_.nx), static_cast<int>(p_.ny), p_.cell_m,
-                         centre(io, context), io.grid().figure())));
+    const IslandWindow window(p_, centre(io, context), io.grid().figure());
+    State state(window.island());
     context.budget["center_latitude_degree"] = state.grid().centre()->latitude_deg;
     context.budget["center_longitude_degree"] = state.grid().centre()->longitude_deg;
-    const PlanetCells cells(io.grid(), state.grid());
-    context.advance(0.1);
-    std::vector<float> planets_m(state.grid().size());
-    shape_surface(io, context, cells, planets_m, state);
+    Shaped ground = shape_surface(io, context, window, state);
     context.advance(0.6);
     // What the air and the water do depends on each other's surface: climate before hydrology.
-    make_climate(io, context, cells, planets_m, state);
+    make_climate(io, context, PlanetCells(io.grid(), state.grid()), ground.planets_m, state);
     context.advance(0.75);
-    make_water_and_life(context, state);
+    make_water_and_life(context, std::move(ground.shut), state);
     io.hand_over(std::move(state));
   }
 
@@ -157,18 +155,27 @@ class IslandStage final : public Stage {
     return std::make_shared<const ExemplarLibrary>(grow_exemplars());
   }
 
-  void shape_surface(const StageIo& io, Context& context, const PlanetCells& cells,
-                     std::span<float> planets_m, State& state) const {
+  /// What is known of the finished surface beside the island's fields.
+  struct Shaped {
+    std::vector<float> planets_m;  ///< the planet's interpolated heights
+    Bytes shut;                    ///< where water does not leave over the edge
+  };
+
+  /// Makes the surface on the wide grid, and crops it with what comes in over the island's edge.
+  Shaped shape_surface(const StageIo& io, Context& context, const IslandWindow& window,
+                       State& state) const {
     ErosionParameters law;
     configure(law.declarations(), context.configuration);
-    const Grid& fine = cells.fine();
+    const Grid& fine = window.wide();
+    const PlanetCells cells(io.grid(), fine);
+    context.advance(0.1);
     const PlanetTerrain planet = terrain_of(io);
-    const auto z = state.update(field::elevation);
+    std::vector<float> z(fine.size()), planets_m(fine.size());
     const auto exemplars = exemplars_of(context);
     raise_island(cells, planet, p_, exemplars.get(), context.seed, planets_m, z);
 
-    const auto inflow_area = state.update(field::inflow_area);
-    const auto inflow = state.update(field::inflow_discharge);
+    std::vector<double> inflow_area(fine.size());
+    std::vector<float> inflow(fine.size());
     const PlanetWater water{planet.elevation_m, io.read(field::flow_receiver),
                             io.read(field::drainage_area), io.read(field::discharge),
                             io.read_optional(field::lake_id)};
@@ -179,17 +186,30 @@ class IslandStage final : public Stage {
       if (inflow_area[c] > 0.0) edges[c] = 0;
     }
     open_river_courses(fine, edges, courses, z);
-    Bytes outlets = edges;
-    add_ways_out(fine, z, outlets);
+    Bytes outlets = edges, ways_out = edges;
     add_endorheic_bottoms(cells, io.read(field::flow_receiver), z, outlets);
-    for (std::size_t c = 0; c < held.size(); ++c) held[c] |= outlets[c];
+    add_ways_out(fine, z, ways_out);
+    for (std::size_t c = 0; c < held.size(); ++c) {
+      ways_out[c] |= outlets[c];
+      held[c] |= ways_out[c];
+    }
 
     const auto erodibility = island_erodibility(cells, planet, p_, law);
     const IslandErosion done = wear_island(
-        cells, p_, law, {outlets, held, inflow_area, erodibility},
+        cells, p_, law, {ways_out, held, inflow_area, erodibility},
         [&](double share) { context.advance(0.2 + 0.4 * share); }, z);
     open_river_courses(fine, edges, courses, z);
-    report_erosion(fine, done, context.budget, state);
+
+    fill_hollows_across_edge(window, cells, outlets, water.lake_id, z);
+    IslandEdge edge = find_island_edge(window, cells, {z, outlets, inflow_area, inflow},
+                                       io.read(field::precipitation),
+                                       io.read(field::potential_evapotranspiration));
+    state.set(field::inflow_area, std::move(edge.inflow_area_m2));
+    state.set(field::inflow_discharge, std::move(edge.inflow_m3_s));
+    state.set(field::elevation, window.crop(z));
+    report_erosion(*window.island(), {window.crop(done.lowered_m), window.crop(done.raised_m)},
+                   context.budget, state);
+    return {window.crop(planets_m), std::move(edge.shut)};
   }
 
   void report_erosion(const Grid& fine, const IslandErosion& done, Budget& budget,
@@ -229,13 +249,13 @@ class IslandStage final : public Stage {
                    {io.read(field::elevation), planets_m, state.read(field::elevation)}, from, to);
   }
 
-  void make_water_and_life(Context& context, State& state) const {
+  void make_water_and_life(Context& context, Bytes shut, State& state) const {
     HydrologyParameters hydrology;
     configure(hydrology.declarations(), context.configuration);
     hydrology.river_threshold_m3_s = p_.river_threshold_m3_s;
     hydrology.river_reference_m3_s = p_.river_reference_m3_s;
     hydrology.channel_area_km2 = p_.channel_area_km2;
-    run_inside(*make_hydrology_stage(hydrology), 0.75, 0.92, context, state);
+    run_inside(*make_hydrology_stage(hydrology, std::move(shut)), 0.75, 0.92, context, state);
 
     BiomesParameters biomes;
     configure(biomes.declarations(), context.configuration);

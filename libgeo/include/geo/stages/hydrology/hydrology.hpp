@@ -44,6 +44,10 @@ struct HydrologyParameters {
 /// a full depression passes its water on without a lake. Budget (m3/s over land): precipitation,
 /// evaporation of land and of lakes beside it, runoff to the sea (or over an open edge), and
 /// the relative closing error.
-std::unique_ptr<Stage> make_hydrology_stage(HydrologyParameters parameters = {});
+///
+/// Over an open edge water leaves at every cell but those of its inflow and those that `shut` (one
+/// byte per cell, or none) marks: what is there flows on within the grid.
+std::unique_ptr<Stage> make_hydrology_stage(HydrologyParameters parameters = {},
+                                            std::vector<std::uint8_t> shut = {});
 
 }  // namespace geo

@@ -56,11 +56,15 @@ struct IslandParameters {
 /// and detail, fractal or after exemplars (Cortial et al. 2019, section 5); some fine steps of
 /// erosion with the rivers that enter from outside; then hydrology, climate, biomes and settlement.
 ///
-/// The crop inherits the planet: its edge keeps the planet's heights, rivers enter with their area
-/// and discharge, mean heights of land over each planet cell stay (the crust rises by as much as
-/// rivers take away), temperature and rain are the planet's, adapted to the finer topography. The
-/// stages inside take the settings that their namesakes have in the run.
-/// Reads a whole planet: Stage::check refuses any other grid, and a planet that it does not fit.
+/// The island inherits the planet: rivers enter with their area and discharge, mean heights of land
+/// over each planet cell stay (the crust rises by as much as rivers take away), temperature and
+/// rain are the planet's, adapted to the finer topography. Its surface is made on a window that is
+/// wider by 6 % of the shorter side all round, whose edge keeps the planet's heights, and which is
+/// cropped: the island's own edge has the detail and the valleys of its inside, water leaves over
+/// it where it goes on beyond, and what drains back into the island enters as inflow. With
+/// `edge_fade` the edges sink below the sea instead. The stages inside take the settings that their
+/// namesakes have in the run. Reads a whole planet: Stage::check refuses any other grid, and a
+/// planet that it does not fit.
 std::unique_ptr<Stage> make_island_stage(IslandParameters parameters = {});
 
 }  // namespace geo
