@@ -214,6 +214,30 @@ TEST(Island, PlainsHaveNoLakesThatThePlanetLacks) {
   EXPECT_LT(lakes, 0.01 * land);
 }
 
+// Without what they lay down, rivers would cut to the level of the sea far inland, below the
+// planet's.
+TEST(Island, RiversOfLowlandsStayAboveTheLevelOfTheSea) {
+  constexpr double kRiver_m2 = 1e9;
+  double rivers = 0.0, at_sea_level = 0.0;
+  on_great_rivers({3, 6}, [&](const IslandOnRiver& at) {
+    const auto planets_m = at.whole.read(field::elevation);
+    const auto receiver = at.whole.read(field::flow_receiver);
+    const auto z = at.island.read(field::elevation);
+    const auto lake = at.island.read(field::lake_id);
+    const auto area_m2 = at.island.read(field::drainage_area);
+    for (Index k = 0; k < at.island.grid().size(); ++k) {
+      const Index cell = at.cell_of[k];
+      if (planets_m[cell] < 20.0F || planets_m[cell] > 100.0F || planets_m[receiver[cell]] < 20.0F)
+        continue;
+      if (area_m2[k] < kRiver_m2 || lake[k] > 0) continue;
+      rivers += 1.0;
+      at_sea_level += z[k] < 2.0F ? 1.0 : 0.0;
+    }
+  });
+  EXPECT_GT(rivers, 1000.0);
+  EXPECT_LT(at_sea_level, 0.05 * rivers) << "of " << rivers;
+}
+
 /// Of the river cells near the edge of a plane and of those farther in, which share lies in
 /// straight runs of eight steps or more.
 struct Straight {

@@ -200,8 +200,8 @@ class IslandStage final : public Stage {
         [&](double share) { context.advance(0.2 + 0.4 * share); }, z);
     open_river_courses(fine, edges, courses, z);
 
-    fill_hollows_across_edge(window, cells, outlets, water.lake_id, z);
-    IslandEdge edge = find_island_edge(window, cells, {z, outlets, inflow_area, inflow},
+    const Bytes lake = fill_hollows_across_edge(window, cells, outlets, water.lake_id, z);
+    IslandEdge edge = find_island_edge(window, cells, {z, outlets, inflow_area, inflow, lake},
                                        io.read(field::precipitation),
                                        io.read(field::potential_evapotranspiration));
     state.set(field::inflow_area, std::move(edge.inflow_area_m2));

@@ -9,7 +9,7 @@ double seam_m(const PlanetCells& cells) {
   const Grid& fine = cells.fine();
   const double extent_m =
       std::min(fine.nx() * fine.spacing_east_m(0), fine.ny() * fine.step_north_m());
-  return std::min(0.25 * cells.planet().face_east_m(cells.first_row()), 0.03 * extent_m);
+  return std::min(0.25 * cells.planet().face_east_m(cells.first_row()), 0.025 * extent_m);
 }
 
 std::vector<float> all_round(const PlanetCells& cells, std::span<const float> planet_elevation_m,

@@ -33,13 +33,18 @@ void restore_means(const PlanetCells& cells, std::span<const float> target,
   });
 }
 
-/// The planet's law of rivers and hillslopes for the steps of an island: what rivers take is gone,
-/// and what the crust gives back is what `keep_means` says.
+/// The planet's law of rivers and hillslopes for the steps of an island. Rivers deposit as they do
+/// on the planet: without what they lay down the lowlands' would cut to the level of the sea, far
+/// below the planet's own. What reaches the sea is gone, since the planet has laid it there
+/// already, and what the crust gives back is what `keep_means` says.
 ErosionParameters fine_law(const IslandParameters& p, ErosionParameters law) {
+  constexpr double kBelowAnySea_m = 1e5;
   law.steps = p.erosion_steps;
   law.time_step_yr = p.time_step_yr;
   law.route_every = 1;
-  law.model = "detachment";
+  law.dispersal_km = 0.0;
+  law.wave_base_m = kBelowAnySea_m;
+  law.highstand_yr = 0.0;
   law.flow_routing = "d8";
   law.depressions = "fill";
   law.uplift_mm_yr = 0.0;

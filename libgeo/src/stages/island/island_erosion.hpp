@@ -33,9 +33,9 @@ struct IslandErosion {
 };
 
 /// Some steps of the planet's landscape (wear_down), each with a routing of its own: D8 receivers,
-/// drainage area with what enters at the edge, implicit incision and creep; then, with
-/// `keep_means`, land is raised in proportion to its height so that its mean over every planet cell
-/// stays what it was. `planets`: the law of the planet's own erosion.
+/// drainage area with what enters at the edge, implicit incision, the planet's deposition on land,
+/// and creep; then, with `keep_means`, land is raised in proportion to its height so that its mean
+/// over every planet cell stays what it was. `planets`: the law of the planet's own erosion.
 IslandErosion wear_island(const PlanetCells& cells, const IslandParameters& p,
                           const ErosionParameters& planets, const IslandGround& ground,
                           const std::function<void(double)>& advance, std::span<float> elevation_m);

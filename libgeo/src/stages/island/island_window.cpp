@@ -11,7 +11,7 @@ namespace {
 
 /// Twice as wide as the seam along the wide grid's edge (seam_m), as far as the hemisphere reaches.
 int margin_cells(const IslandParameters& p, Centre centre, Ellipsoid figure) {
-  constexpr double kShare = 0.06;  // of the shorter side
+  constexpr double kShare = 0.05;  // of the shorter side
   if (p.edge_fade) return 0;
   const double rim_m =
       std::numbers::sqrt2 * EqualAreaProjection(centre, figure).authalic_radius_m();

@@ -21,7 +21,7 @@ class IslandWindow {
 
   [[nodiscard]] const std::shared_ptr<const Grid>& island() const { return island_; }
   [[nodiscard]] const Grid& wide() const { return *wide_; }
-  [[nodiscard]] bool has_margin() const { return margin_ > 0; }
+  [[nodiscard]] int margin() const { return margin_; }
 
   /// Cell of the island at a cell of the wide grid; kNoCell in the margin.
   [[nodiscard]] Index in_island(Index wide_cell) const {

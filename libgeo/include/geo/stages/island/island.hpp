@@ -59,7 +59,7 @@ struct IslandParameters {
 /// The island inherits the planet: rivers enter with their area and discharge, mean heights of land
 /// over each planet cell stay (the crust rises by as much as rivers take away), temperature and
 /// rain are the planet's, adapted to the finer topography. Its surface is made on a window that is
-/// wider by 6 % of the shorter side all round, whose edge keeps the planet's heights, and which is
+/// wider by 5 % of the shorter side all round, whose edge keeps the planet's heights, and which is
 /// cropped: the island's own edge has the detail and the valleys of its inside, water leaves over
 /// it where it goes on beyond, and what drains back into the island enters as inflow. With
 /// `edge_fade` the edges sink below the sea instead. The stages inside take the settings that their
