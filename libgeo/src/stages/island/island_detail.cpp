@@ -155,7 +155,7 @@ void add_height_detail(const PlanetCells& cells, const IslandParameters& p, std:
                        std::span<float> z) {
   const Grid& fine = cells.fine();
   const Noise noise(seed, "island.detail");
-  const double width_m = fine.nx() * fine.spacing_east_m(0);
+  const double width_m = static_cast<double>(p.nx) * p.cell_m;  // the island's own
   const double frequency = p.height_frequency * fine.figure().radius_m / width_m;
   on_cells(fine, [&](int i, int j, Index c) {
     const double wave =
