@@ -7,6 +7,7 @@
 
 #include "disjoint_sets.hpp"
 #include "geo/core/parallel_errors.hpp"
+#include "kernels/numerics/radix_sort.hpp"
 #include "kernels/numerics/wide.hpp"
 
 namespace geo::detail {
@@ -135,20 +136,6 @@ void passes_of_row(const Grid& grid, const float* z, const std::uint8_t* outlets
     }
   }
   at_edge(nx - 1);
-}
-
-/// Least-significant-digit radix sort: linear, and stable whatever the number of threads.
-void sort_keys(std::vector<PassKey>& keys) {
-  constexpr int kBits = 11, kBuckets = 1 << kBits;
-  std::vector<PassKey> other(keys.size());
-  for (int shift = 0; shift < 64; shift += kBits) {
-    std::array<std::size_t, kBuckets + 1> start{};
-    for (const PassKey key : keys) ++start[((key >> shift) & (kBuckets - 1)) + 1];
-    if (std::find(start.begin(), start.end(), keys.size()) != start.end()) continue;
-    for (int b = 0; b < kBuckets; ++b) start[b + 1] += start[b];
-    for (const PassKey key : keys) other[start[(key >> shift) & (kBuckets - 1)]++] = key;
-    keys.swap(other);
-  }
 }
 
 }  // namespace
