@@ -94,6 +94,8 @@ void enter_sediment(SphereTectonics& model, const std::vector<float>& rock_m);
 /// Needs margins. Floor that subducts leaves a share of its sediment on what overrides it and takes
 /// the rest down.
 void scrape_sediment(SphereTectonics& model);
+/// Length of each way between neighbours, m, by its number in the mesh.
+[[nodiscard]] std::vector<float> ways_m(const SphereMesh& mesh, double radius_km);
 /// Needs margins. Rivers carve and deposit.
 void run_rivers(SphereTectonics& model);
 /// Needs what is hidden. Lets thick crust flow to its sides for a step.

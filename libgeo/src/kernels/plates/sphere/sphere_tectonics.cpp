@@ -45,6 +45,7 @@ SphereTectonics::SphereTectonics(const SphereMesh& with, const SphereSettings& b
       plate.id = state.begin_life(PlateLife::Origin::first, -1);
     }
   }
+  if (settings.by_rivers) way_m = ways_m(with, settings.radius_km);
   forget_margins(*this);
   derive_plates(*this);
 }

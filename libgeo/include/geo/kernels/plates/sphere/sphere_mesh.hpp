@@ -30,6 +30,8 @@ class SphereMesh {
   [[nodiscard]] std::span<const std::int32_t> neighbours(std::int32_t sample) const {
     return std::span(neighbour_).subspan(first_[sample], first_[sample + 1] - first_[sample]);
   }
+  /// Number of the way to the first of them: ways are counted sample by sample, 6 n - 12 in all.
+  [[nodiscard]] std::int32_t first_way(std::int32_t sample) const { return first_[sample]; }
 
   /// A place within a triangle of samples and the weights of its corners, each from 0 to 1 with sum
   /// 1 (up to round-off).

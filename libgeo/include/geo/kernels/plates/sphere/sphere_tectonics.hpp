@@ -73,6 +73,9 @@ struct SphereTectonics {
   /// less one for each of floor.
   std::vector<double> score;
 
+  /// Derived from the mesh for rivers, else empty: length of each way between neighbours, m.
+  std::vector<float> way_m;
+
   /// Derived from where the last step has moved them.
   SphereMargins margins;
 

@@ -19,6 +19,11 @@ double short_arc(const Vector3& a, const Vector3& b) {
   return std::sqrt(chord2) * (1.0 + chord2 * (1.0 / 24.0 + chord2 * (3.0 / 640.0)));
 }
 
+/// Length of the way between places, unit vectors, m.
+float length_m(const Vector3& a, const Vector3& b, double radius_km) {
+  return static_cast<float>(1e3 * radius_km * short_arc(a, b));
+}
+
 /// A way from a sample across the edge of its plate.
 struct Crossing {
   std::int32_t from, to;
@@ -33,12 +38,14 @@ class MovingSurface {
  public:
   explicit MovingSurface(const SphereTectonics& model) : m_(model), crust_(model.state.crust) {
     const std::int32_t n = m_.mesh->size();
+    top_.resize(n);
     graph_.area_m2 = 1e6 * m_.sample_km2();
     graph_.is_there.resize(n);
     graph_.is_open.assign(n, 0);
 #pragma omp parallel for schedule(static)
     for (std::int32_t i = 0; i < n; ++i) {
       graph_.is_there[i] = crust_.plate[i] >= 0 && m_.margins.hidden[i] == 0 ? 1 : 0;
+      top_[i] = graph_.is_there[i] != 0 ? crust_.plate[i] : kNone;
     }
     find_crossings();
     connect();
@@ -46,12 +53,10 @@ class MovingSurface {
   [[nodiscard]] const SurfaceGraph& graph() const { return graph_; }
 
  private:
-  [[nodiscard]] bool is_beside(std::int32_t i, std::int32_t j) const {
-    return graph_.is_there[j] != 0 && crust_.plate[j] == crust_.plate[i];
-  }
-  [[nodiscard]] float way_m(const Vector3& a, const Vector3& b) const {
-    return static_cast<float>(1e3 * m_.settings.radius_km * short_arc(a, b));
-  }
+  static constexpr std::int16_t kNone = -1;
+
+  /// Of a sample that is there.
+  [[nodiscard]] bool is_beside(std::int32_t i, std::int32_t j) const { return top_[j] == top_[i]; }
   /// The sample on top at a place of the planet that is of another plate, or -1.
   [[nodiscard]] std::int32_t across(const Vector3& place, int own) const {
     for (int q = 0; q < m_.partition.plates(); ++q) {
@@ -59,7 +64,7 @@ class MovingSurface {
       const Vector3 local = back(m_.frame[q], place);
       if (!m_.partition.may_hold(q, local)) continue;
       const std::int32_t j = m_.mesh->samples().nearest(local);
-      if (crust_.plate[j] == q && graph_.is_there[j] != 0) return j;
+      if (top_[j] == q) return j;
     }
     return -1;
   }
@@ -80,8 +85,9 @@ class MovingSurface {
             graph_.is_open[i] = 1;
             continue;
           }
-          const float far_m = way_m(times(m_.frame[own], samples.position(i)),
-                                    times(m_.frame[crust_.plate[other]], samples.position(other)));
+          const float far_m = length_m(times(m_.frame[own], samples.position(i)),
+                                       times(m_.frame[top_[other]], samples.position(other)),
+                                       m_.settings.radius_km);
           if (far_m <= 0.0F) continue;
           found[chunk].push_back({i, other, far_m});
           found[chunk].push_back({other, i, far_m});
@@ -105,10 +111,15 @@ class MovingSurface {
 #pragma omp parallel for schedule(static)
     for (std::int32_t i = 0; i < n; ++i) {
       if (graph_.is_there[i] == 0) continue;
-      for (const std::int32_t j : m_.mesh->neighbours(i)) graph_.first[i + 1] += is_beside(i, j);
+      std::int32_t ways = 0;
+      for (const std::int32_t j : m_.mesh->neighbours(i)) ways += is_beside(i, j) ? 1 : 0;
+      graph_.first[i + 1] = ways;
     }
     for (const Crossing& way : crossings_) ++graph_.first[way.from + 1];
     for (std::int32_t i = 0; i < n; ++i) graph_.first[i + 1] += graph_.first[i];
+    const std::vector<float> made_m =
+        m_.way_m.empty() ? ways_m(*m_.mesh, m_.settings.radius_km) : std::vector<float>();
+    const std::vector<float>& lengths_m = m_.way_m.empty() ? made_m : m_.way_m;
     graph_.neighbour.resize(graph_.first[n]);
     graph_.distance_m.resize(graph_.first[n]);
 #pragma omp parallel for schedule(static)
@@ -119,10 +130,12 @@ class MovingSurface {
         graph_.neighbour[at] = to;
         graph_.distance_m[at++] = far_m;
       };
-      const FibonacciSphere& samples = m_.mesh->samples();
+      std::int32_t number = m_.mesh->first_way(i);
       for (const std::int32_t j : m_.mesh->neighbours(i)) {
-        if (is_beside(i, j)) add_way(j, way_m(samples.position(i), samples.position(j)));
+        if (is_beside(i, j)) add_way(j, lengths_m[number]);
+        ++number;
       }
+      if (at == graph_.first[i + 1]) continue;
       auto way = std::lower_bound(crossings_.begin(), crossings_.end(), Crossing{i, -1, 0.0F});
       for (; way != crossings_.end() && way->from == i; ++way) add_way(way->to, way->distance_m);
     }
@@ -131,6 +144,7 @@ class MovingSurface {
   const SphereTectonics& m_;
   const SphereCrust& crust_;
   SurfaceGraph graph_;
+  std::vector<std::int16_t> top_;  ///< plate of each sample that is there
   std::vector<Crossing> crossings_;
 };
 
@@ -171,6 +185,20 @@ std::vector<float> heights_above_sea(const SphereTectonics& model) {
 }
 
 }  // namespace
+
+std::vector<float> ways_m(const SphereMesh& mesh, double radius_km) {
+  const std::int32_t n = mesh.size();
+  std::vector<float> length_of_way_m(static_cast<std::size_t>(mesh.first_way(n)));
+  const FibonacciSphere& samples = mesh.samples();
+#pragma omp parallel for schedule(static)
+  for (std::int32_t i = 0; i < n; ++i) {
+    std::int32_t way = mesh.first_way(i);
+    for (const std::int32_t j : mesh.neighbours(i)) {
+      length_of_way_m[way++] = length_m(samples.position(i), samples.position(j), radius_km);
+    }
+  }
+  return length_of_way_m;
+}
 
 std::vector<double> drained_km2(const SphereTectonics& model) {
   const SurfaceRivers rivers = route_rivers(MovingSurface(model).graph(), heights_above_sea(model),
