@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
+#include <numeric>
 
 #include "geo/core/parallel_errors.hpp"
 #include "sample_sums.hpp"
@@ -155,12 +158,16 @@ void find_nearest_trenches(SphereTectonics& model) {
     of_plate[model.state.crust.plate[margins.trenches[k].sample]].push_back(
         static_cast<std::int32_t>(k));
   }
+  // Those with the longest trenches first, so that no thread is left alone with one of them.
+  std::vector<int> turn(of_plate.size());
+  std::iota(turn.begin(), turn.end(), 0);
+  std::ranges::stable_sort(turn, std::ranges::greater(), [&](int p) { return of_plate[p].size(); });
   ParallelErrors errors;
 #pragma omp parallel for schedule(dynamic, 1)
-  for (std::size_t p = 0; p < of_plate.size(); ++p) {
+  for (std::size_t k = 0; k < turn.size(); ++k) {
     errors.guard([&] {
-      if (of_plate[p].empty()) return;
-      hand_on_trenches(model, static_cast<int>(p), of_plate[p], spots, nullptr);
+      const int p = turn[k];
+      hand_on_trenches(model, p, of_plate[p], spots, nullptr);
     });
   }
   errors.rethrow();
@@ -215,6 +222,8 @@ std::vector<TrenchSpot> spots_of_samples(const SphereTectonics& model) {
 void hand_on_trenches(const SphereTectonics& model, int plate,
                       std::span<const std::int32_t> trenches, std::vector<TrenchSpot>& spots,
                       std::vector<std::int32_t>* reached) {
+  if (trenches.empty()) return;
+  std::vector<std::array<float, 3>> source(model.margins.trenches.size());
   std::vector<std::int32_t> queue, next;
   const auto take = [&](std::int32_t i, TrenchSpot& at, std::int32_t trench, float chord2) {
     if (reached != nullptr && at.trench < 0) reached->push_back(i);
@@ -223,6 +232,7 @@ void hand_on_trenches(const SphereTectonics& model, int plate,
   };
   for (const std::int32_t k : trenches) {
     const std::int32_t i = model.margins.trenches[k].sample;
+    source[k] = {spots[i].x, spots[i].y, spots[i].z};
     take(i, spots[i], k, 0.0F);
     queue.push_back(i);
   }
@@ -230,11 +240,11 @@ void hand_on_trenches(const SphereTectonics& model, int plate,
     next.clear();
     for (const std::int32_t i : queue) {
       const std::int32_t trench = spots[i].trench;
-      const TrenchSpot source = spots[model.margins.trenches[trench].sample];
+      const auto [from_x, from_y, from_z] = source[trench];
       for (const std::int32_t j : model.mesh->neighbours(i)) {
         TrenchSpot& at = spots[j];
         if (at.plate != static_cast<std::int16_t>(plate) || at.trench == trench) continue;
-        const float x = at.x - source.x, y = at.y - source.y, z = at.z - source.z;
+        const float x = at.x - from_x, y = at.y - from_y, z = at.z - from_z;
         const float chord2 = x * x + y * y + z * z;
         if (chord2 >= at.chord2) continue;
         take(j, at, trench, chord2);

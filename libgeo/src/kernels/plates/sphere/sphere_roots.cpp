@@ -34,8 +34,11 @@ void give(SphereTectonics& model, std::span<const std::int32_t> samples,
           std::span<const double> gain_m) {
   SphereCrust& crust = model.state.crust;
   WholeGains gains;
-  for (const std::int32_t i : samples) {
-    gains.put(crust.thickness_m[i], gain_m[i]);
+  for (const std::int32_t i : samples) gains.put(crust.thickness_m[i], gain_m[i]);
+  const auto count = std::ssize(samples);
+#pragma omp parallel for schedule(static)
+  for (std::ptrdiff_t k = 0; k < count; ++k) {
+    const std::int32_t i = samples[k];
     crust.elevation_m[i] =
         static_cast<float>(height_after(crust.elevation_m[i], gain_m[i], model.settings.rebound));
   }
@@ -55,6 +58,7 @@ class LowerCrust {
     for (std::int32_t i = 0; i < model.state.crust.size(); ++i) {
       if (land_of_[i] >= 0 && model.state.crust.thickness_m[i] > above_m_) reach(i);
     }
+    weigh_from(0);
   }
   [[nodiscard]] bool is_empty() const { return reached_.empty(); }
   [[nodiscard]] std::span<const std::int32_t> reached() const { return reached_; }
@@ -63,11 +67,13 @@ class LowerCrust {
   /// An explicit step of finite volumes: D times the time over a sample's area.
   void flow(double share) {
     const std::size_t sources = reached_.size();
-    for (std::size_t k = 0; k < sources; ++k) {
-      for (const std::int32_t j : m_.mesh->neighbours(reached_[k])) {
-        if (is_reached_[j] == 0 && land_of_[j] == land_of_[reached_[k]]) reach(j);
+    for (; spread_ < sources; ++spread_) {
+      const std::int32_t i = reached_[spread_];
+      for (const std::int32_t j : m_.mesh->neighbours(i)) {
+        if (is_reached_[j] == 0 && land_of_[j] == land_of_[i]) reach(j);
       }
     }
+    weigh_from(sources);
     change_m_.resize(reached_.size());
     const auto count = static_cast<std::int64_t>(reached_.size());
 #pragma omp parallel for schedule(static)
@@ -93,14 +99,24 @@ class LowerCrust {
   void reach(std::int32_t i) {
     is_reached_[i] = 1;
     reached_.push_back(i);
-    first_.push_back(weight_.size());
-    const auto star = m_.mesh->neighbours(i);
-    for (std::size_t s = 0; s < star.size(); ++s) {
-      const std::int32_t left = star[(s + 1) % star.size()],
-                         right = star[(s + star.size() - 1) % star.size()];
-      weight_.push_back(0.5 * (cotangent(i, star[s], left) + cotangent(i, star[s], right)));
+    first_.push_back(ways_);
+    ways_ += m_.mesh->neighbours(i).size();
+  }
+  /// Those that are reached from one of them on.
+  void weigh_from(std::size_t from) {
+    weight_.resize(ways_);
+    const auto count = static_cast<std::int64_t>(reached_.size());
+#pragma omp parallel for schedule(static)
+    for (auto k = static_cast<std::int64_t>(from); k < count; ++k) {
+      const std::int32_t i = reached_[k];
+      const auto star = m_.mesh->neighbours(i);
+      for (std::size_t s = 0; s < star.size(); ++s) {
+        const std::int32_t left = star[(s + 1) % star.size()],
+                           right = star[(s + star.size() - 1) % star.size()];
+        weight_[first_[k] + s] = 0.5 * (cotangent(i, star[s], left) + cotangent(i, star[s], right));
+      }
+      put_excess(i);
     }
-    put_excess(i);
   }
   /// Of the angle at a sample between two others. Halves of those that face an edge sum up to the
   /// length of the Voronoi cells' common side over the distance of their samples.
@@ -119,6 +135,7 @@ class LowerCrust {
   std::vector<std::int16_t> land_of_;
   std::vector<std::uint8_t> is_reached_;
   std::vector<double> gain_m_, excess_m_, change_m_;
+  std::size_t ways_ = 0, spread_ = 0;  // of all that are reached; those that have reached others
   std::vector<std::size_t> first_;     // of the weights of each that is reached
   std::vector<double> weight_;         // of each neighbour
   std::vector<std::int32_t> reached_;  // in the order in which it flows there
