@@ -43,6 +43,12 @@ class SeaPlaces {
   [[nodiscard]] bool is_water(std::int32_t i) const {
     return graph_.is_there[i] != 0 && z_[i] < 0.0F;
   }
+  [[nodiscard]] bool is_beside_sea(std::int32_t i) const {
+    for (std::int32_t k = graph_.first[i]; k < graph_.first[i + 1]; ++k) {
+      if (sea_[graph_.neighbour[k]] != 0) return true;
+    }
+    return false;
+  }
   /// Adds the water that is joined to some.
   void spread(std::vector<std::int32_t>& water, std::vector<std::uint8_t>& seen) const {
     for (std::size_t at = 0; at < water.size(); ++at) {
@@ -65,13 +71,14 @@ class SeaPlaces {
       sea_[i] = 1;
       ++deep;
     }
-    for (std::int32_t i = 0; i < graph_.size(); ++i) {
-      if (sea_[i] != 0 || !is_water(i)) continue;
-      for (std::int32_t k = graph_.first[i]; k < graph_.first[i + 1]; ++k) {
-        if (sea_[graph_.neighbour[k]] == 0) continue;
-        edge.push_back(i);
-        break;
-      }
+    const std::int32_t n = graph_.size();
+    std::vector<std::uint8_t> is_edge(sea_.size(), 0);
+#pragma omp parallel for schedule(static)
+    for (std::int32_t i = 0; i < n; ++i) {
+      is_edge[i] = sea_[i] == 0 && is_water(i) && is_beside_sea(i) ? 1 : 0;
+    }
+    for (std::int32_t i = 0; i < n; ++i) {
+      if (is_edge[i] != 0) edge.push_back(i);
     }
     for (const std::int32_t i : edge) sea_[i] = 1;
     spread(edge, sea_);
@@ -96,26 +103,66 @@ struct LandGraph {
   std::vector<std::int32_t> first;  ///< of each place in way; one more at the end
   std::vector<Way> way;             ///< in the order of the surface's
 
+  std::vector<std::uint8_t> is_coast;  ///< of each place: beside the sea
+
   LandGraph(const SurfaceGraph& graph, std::span<const std::uint8_t> is_sea) {
-    std::vector<std::int32_t> number(is_sea.size(), kSea);
-    first.push_back(0);
-    for (std::int32_t i = 0; i < graph.size(); ++i) {
-      if (graph.is_there[i] == 0 || is_sea[i] != 0) continue;
-      number[i] = size();
-      place.push_back(i);
-      first.push_back(first.back() + graph.first[i + 1] - graph.first[i]);
-    }
+    const std::vector<std::int32_t> number = number_places(graph, is_sea);
     way.resize(first.back());
+    is_coast.resize(place.size());
+    const std::int32_t places = size();
 #pragma omp parallel for schedule(static)
-    for (std::int32_t p = 0; p < size(); ++p) {
-      const std::int32_t from = graph.first[place[p]];
-      for (std::int32_t k = first[p]; k < first[p + 1]; ++k) {
-        const std::int32_t at = from + k - first[p];
+    for (std::int32_t p = 0; p < places; ++p) {
+      std::int32_t at = graph.first[place[p]];
+      for (std::int32_t k = first[p]; k < first[p + 1]; ++k, ++at) {
         way[k] = {number[graph.neighbour[at]], graph.distance_m[at]};
+        if (way[k].to == kSea) is_coast[p] = 1;
       }
     }
   }
   [[nodiscard]] std::int32_t size() const { return static_cast<std::int32_t>(place.size()); }
+
+ private:
+  /// Of each place of the surface, or kSea; `place` and `first` go with it.
+  std::vector<std::int32_t> number_places(const SurfaceGraph& graph,
+                                          std::span<const std::uint8_t> is_sea) {
+    constexpr std::int32_t kBlock = 8192;
+    struct Count {
+      std::int32_t places = 0, ways = 0;
+    };
+    const std::int32_t n = graph.size(), blocks = (n + kBlock - 1) / kBlock;
+    const auto over_block = [&](std::int32_t block, auto&& visit) {
+      for (std::int32_t i = block * kBlock; i < std::min(n, (block + 1) * kBlock); ++i) {
+        if (graph.is_there[i] != 0 && is_sea[i] == 0) visit(i, graph.first[i + 1] - graph.first[i]);
+      }
+    };
+    std::vector<Count> before(blocks + 1);  // each block, once they are summed up
+#pragma omp parallel for schedule(static)
+    for (std::int32_t block = 0; block < blocks; ++block) {
+      over_block(block, [&](std::int32_t, std::int32_t ways) {
+        ++before[block + 1].places;
+        before[block + 1].ways += ways;
+      });
+    }
+    for (std::int32_t block = 0; block < blocks; ++block) {
+      before[block + 1].places += before[block].places;
+      before[block + 1].ways += before[block].ways;
+    }
+    place.resize(before.back().places);
+    first.resize(place.size() + 1);
+    first.back() = before.back().ways;
+    std::vector<std::int32_t> number(is_sea.size(), kSea);
+#pragma omp parallel for schedule(static)
+    for (std::int32_t block = 0; block < blocks; ++block) {
+      Count at = before[block];
+      over_block(block, [&](std::int32_t i, std::int32_t ways) {
+        number[i] = at.places;
+        place[at.places] = i;
+        first[at.places++] = at.ways;
+        at.ways += ways;
+      });
+    }
+    return number;
+  }
 };
 
 /// Floods land from the coast inland. Numbers are those of the places of land, which ascend as
@@ -135,7 +182,7 @@ class Flood {
     for (std::int32_t p = 0; p < land_.size(); ++p) {
       if (graph_.is_open[land_.place[p]] != 0) {
         reach(p, 0.0F, kOpen);
-      } else if (is_coast(p)) {
+      } else if (land_.is_coast[p] != 0) {
         reach(p, 0.0F, kSea);
       }
     }
@@ -156,13 +203,6 @@ class Flood {
     bool is_settled = false;
   };
 
-  [[nodiscard]] bool is_coast(std::int32_t p) const {
-    const auto ways = std::span(land_.way).subspan(land_.first[p], degree(p));
-    return std::ranges::any_of(ways, [](const auto& way) { return way.to == LandGraph::kSea; });
-  }
-  [[nodiscard]] std::int32_t degree(std::int32_t p) const {
-    return land_.first[p + 1] - land_.first[p];
-  }
   void reach(std::int32_t p, float level, std::int32_t from) {
     Spot& spot = spot_[p];
     spot.level = std::max(spot.z, level);
