@@ -69,7 +69,8 @@ struct RiverWork {
 ///
 /// `is_rock`: places that rivers erode; `erodibility`: K of each over that of the law, or empty: 1.
 /// `elevation_m` in and out; `rock_m`: change of the thickness of rock and sediment. Cost linear
-/// but for the order of places off the coast, found in rings (Meyer & Sanders 2003), each sorted.
+/// but for the order of places off the coast, found in rings (Meyer & Sanders 2003), each sorted by
+/// digits.
 /// Arrays have one value per place; Bug otherwise.
 RiverWork run_rivers(const SurfaceGraph& graph, const SurfaceRivers& rivers, const RiverLaw& law,
                      std::span<const std::int8_t> is_rock, std::span<float> elevation_m,

@@ -125,14 +125,15 @@ void find_trenches(SphereTectonics& model) {
       if (margins.hidden[i] != 0) continue;
       const Vector3& here = samples.position(i);
       const std::int16_t own = crust.plate[i];
+      const auto star = model.mesh->neighbours(i);
+      const auto is_out = [&](std::int32_t j) {
+        return crust.plate[j] != own || margins.hidden[j] != 0;
+      };
+      if (std::ranges::none_of(star, is_out)) continue;
       Vector3 outward{};
-      bool is_edge = false;
-      for (const std::int32_t j : model.mesh->neighbours(i)) {
-        const bool out = crust.plate[j] != own || margins.hidden[j] != 0;
-        is_edge = is_edge || out;
-        outward = add(outward, add(samples.position(j), here, -1.0), out ? 1.0 : -1.0);
+      for (const std::int32_t j : star) {
+        outward = add(outward, add(samples.position(j), here, -1.0), is_out(j) ? 1.0 : -1.0);
       }
-      if (!is_edge) continue;
       const std::int32_t below = margins.partner[i];
       const std::int16_t lower = crust.plate[below];
       const Vector3 relative = cross(
