@@ -87,14 +87,12 @@ struct Ground {
         transform(cells),
         weakness(cells),
         density(cells),
-        thickening(cells, V(0.0)),
-        sediment_m(cells, 0.0F) {
+        thickening(cells, V(0.0)) {
     surface.elevation_m.resize(cells);
     surface.thickness_m.resize(cells);
   }
   PlanetSurface<V> surface;
   std::vector<V> convergent, divergent, transform, weakness, density, thickening;
-  std::vector<float> sediment_m;
 };
 
 /// Plates of one seed, and the surface that isostasy and erosion make of them.
@@ -226,7 +224,6 @@ void SeedPlanet::float_crust(const Model& model, const ActiveVariables<V>& activ
                        .erodibility = {},
                        .elevation_m = ground.surface.elevation_m,
                        .thickening_m_yr = ground.thickening,
-                       .sediment_m = ground.sediment_m,
                        .run_myr = growth_of_belts_myr<V>(model.erosion, active),
                        .active = active,
                        .noise = &noise_};
@@ -252,7 +249,7 @@ void SeedPlanet::freeze_rock(const Model& model, const Ground<V>& ground) {
   const std::size_t cells = ground.convergent.size();
   std::vector<float> fraction(continental_fraction().begin(), continental_fraction().end()),
       closing = as_floats<V>(ground.convergent), opening = as_floats<V>(ground.divergent),
-      shear = as_floats<V>(ground.transform), sediment_m = ground.sediment_m, none;
+      shear = as_floats<V>(ground.transform), none;
   std::vector<std::int8_t> rock(cells);
   held_.erodibility.assign(cells, 0.0F);
   classify_rock({.parameters = model.isostasy,
@@ -270,8 +267,7 @@ void SeedPlanet::freeze_rock(const Model& model, const Ground<V>& ground) {
                  .rock = rock,
                  .erodibility = held_.erodibility,
                  .elevation_m = none,
-                 .thickening_m_yr = {},
-                 .sediment_m = sediment_m});
+                 .thickening_m_yr = {}});
 }
 
 template <class V>

@@ -6,6 +6,7 @@
 #include <omp.h>
 #include <pthread.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -156,6 +157,10 @@ double available_memory_bytes() {
       limit_by("/sys/fs/cgroup" + group + "/memory.max");
       if (group.empty()) break;
     }
+  }
+  rlimit data{};
+  if (::getrlimit(RLIMIT_DATA, &data) == 0 && data.rlim_cur != RLIM_INFINITY) {
+    least = std::min(least, static_cast<double>(data.rlim_cur));
   }
   return least;
 }

@@ -18,8 +18,8 @@ void prepare_memory();
 /// next have other sizes, and would else come to lie behind the gaps that those of the last left.
 void give_back_memory();
 
-/// Memory that a run may take now: what the machine has to spare, or less where the group of this
-/// process (a container, a job of a cluster) is kept to that.
+/// Memory that a run may take now: what the machine has to spare, or less where this process
+/// (`ulimit -d`) or its group (a container, a job of a cluster) is kept to that.
 double available_memory_bytes();
 
 /// What `main` says of std::bad_alloc, which knows no size.

@@ -167,7 +167,7 @@ const std::map<std::string, std::string> kSilent{
     {"planet.obliquity_deg", "climate alone"},
     {"planet.eccentricity", "climate alone"},
     {"planet.perihelion_deg", "climate alone"},
-    {"isostasy.basin_fill", "rock is frozen"},
+    {"isostasy.basin_fill", "heights are what is seen"},
     {"erosion.reference_runoff_mm_yr", "rain alone"},
     {"erosion.least_runoff_mm_yr", "rain alone"},
     {"erosion.strait_sill_m", "straits are frozen"},

@@ -33,6 +33,13 @@ void redirect(const std::filesystem::path& file, int descriptor) {
   ::close(opened);
 }
 
+/// A negative limit is none.
+void limit_to(decltype(RLIMIT_AS) resource, long bytes) {
+  if (bytes < 0) return;
+  const rlimit limit{static_cast<rlim_t>(bytes), static_cast<rlim_t>(bytes)};
+  if (::setrlimit(resource, &limit) != 0) ::_exit(kCouldNotStart);
+}
+
 [[noreturn]] void become_terrane(const Call& call, const std::filesystem::path& folder) {
   redirect(folder / "out", STDOUT_FILENO);
   redirect(folder / "err", STDERR_FILENO);
@@ -43,16 +50,9 @@ void redirect(const std::filesystem::path& file, int descriptor) {
   for (const auto& [name, value] : call.environment) {
     value.empty() ? ::unsetenv(name.c_str()) : ::setenv(name.c_str(), value.c_str(), 1);
   }
-  if (call.file_size_limit_bytes >= 0) {
-    const auto bytes = static_cast<rlim_t>(call.file_size_limit_bytes);
-    const rlimit limit{bytes, bytes};
-    if (::setrlimit(RLIMIT_FSIZE, &limit) != 0) ::_exit(kCouldNotStart);
-  }
-  if (call.address_space_limit_bytes >= 0) {
-    const auto bytes = static_cast<rlim_t>(call.address_space_limit_bytes);
-    const rlimit limit{bytes, bytes};
-    if (::setrlimit(RLIMIT_AS, &limit) != 0) ::_exit(kCouldNotStart);
-  }
+  limit_to(RLIMIT_FSIZE, call.file_size_limit_bytes);
+  limit_to(RLIMIT_AS, call.address_space_limit_bytes);
+  limit_to(RLIMIT_DATA, call.data_limit_bytes);
   if (!call.working_folder.empty() && ::chdir(call.working_folder.c_str()) != 0) {
     ::_exit(kCouldNotStart);
   }

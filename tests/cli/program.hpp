@@ -27,6 +27,7 @@ struct Call {
   long file_size_limit_bytes = -1;      ///< RLIMIT_FSIZE; negative: none
   bool as_nobody = false;               ///< without the rights of root
   long address_space_limit_bytes = -1;  ///< RLIMIT_AS; negative: none
+  long data_limit_bytes = -1;           ///< RLIMIT_DATA; negative: none
   int ranks = 0;                        ///< processes that mpirun starts; 0: without mpirun
 };
 

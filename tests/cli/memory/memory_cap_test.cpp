@@ -209,6 +209,38 @@ TEST(Memory, IsPredictedWithin15PerCentWithACapAndWithout) {
   }
 }
 
+// An island without maps was told to take two fifths more than it did.
+TEST(Memory, OfIslandsIsPredictedWithMapsAndWithout) {
+#ifdef TERRANE_SANITIZED
+  GTEST_SKIP() << "a sanitizer has memory of its own";
+#endif
+  const TemporaryFolder folder;
+  for (const char* maps : {"true", "false"}) {
+    SCOPED_TRACE(maps);
+    std::vector<std::string> run{"run",
+                                 "--preset",
+                                 "earth",
+                                 "--grid",
+                                 "512x256",
+                                 "--set",
+                                 "erosion.steps=1",
+                                 "--set",
+                                 std::string("output.maps=") + maps,
+                                 "--no-vtk",
+                                 "--threads",
+                                 "2",
+                                 "--quiet",
+                                 "--overwrite",
+                                 "-o",
+                                 folder / "out"};
+    const Outcome done = terrane(run);
+    ASSERT_EQ(done.code, 0) << done.err;
+    run.emplace_back("--dry-run");
+    const double predicted = predicted_bytes(terrane(run).out);
+    EXPECT_NEAR(done.peak_bytes / predicted, 1.0, 0.15) << predicted;
+  }
+}
+
 TEST(MemoryCap, ThatHoldsMostOfARunLeavesMoreOfItOutOfTheScratchFile) {
   const TemporaryFolder folder;
   const auto told = [&](const std::vector<std::string>& more) {

@@ -80,6 +80,14 @@ TEST(OceanDepth, SedimentGrowsWithAgeAndThinsAwayFromLand) {
   EXPECT_EQ(deep_sediment_m(sediment, 0.0, 0.0), 0.0);
 }
 
+// More than 800 km from continents [laske2013, muller2008].
+TEST(OceanDepth, FarFromLandSedimentIsAsThickAsTheEarths) {
+  const std::array<std::pair<double, double>, 3> thickness{{{5, 60}, {45, 175}, {110, 280}}};
+  for (const auto& [age_myr, thick_m] : thickness) {
+    EXPECT_NEAR(deep_sediment_thickness_m(DeepSediment{}, age_myr, 1e5), thick_m, 0.15 * thick_m);
+  }
+}
+
 TEST(OceanDepth, SedimentHasFewerPoresTheDeeperItLies) {
   EXPECT_EQ(solid_thickness_m(0.0), 0.0);
   EXPECT_NEAR(solid_thickness_m(1.0), 0.37, 1e-3);  // 0.63 of it is water

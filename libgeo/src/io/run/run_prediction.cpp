@@ -11,7 +11,7 @@ namespace geo::io {
 namespace {
 
 constexpr double kBaseMemory_bytes = 75e6;    // program and libraries
-constexpr double kBesideIsland_bytes = 85.0;  // per cell of a planet while an island is made
+constexpr double kBesideIsland_bytes = 65.0;  // per cell of a planet while an island is made
 constexpr double kWriting_ns = 15.0;          // per value: what is not written beside the stages
 constexpr double kLastWriting_ns = 55.0;      // of the last stage: nothing is beside it
 constexpr double kCompression = 0.55;         // NetCDF values after deflate
@@ -19,9 +19,10 @@ constexpr double kVtkCompression = 0.51;      // the same without shuffling, in 
 constexpr double kMaps_s = 1.3;               // all maps at their default width, one thread
 constexpr double kMaps_bytes = 12e6;
 constexpr double kMapWidth_px = 1800.0;
-constexpr double kPictures_bytes = 60e6;        // memory of all maps at that width, drawn at once
+constexpr double kPictures_bytes = 90e6;        // memory of all maps at that width, drawn at once
 constexpr double kPicturesOfCell_bytes = 90.0;  // of the fields that they are drawn from
-constexpr double kParallelShare = 0.75;         // of the time, Amdahl
+constexpr double kPicturesOfIsland_bytes = 200.0;  // the same per cell of an island
+constexpr double kParallelShare = 0.75;            // of the time, Amdahl
 constexpr double kReference_s = 0.0102;  // MachineSpeed::one_thread_s where the costs were measured
 
 double value_bytes(const FieldSpec& spec) {
@@ -60,6 +61,8 @@ Prediction predict_with(double vtk_share, const RunConfiguration& run, const Run
       run.settings.maps ? static_cast<double>(run.settings.map_width_px) : 0.0;
   const bool on_sphere = run.settings.topology == "sphere";
   Prediction sum;
+  double pictures_bytes =
+      kPictures_bytes * std::pow(map_width_px / kMapWidth_px, 2) + kPicturesOfCell_bytes * cells;
   const std::vector<Parameter> configuration = pipeline.parameters();
   for (int at = first; at <= last; ++at) {
     const StageInfo& info = pipeline.stages()[at]->info();
@@ -67,6 +70,7 @@ Prediction predict_with(double vtk_share, const RunConfiguration& run, const Run
     const double own_cells =
         info.own_grid ? cells_of_own_grid(*pipeline.stages()[at]).value_or(cells) : cells;
     const double beside_bytes = info.own_grid ? kBesideIsland_bytes * cells : 0.0;
+    if (info.own_grid) pictures_bytes += kPicturesOfIsland_bytes * own_cells;
     sum.memory_bytes =
         std::max(sum.memory_bytes, cost.fixed_bytes + cost.cell_bytes * own_cells + beside_bytes);
     double bytes = 0.0;
@@ -84,8 +88,7 @@ Prediction predict_with(double vtk_share, const RunConfiguration& run, const Run
       ((1.0 - kParallelShare) * speed.one_thread_s + kParallelShare * speed.all_threads_s) /
       kReference_s;
   if (map_area > 0.0) {
-    sum.memory_bytes =
-        std::max(sum.memory_bytes, map_area * kPictures_bytes + kPicturesOfCell_bytes * cells);
+    sum.memory_bytes = std::max(sum.memory_bytes, pictures_bytes);
   }
   sum.memory_bytes += kBaseMemory_bytes;
   return sum;

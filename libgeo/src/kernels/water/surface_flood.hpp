@@ -6,7 +6,7 @@
 
 namespace geo::detail {
 
-/// Way of water on land: order, receivers and distances, as `route_rivers` has them.
+/// Drainage of land: order, receivers and distances, as `route_rivers` has them.
 SurfaceRivers flood_land(const SurfaceGraph& graph, std::span<const float> z);
 
 }  // namespace geo::detail

@@ -21,14 +21,6 @@ RockType cover(float strata) {
                           : RockType::granite;
 }
 
-/// The same where the thickness of sediment is known: shields, bare, are of granite and gneiss,
-/// which counts as schist.
-RockType cover(float strata, float sediment_m) {
-  constexpr float kBare_m = 100.0F;
-  if (sediment_m < kBare_m) return strata < 0.0F ? RockType::schist : RockType::granite;
-  return strata < 0.0F ? RockType::limestone : RockType::sandstone;
-}
-
 /// Whether nothing deformed the continent here.
 bool is_covered(const Crust<float>& crust, Index cell) {
   return crust.fraction[cell] >= 0.5F && crust.convergent[cell] <= 0.15F &&
@@ -63,10 +55,7 @@ void classify_rock(const Crust<float>& crust) {
         row.fbm(strata, frequency, 4, 0.5, layer);
         for (int i = 0; i < grid.nx(); ++i) {
           const Index cell = grid.cell(i, j);
-          const RockType rock = !is_covered(crust, cell) ? basement(crust, cell)
-                                : crust.sediment_m.empty()
-                                    ? cover(layer[i])
-                                    : cover(layer[i], crust.sediment_m[cell]);
+          const RockType rock = is_covered(crust, cell) ? cover(layer[i]) : basement(crust, cell);
           crust.rock[cell] = static_cast<std::int8_t>(rock);
           const float fault = crust.in.boundary_type[cell] != 0 ? 1.5F : 1.0F;
           // Smoothing must not lose digits: millionths become ones.

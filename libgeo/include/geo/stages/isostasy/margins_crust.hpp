@@ -311,15 +311,20 @@ class Columns {
   }
   [[nodiscard]] Number floor_sediment_m(int i, const Row& along, double crust_age_myr) const {
     const double age_myr = std::min(crust_age_myr, kOldestFloor_myr);
-    const Number in_trench =
-        limited(Number(-Number(along.from_afar.trench_m[i]) / kEmptyTrench_m), 0.0, 1.0);
-    return deep_sediment_m(p_.sediment, age_myr, along.offshore_km[i]) *
-           (1.0 - kTrenchLacks * in_trench);
+    return deep_sediment_m(p_.sediment, age_myr, along.offshore_km[i]) * left_by_trench(i, along);
+  }
+  [[nodiscard]] Number left_by_trench(int i, const Row& along) const {
+    return 1.0 -
+           kTrenchLacks *
+               limited(Number(-Number(along.from_afar.trench_m[i]) / kEmptyTrench_m), 0.0, 1.0);
   }
   void record_sediment(int i, const Row& along, Index cell, double share,
                        double crust_age_myr) const {
     if (crust_.sediment_m.empty()) return;
-    const double on_floor_m = value_of(floor_sediment_m(i, along, crust_age_myr));
+    const double on_floor_m =
+        deep_sediment_thickness_m(crust_.parameters.sediment,
+                                  std::min(crust_age_myr, kOldestFloor_myr), along.offshore_km[i]) *
+        value_of(left_by_trench(i, along));
     crust_.sediment_m[cell] += static_cast<float>(solid_thickness_m(on_floor_m) * (1.0 - share));
   }
   /// Sediment of old basins, as rock without pores: a sag of the continent that has subsided by
