@@ -76,7 +76,7 @@ template <class T>
 
 /// How much of that is sediment, m with its pores: all of the apron, and of the rain what floor far
 /// from continents has on the Earth: 60, 175 and 280 m at 5, 45 and 110 Myr (Laske et al. 2013,
-/// ages of Mueller et al. 2008).
+/// ages of Müller et al. 2008).
 [[nodiscard]] inline double deep_sediment_thickness_m(const DeepSediment& s, double age_myr,
                                                       double from_continent_km) {
   constexpr double kPelagicShare = 0.38;
