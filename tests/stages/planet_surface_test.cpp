@@ -1,10 +1,12 @@
 // Planets from plates to relief.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
+#include "geo/kernels/crust/ocean_depth.hpp"
 #include "geo/kernels/numerics/quantiles.hpp"
 #include "geo/stages/erosion/erosion.hpp"
 #include "geo/stages/isostasy/isostasy.hpp"
@@ -77,6 +79,68 @@ TEST(PlanetSurface, EachCompensationMakesAnotherRelief) {
     EXPECT_NE(reliefs[0], reliefs[1]) << crust;
     EXPECT_NE(reliefs[1], reliefs[2]) << crust;
   }
+}
+
+/// Thickness with its pores of sediment that is so thick without them.
+double with_pores_m(double solid_m) {
+  double low = solid_m, high = 1e5;
+  while (high - low > 1e-6)
+    (solid_thickness_m(0.5 * (low + high)) < solid_m ? low : high) = 0.5 * (low + high);
+  return low;
+}
+
+// A sag that is seen to lie lower by w has subsided by w / (1 - f), and the share f of that is
+// filled: three times as much sediment for f = 3/4 as for 1/2.
+TEST(PlanetSurface, SedimentFillsItsShareOfOldBasins) {
+  const auto filled = [](double share) {
+    IsostasyParameters p;
+    p.basin_fill = share;
+    p.shelf_depth_m = 0.0;  // shelves have sediment of their own
+    return planet(256, 4, p);
+  };
+  const Made bare = filled(0.0), half = filled(0.5), most = filled(0.75);
+  const auto fraction = bare.state.read(field::continental_fraction);
+  const auto none_m = bare.state.read(field::sediment_thickness);
+  const auto half_m = half.state.read(field::sediment_thickness);
+  const auto most_m = most.state.read(field::sediment_thickness);
+  Index in_basins = 0, on_shields = 0;
+  for (Index c = 0; c < static_cast<Index>(fraction.size()); ++c) {
+    if (fraction[c] < 1.0F) continue;
+    EXPECT_EQ(none_m[c], 0.0F);
+    if (half_m[c] == 0.0F) {
+      EXPECT_EQ(most_m[c], 0.0F);
+      ++on_shields;
+    } else if (half_m[c] > 10.0F && bare.state.read(field::convergent_deformation)[c] == 0.0F) {
+      EXPECT_NEAR(with_pores_m(most_m[c]) / with_pores_m(half_m[c]), 3.0, 1e-3);
+      ++in_basins;
+    }
+  }
+  EXPECT_GT(in_basins, 200);
+  EXPECT_GT(on_shields, 1000);
+  EXPECT_TRUE(
+      std::ranges::equal(half.state.read(field::elevation), most.state.read(field::elevation)))
+      << "basins are not filled higher than they are seen";
+}
+
+// The Earth's land has 935 m of sediment as rock without pores, a quarter of it none [laske2013].
+TEST(PlanetSurface, BasinsHaveTheEarthsSedimentAndShieldsNone) {
+  double sum = 0.0, bare = 0.0, all = 0.0;
+  for (const std::uint64_t seed : {21, 22, 23, 24}) {
+    const Made made = planet(256, seed);
+    const Grid& grid = made.state.grid();
+    const auto z = made.state.read(field::elevation);
+    const auto sediment_m = made.state.read(field::sediment_thickness);
+    for (Index c = 0; c < grid.size(); ++c) {
+      if (z[c] < 0.0F) continue;
+      const double area_m2 = grid.area_m2(grid.row(c));
+      all += area_m2;
+      sum += area_m2 * sediment_m[c];
+      if (sediment_m[c] < 100.0F) bare += area_m2;
+    }
+  }
+  EXPECT_NEAR(sum / all, 935.0, 470.0);
+  EXPECT_GT(bare / all, 0.15);
+  EXPECT_LT(bare / all, 0.60);
 }
 
 // Old floor has more sediment than young floor, and rivers add to what lies there.

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/program.hpp"
@@ -190,6 +191,15 @@ double predicted_bytes(const std::string& out, const std::string& line = "memory
   return at == std::string::npos ? 0.0 : 1e6 * std::stod(out.substr(at + line.size()));
 }
 
+/// `run` may replace what its folder holds.
+void expect_predicted_memory(std::vector<std::string> run) {
+  const Outcome done = terrane(run);
+  ASSERT_EQ(done.code, 0) << done.err;
+  run.emplace_back("--dry-run");
+  const double predicted = predicted_bytes(terrane(run).out);
+  EXPECT_NEAR(done.peak_bytes / predicted, 1.0, 0.15) << predicted;
+}
+
 TEST(Memory, IsPredictedWithin15PerCentWithACapAndWithout) {
 #ifdef TERRANE_SANITIZED
   GTEST_SKIP() << "a sanitizer has memory of its own";
@@ -201,11 +211,7 @@ TEST(Memory, IsPredictedWithin15PerCentWithACapAndWithout) {
                                  "--to", "isostasy", "--no-vtk",    "--no-maps", "--threads",
                                  "2",    "--quiet",  "--overwrite", "-o",        folder / "out"};
     if (*cap != '\0') run.insert(run.end(), {"--memory", cap});
-    const Outcome done = terrane(run);
-    ASSERT_EQ(done.code, 0) << done.err;
-    run.emplace_back("--dry-run");
-    const double predicted = predicted_bytes(terrane(run).out);
-    EXPECT_NEAR(done.peak_bytes / predicted, 1.0, 0.15) << predicted;
+    expect_predicted_memory(std::move(run));
   }
 }
 
@@ -233,11 +239,7 @@ TEST(Memory, OfIslandsIsPredictedWithMapsAndWithout) {
                                  "--overwrite",
                                  "-o",
                                  folder / "out"};
-    const Outcome done = terrane(run);
-    ASSERT_EQ(done.code, 0) << done.err;
-    run.emplace_back("--dry-run");
-    const double predicted = predicted_bytes(terrane(run).out);
-    EXPECT_NEAR(done.peak_bytes / predicted, 1.0, 0.15) << predicted;
+    expect_predicted_memory(std::move(run));
   }
 }
 

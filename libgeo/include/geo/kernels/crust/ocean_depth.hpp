@@ -53,13 +53,15 @@ struct BasicDeepSediment {
 };
 using DeepSediment = BasicDeepSediment<double>;
 
+/// What rains on floor of an age t, m: early (1 - exp(-t / early_time)) + rate t.
 template <class T>
 [[nodiscard]] inline T pelagic_cover_m(const BasicDeepSediment<T>& s, double age_myr) {
   const double t = age_myr > 0.0 ? age_myr : 0.0;
   return s.early_m * -std::expm1(-t / s.early_time_myr) + s.rate_m_myr * t;
 }
 
-/// Young floor has not been near a continent for long.
+/// The apron at a distance d from the foot of the continent, m: (1 - exp(-t / 40 Myr)) apron
+/// exp(-d / apron_length). Young floor has not been near a continent for long.
 template <class T>
 [[nodiscard]] inline T apron_m(const BasicDeepSediment<T>& s, double age_myr,
                                double from_continent_km) {
@@ -68,6 +70,7 @@ template <class T>
   return grown * s.apron_m * exp(-std::fmax(from_continent_km, 0.0) / s.apron_length_km);
 }
 
+/// Both together, by which the floor is lifted.
 template <class T>
 [[nodiscard]] inline T deep_sediment_m(const BasicDeepSediment<T>& s, double age_myr,
                                        double from_continent_km) {
