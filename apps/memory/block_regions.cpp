@@ -35,6 +35,17 @@ Regions& regions() {
   return *kRegions;
 }
 
+void take_memory(std::byte* bytes, std::size_t size) noexcept {
+  if (size >= kLargePage) ::madvise(bytes, size, MADV_HUGEPAGE);
+#ifdef MADV_POPULATE_WRITE
+  if (::madvise(bytes, size, MADV_POPULATE_WRITE) == 0) return;
+#endif
+  constexpr std::size_t kLeastPage = 4096;
+  for (std::size_t k = 0; k < size; k += kLeastPage) {
+    static_cast<volatile std::byte*>(bytes)[k] = std::byte{0};
+  }
+}
+
 bool drop_one_free_of_memory() {
   Region& memory = regions().memory;
   return with_one_free(memory, Trace::memory, [&](PageRanges::Range range) {

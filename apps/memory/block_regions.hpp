@@ -41,6 +41,9 @@ struct Regions {
 /// Those of the program. Never destroyed: blocks are given back until its very end.
 [[nodiscard]] Regions& regions();
 
+/// [bytes, bytes + size) has memory from now on, of large pages where it spans such.
+void take_memory(std::byte* bytes, std::size_t size) noexcept;
+
 /// A block in a region; null where there is no room.
 [[nodiscard]] void* block_in_memory(std::size_t size);
 [[nodiscard]] void* block_in_scratch(std::size_t size);

@@ -26,6 +26,12 @@ namespace fs = std::filesystem;
 
 constexpr double kProgram_bytes = 150e6;  // with its libraries and small blocks
 
+/// Kept clear below a cap for small blocks, at least so much.
+constexpr double kLeastClear_bytes = 48.0 * kMebibyte, kLeastClearOfRank_bytes = 16.0 * kMebibyte;
+double clear_bytes(double cap_bytes, double least_bytes) {
+  return std::clamp(cap_bytes / 16.0, least_bytes, 512.0 * kMebibyte);
+}
+
 /// Blocks that have memory of their own take so much of a cap: two fifths of what the program and
 /// its small blocks leave. Where the cap holds most of what is wanted they take more: what waits in
 /// a file is written to the disk again and again, and is write-protected each time.
@@ -57,6 +63,16 @@ std::byte* reserve(std::size_t& size) {
   return nullptr;
 }
 
+/// Large pages are the system's cheapest, but hundreds are to come and go within the cap; and the
+/// system keeps a list of parts that can be touched or not, and lets it have 65 530 entries.
+std::size_t page_of_scratch_file(double cap_bytes) {
+  constexpr double kFewPages = 192.0, kManyPages = 8192.0;
+  std::size_t page = kPage;
+  const auto many = [&] { return cap_bytes / static_cast<double>(page); };
+  while ((page < kLargePage && many() > kFewPages) || many() > kManyPages) page *= 2;
+  return page;
+}
+
 /// Addresses of both regions; pages of the scratch region are so large.
 void lay_out(double cap_bytes, std::size_t page) {
   Regions& all = regions();
@@ -78,12 +94,13 @@ void lay_out(double cap_bytes, std::size_t page) {
 }  // namespace
 
 MemoryCap::MemoryCap(double cap_bytes, const fs::path& folder) {
-  auto file = std::make_unique<ScratchFile>(folder);
-  lay_out(cap_bytes, kPage);
-  file->map(regions().scratch.base, regions().scratch.size);
+  const std::size_t page = page_of_scratch_file(cap_bytes);
+  lay_out(cap_bytes, page);
+  const Region& scratch = regions().scratch;
+  auto file = std::make_unique<ScratchFile>(folder, scratch.base, scratch.size, page);
   std::snprintf(full_message.data(), full_message.size(), "%s", file->full_message().c_str());
   regions().store = std::move(file);
-  begin(cap_bytes);
+  begin(cap_bytes, clear_bytes(cap_bytes, kLeastClear_bytes));
 }
 
 MemoryCap::MemoryCap(double cap_bytes, RankMessages& ranks, double uncapped_bytes) {
@@ -97,16 +114,17 @@ MemoryCap::MemoryCap(double cap_bytes, RankMessages& ranks, double uncapped_byte
   auto pages = std::make_unique<RemotePages>(scratch.base, scratch.size, at_ranks);
   remote_ = pages.get();
   regions().store = std::move(pages);
-  begin(cap_bytes);
+  begin(cap_bytes, clear_bytes(cap_bytes, kLeastClearOfRank_bytes));
 }
 
-void MemoryCap::begin(double cap_bytes) {
+void MemoryCap::begin(double cap_bytes, double clear_bytes) {
   cap_bytes_ = cap_bytes;
   const Regions& all = regions();
   first_address = std::min(all.memory.base, all.scratch.base);
   last_address = std::max(all.memory.base + all.memory.size, all.scratch.base + all.scratch.size);
   mallopt(M_TRIM_THRESHOLD, 16 << 20);
-  pager_ = std::make_unique<MemoryPager>(static_cast<std::size_t>(cap_bytes));
+  pager_ = std::make_unique<MemoryPager>(static_cast<std::size_t>(cap_bytes),
+                                         static_cast<std::size_t>(clear_bytes));
   pager = pager_.get();
 }
 
@@ -134,10 +152,11 @@ void* capped_block(std::size_t size) noexcept {
   MemoryPager* const watch = pager.load(std::memory_order_acquire);
   Regions& all = regions();
   if (watch == nullptr || size > all.scratch.size) return nullptr;
-  void* block = block_in_memory(size);
-  if (block == nullptr) block = block_in_scratch(size);
-  watch->look();
-  return block;
+  if (void* const block = block_in_memory(size)) {
+    watch->fill(block, size);
+    return block;
+  }
+  return block_in_scratch(size);
 }
 
 bool free_capped_block(void* block) noexcept {
@@ -173,8 +192,8 @@ double peak_resident_bytes() {
 MemoryUnderCap memory_under_cap(double cap_bytes, double uncapped_bytes) {
   const double large = std::max(0.0, uncapped_bytes - kProgram_bytes);
   const double own = own_memory_bytes(cap_bytes, own_share(cap_bytes, uncapped_bytes));
-  // A late look finds more than the mark: half of what is kept clear is taken at some time.
-  const double resident = cap_bytes - 0.5 * least_clear_bytes(cap_bytes);
+  // Half of what is kept clear is taken at some time.
+  const double resident = cap_bytes - 0.5 * clear_bytes(cap_bytes, kLeastClear_bytes);
   // Pages that come back cost a fault each: measured on 4096 x 2048 cells and caps of 0.2 to 0.8.
   constexpr double kSlower = 0.65;
   const double lacking = std::max(0.0, 1.0 - cap_bytes / uncapped_bytes);

@@ -15,10 +15,11 @@ class RemotePages;
 /// Large blocks then lie in a region of addresses of their own. Up to two fifths of the cap, or
 /// seven tenths of one that holds most of what is wanted, they have memory as usual; the rest lies
 /// in pages that can be elsewhere: in a scratch file, whose room on the disk is reserved block by
-/// block, or with the other ranks of the job. A thread looks every millisecond how much is
-/// resident. Near the cap it drops pages of freed blocks and then, going round, those that can be
-/// elsewhere. One that was dropped comes back when it is touched: from the system's cache of files
-/// as long as the machine has memory to spare, from the disk, from its rank. Nothing of this
+/// block, or with the other ranks of the job. Near the cap one thread drops pages of freed blocks
+/// and then, going round, sends away those that can be elsewhere: what did not change since it came
+/// from the file need not be written. A page that is not here comes when it is touched, once there
+/// is room for it below the cap: whoever touches it waits. One comes from the system's cache of
+/// files as long as the machine has memory to spare, from the disk, from its rank. Nothing of this
 /// changes what a kernel reads or writes.
 ///
 /// The scratch file has no name and ends with the program, however that ends. One cap at a time;
@@ -44,7 +45,7 @@ class MemoryCap {
   [[nodiscard]] double exchanged_bytes() const;
 
  private:
-  void begin(double cap_bytes);
+  void begin(double cap_bytes, double clear_bytes);
 
   double cap_bytes_ = 0.0;
   std::unique_ptr<MemoryPager> pager_;

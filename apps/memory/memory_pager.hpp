@@ -1,57 +1,44 @@
 #pragma once
 
-#include <atomic>
 #include <chrono>
 #include <cstddef>
-#include <mutex>
 #include <optional>
 
 #include "repeating.hpp"
 
 namespace terrane {
 
-/// Kept clear below the cap for what is touched until the next look.
-[[nodiscard]] double least_clear_bytes(double cap_bytes);
-
-/// Keeps the cap: one thread for pages in memory, one for the room of free parts on the disk, which
-/// may have to wait for it.
+/// Keeps the cap. One thread looks how much is in memory and lets no more come than there is room
+/// for; one sends pages away, which may have to wait for the disk or other ranks; one sees to the
+/// room of free parts on the disk.
 class MemoryPager {
  public:
-  explicit MemoryPager(std::size_t cap_bytes);
+  /// `clear_bytes`: kept clear below the cap for small blocks, which nobody asks room for.
+  MemoryPager(std::size_t cap_bytes, std::size_t clear_bytes);
   ~MemoryPager();
   MemoryPager(const MemoryPager&) = delete;
   MemoryPager& operator=(const MemoryPager&) = delete;
 
-  /// Drops pages if too many are in memory. Whoever comes while another drops need not wait.
-  void look();
+  /// A block that has memory of its own takes it now, as there is room for it.
+  void fill(void* block, std::size_t size);
 
  private:
-  /// What of this process is in memory.
-  struct Resident {
-    std::size_t own = 0, of_files = 0;
-  };
-  [[nodiscard]] Resident resident() const;
-  /// What is in memory, and what will be once all blocks that have memory of their own are touched:
-  /// that goes faster than anybody could look.
   [[nodiscard]] std::size_t taken_bytes() const;
-  [[nodiscard]] std::size_t least_clear() const;
-  void drop_until_low(std::size_t taken);
-  /// That it came late once says less and less of now.
-  void forget();
-  void keep_clear(std::size_t margin);
-  /// Pages of the scratch file in turn. False when all were, and it was not enough.
-  bool drop_round();
+  void watch();
+  /// Lets pages come as there is room for them.
+  void look();
+  /// Sends pages away in turn while too many are here.
+  void make_room();
   /// Free parts that lie on the disk are used again, but not without end: the system would write
   /// what nobody reads.
   void cut() const;
 
-  const std::size_t cap_;
-  std::atomic<std::size_t> high_{0}, low_{0};
-  std::size_t hand_ = 0, own_at_first_ = 0, most_on_disk_pages_ = 0;
-  int statm_ = -1;
+  /// No page comes beyond `most_`; from `high_` on pages are sent away, until `low_`.
+  const std::size_t most_, high_, low_;
+  std::size_t hand_ = 0, most_on_disk_pages_ = 0;
+  int statm_ = -1, without_room_ = 0;
   std::chrono::steady_clock::time_point trimmed_;
-  std::mutex dropping_;
-  std::optional<Repeating> watching_, cutting_;
+  std::optional<Repeating> watching_, sending_, cutting_;
 };
 
 }  // namespace terrane

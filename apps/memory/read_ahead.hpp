@@ -13,12 +13,14 @@ namespace terrane {
 /// at once. Not for several threads.
 class ReadAhead {
  public:
+  explicit ReadAhead(std::size_t most = kMost) : most_(most) {}
+
   /// The pages to bring when one of `all` is wanted, itself among them.
   PageRanges::Range around(std::size_t page, std::size_t all) {
     for (Way& way : ways_) {
       if (page != way.up && page + 1 != way.down) continue;
       const bool upwards = page == way.up;
-      way.pages = std::min(kMost, 2 * way.pages);
+      way.pages = std::min(most_, 2 * way.pages);
       const std::size_t first = upwards ? page : page + 1 - std::min(way.pages, page + 1);
       const std::size_t end = upwards ? std::min(all, page + way.pages) : page + 1;
       (upwards ? way.up : way.down) = upwards ? end : first;
@@ -35,7 +37,7 @@ class ReadAhead {
     std::size_t up = 0, down = 0, pages = 0;
   };
   std::array<Way, 32> ways_{};
-  std::size_t next_ = 0;
+  std::size_t most_, next_ = 0;
 };
 
 }  // namespace terrane

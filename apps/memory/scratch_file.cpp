@@ -3,20 +3,19 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/mman.h>
+#include <sys/uio.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
-#include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <system_error>
 
 #include "block_regions.hpp"
 #include "geo/core/error.hpp"
 #include "memory.hpp"
-#include "memory_pager.hpp"
 
 namespace terrane {
 namespace {
@@ -42,22 +41,39 @@ int open_scratch(const fs::path& folder) {
   return file;
 }
 
-/// A page that the system can neither read nor write.
-void end_for_lost_page(int, siginfo_t* about, void*) {
-  if (!regions().scratch.has(about->si_addr)) {
-    std::signal(SIGBUS, SIG_DFL);
-    std::raise(SIGBUS);
-    return;
-  }
+[[noreturn]] void end_for_broken_file() {
   end_at_once(broken_message.data(), static_cast<int>(geo::ErrorKind::io));
 }
 
-off_t place(std::size_t pages) { return static_cast<off_t>(pages * kPage); }
+[[noreturn]] void end_for_want_of_places() {
+  end_at_once(
+      "memory for pages of the scratch file could not be mapped: the system has no more room",
+      static_cast<int>(geo::ErrorKind::io));
+}
+
+/// Of all bytes from `place` on; false where the disk does not. Not by the calls that bring pages
+/// here first: these are moving.
+template <class Call>
+bool all_of(Call&& call, int file, std::byte* bytes, std::size_t size, off_t place) {
+  while (size > 0) {
+    const iovec part{bytes, size};
+    const ssize_t done = call(file, &part, 1, place);
+    if (done < 0 && errno == EINTR) continue;
+    if (done <= 0) return false;
+    bytes += done;
+    size -= static_cast<std::size_t>(done);
+    place += done;
+  }
+  return true;
+}
 
 }  // namespace
 
-ScratchFile::ScratchFile(const fs::path& folder)
-    : folder_(existing_folder(folder)), file_(open_scratch(folder_)) {
+ScratchFile::ScratchFile(const fs::path& folder, std::byte* base, std::size_t bytes,
+                         std::size_t page_bytes)
+    : GuardedPages(base, bytes, page_bytes),
+      folder_(existing_folder(folder)),
+      file_(open_scratch(folder_)) {
   if (file_ < 0) {
     throw geo::IoError(
         fmt::format("{}: no scratch file for --memory: {}; --scratch DIR names another folder",
@@ -68,6 +84,8 @@ ScratchFile::ScratchFile(const fs::path& folder)
       "%.700s: the scratch file of --memory could not be read or written: the disk is full "
       "or fails; --scratch DIR names a folder on another",
       folder_.c_str());
+  // What was written and read back is not what the system's cache should keep longest.
+  ::posix_fadvise(file_, 0, 0, POSIX_FADV_NOREUSE);
 }
 
 ScratchFile::~ScratchFile() { ::close(file_); }
@@ -79,18 +97,51 @@ std::string ScratchFile::full_message() const {
          "another";
 }
 
-void ScratchFile::map(std::byte* base, std::size_t bytes) {
-  if (::mmap(base, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_FIXED, file_, 0) == MAP_FAILED) {
-    throw geo::IoError(
-        fmt::format("{}: the scratch file of --memory cannot be mapped: {}; --scratch "
-                    "DIR names another folder",
-                    folder_.string(), std::strerror(errno)));
+/// Memory of these pages goes back to the system, and nobody can touch them.
+void ScratchFile::empty(PageRanges::Range range) noexcept {
+  if (::mmap(at(range.first), range.pages * page_bytes(), PROT_NONE,
+             MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED | MAP_NORESERVE, -1, 0) == MAP_FAILED) {
+    end_for_want_of_places();
   }
-  base_ = base;
-  struct sigaction action {};
-  action.sa_sigaction = end_for_lost_page;
-  action.sa_flags = SA_SIGINFO;
-  sigaction(SIGBUS, &action, nullptr);
+}
+
+void ScratchFile::open_unchanged(std::size_t page) noexcept {
+  if (!protect({page, 1}, PROT_READ | PROT_WRITE)) end_for_want_of_places();
+}
+
+/// It takes its memory at once, as nobody else is asked for room for the rest of it.
+void ScratchFile::open_fresh(std::size_t page) noexcept {
+  open_unchanged(page);
+  take_memory(at(page), page_bytes());
+}
+
+/// What is read is moved to its place when all of it is there.
+void ScratchFile::bring_away(std::size_t page, Access access) noexcept {
+  if (!starts(page, away)) return;
+  const auto range = with_those_ahead(page);
+  const std::size_t size = range.pages * page_bytes();
+  if (range.pages > 1) {
+    // Somebody reads along: the disk is asked for all of it at once, and for what comes next.
+    const std::size_t back = range.first < page ? std::min(range.first, range.pages) : 0;
+    ::posix_fadvise(file_, place(range.first - back), 2 * static_cast<off_t>(size),
+                    POSIX_FADV_WILLNEED);
+  }
+  wait_for_room(size);
+  void* const read = ::mmap(nullptr, size, PROT_READ | PROT_WRITE,
+                            MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (read == MAP_FAILED) end_for_want_of_places();
+  take_memory(static_cast<std::byte*>(read), size);
+  if (!all_of(::preadv, file_, static_cast<std::byte*>(read), size, place(range.first))) {
+    end_for_broken_file();
+  }
+  if (access == Access::read) ::mprotect(read, size, PROT_READ);
+  if (::mremap(read, size, size, MREMAP_MAYMOVE | MREMAP_FIXED, at(range.first)) == MAP_FAILED) {
+    end_for_want_of_places();
+  }
+  have_come(size);
+  for (std::size_t k = 0; k < range.pages; ++k) {
+    ends(range.first + k, access == Access::read ? unchanged : here);
+  }
 }
 
 bool ScratchFile::reserve(PageRanges::Range range) {
@@ -98,24 +149,37 @@ bool ScratchFile::reserve(PageRanges::Range range) {
   while (refused == EINTR) {
     refused = ::posix_fallocate(file_, place(range.first), place(range.pages));
   }
-  return refused == 0;
+  if (refused != 0) return false;
+  // What a freed block left there need not be read for the next.
+  with_all(range, away, fresh, [](PageRanges::Range) {});
+  return true;
+}
+
+void ScratchFile::write(PageRanges::Range range) const {
+  if (!all_of(::pwritev, file_, at(range.first), range.pages * page_bytes(), place(range.first))) {
+    end_for_broken_file();
+  }
 }
 
 void ScratchFile::send_away(PageRanges::Range range) {
-  ::madvise(base_ + range.first * kPage, range.pages * kPage, MADV_DONTNEED);
+  with_all(range, unchanged, away, [&](PageRanges::Range part) { empty(part); });
+  with_all(range, here, away, [&](PageRanges::Range part) {
+    if (!protect(part, PROT_READ)) end_for_want_of_places();
+    write(part);
+    empty(part);
+  });
 }
 
 PageRanges::Trace ScratchFile::drop(PageRanges::Range range) {
-  send_away(range);
+  for (const State state : {here, unchanged}) {
+    with_all(range, state, fresh, [&](PageRanges::Range part) { empty(part); });
+  }
+  with_all(range, away, fresh, [](PageRanges::Range) {});
   return PageRanges::Trace::disk;
 }
 
-/// The system lets pages come as they are touched, and a look may be late.
-std::size_t ScratchFile::least_clear_bytes(std::size_t cap_bytes) const {
-  return static_cast<std::size_t>(terrane::least_clear_bytes(static_cast<double>(cap_bytes)));
-}
-
 void ScratchFile::forget(PageRanges::Range range) {
+  drop(range);
   // Where files cannot have holes, it stays.
   ::fallocate(file_, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, place(range.first),
               place(range.pages));

@@ -4,36 +4,42 @@
 #include <filesystem>
 #include <string>
 
-#include "page_store.hpp"
+#include "guarded_pages.hpp"
 
 namespace terrane {
 
 /// Pages in a file without a name, which ends with the program, however that ends. Its room on the
-/// disk is reserved block by block. Pages that left memory stay in the system's cache of files as
-/// long as the machine has memory to spare.
-class ScratchFile : public PageStore {
+/// disk is reserved block by block.
+///
+/// A page that is here has memory of its own, of which the system's cache of files knows nothing:
+/// it is written when it leaves, and only where it changed since it came. The system's cache keeps
+/// what was written as long as the machine has memory to spare. Whoever touches a page that is away
+/// reads it back.
+class ScratchFile : public GuardedPages {
  public:
-  /// `folder`, or the nearest one above it that exists, takes the file. Throws IoError where it
-  /// cannot.
-  explicit ScratchFile(const std::filesystem::path& folder);
+  /// The region [base, base + bytes), which is mapped anew, as the pages of a file in `folder`, or
+  /// the nearest one above it that exists. Throws IoError where there can be none.
+  ScratchFile(const std::filesystem::path& folder, std::byte* base, std::size_t bytes,
+              std::size_t page_bytes);
   ~ScratchFile() override;
-
-  /// The region lies in the file from now on. Throws IoError where that cannot be.
-  void map(std::byte* base, std::size_t bytes);
 
   bool reserve(PageRanges::Range range) override;
   void send_away(PageRanges::Range range) override;
   PageRanges::Trace drop(PageRanges::Range range) override;
   void forget(PageRanges::Range range) override;
-  [[nodiscard]] std::size_t least_clear_bytes(std::size_t cap_bytes) const override;
 
   /// What to say when the disk has no more room.
   [[nodiscard]] std::string full_message() const;
 
  private:
+  void open_fresh(std::size_t page) noexcept override;
+  void open_unchanged(std::size_t page) noexcept override;
+  void bring_away(std::size_t page, Access access) noexcept override;
+  void empty(PageRanges::Range range) noexcept;
+  void write(PageRanges::Range range) const;
+
   std::filesystem::path folder_;
   int file_ = -1;
-  std::byte* base_ = nullptr;
 };
 
 }  // namespace terrane

@@ -293,7 +293,7 @@ TEST(MemoryCap, ForAGridThatNoMachineHoldsIsPredicted) {
       terrane({"run", "--grid", "32768x16384", "--to", "erosion", "--no-vtk", "--no-maps",
                "--dry-run", "--memory", "2GiB", "-o", folder / "out"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("memory  about 1.9 GB\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("memory  about 2.1 GB\n"));
   EXPECT_THAT(outcome.out, HasSubstr("\nscratch about "));
   EXPECT_FALSE(fs::exists(folder / "out"));
 }
