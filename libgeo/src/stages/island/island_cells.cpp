@@ -4,6 +4,11 @@
 #include <cmath>
 
 namespace geo {
+namespace {
+
+constexpr double kPlainHurst = 0.5;
+
+}  // namespace
 
 double seam_m(const PlanetCells& cells) {
   const Grid& fine = cells.fine();
@@ -36,6 +41,20 @@ DetailLaw detail_law(const PlanetCells& cells, double cell_m) {
   law.octaves = std::clamp(
       static_cast<int>(std::lround(std::log2(law.wavelength_m / (2.0 * cell_m)))) + 1, 1, 16);
   return law;
+}
+
+DetailLaw plain_law(const PlanetCells& cells, double cell_m, double longest_m) {
+  DetailLaw law;
+  law.wavelength_m = std::min(longest_m, detail_law(cells, cell_m).wavelength_m);
+  law.octaves = std::max(1, static_cast<int>(std::log2(0.5 * law.wavelength_m / cell_m)) + 1);
+  law.gain = std::exp2(-kPlainHurst);
+  return law;
+}
+
+double plain_roughness_m(const IslandParameters& p, const DetailLaw& law) {
+  if (p.detail == "height") return 0.0;
+  const double share = std::pow(std::min(1.0, law.wavelength_m / kPlain_m), kPlainHurst);
+  return p.detail_amplitude * p.least_roughness_m * share;
 }
 
 }  // namespace geo

@@ -94,12 +94,8 @@ struct Detail {
 /// `law`.
 void add_least_roughness(const PlanetCells& cells, const IslandParameters& p, const DetailLaw& law,
                          std::uint64_t seed, std::span<const float> roughness_m, Detail& detail) {
-  constexpr double kLength_m = 10e3, kHurst = 0.5;
   const Grid& fine = cells.fine();
-  DetailLaw plain;
-  plain.wavelength_m = std::min(kLength_m, law.wavelength_m);
-  plain.octaves = std::max(1, static_cast<int>(std::log2(0.5 * plain.wavelength_m / p.cell_m)) + 1);
-  plain.gain = std::exp2(-kHurst);
+  const DetailLaw plain = plain_law(cells, p.cell_m);
   const double share_there = std::pow(plain.wavelength_m / law.wavelength_m, p.detail_hurst);
   std::vector<float> inside(fine.size());
   unit_detail(fine, plain, seed, "island.plain", inside);

@@ -68,10 +68,31 @@ void grade_plains(const Grid& fine, double seam_m, std::span<const std::uint8_t>
   }
 }
 
+/// Makes dips shallow and uneven, so that courses wind over the plains that fill them: what lies
+/// buried does not lead them, and over an even slope brooks would run side by side, straight along
+/// the grid. A depth d becomes d exp(n) / (1 + d / R), n noise of unit variance, R the least
+/// roughness of ground.
+void roughen(const PlanetCells& cells, const IslandParameters& p, std::uint64_t seed,
+             std::span<const std::uint8_t> dips, std::span<float> z) {
+  constexpr float kLeast_m = 1e-3F;
+  const DetailLaw law = plain_law(cells, p.cell_m);
+  const auto roughness_m = static_cast<float>(plain_roughness_m(p, law));
+  if (roughness_m <= 0.0F) return;
+  std::vector<float> uneven(z.size());
+  unit_detail(cells.fine(), law, seed, "island.floodplain", uneven);
+  on_cells(cells.fine(), [&](int, int, Index c) {
+    if (dips[c] == 0) return;
+    const float depth_m = std::max(kLeast_m, -z[c]);
+    z[c] = -depth_m * std::exp(uneven[c]) / (1.0F + depth_m / roughness_m);
+  });
+}
+
 }  // namespace
 
 void dry_inland_dips(const PlanetCells& cells, std::span<const float> planet_elevation_m,
-                     std::span<float> z) {
+                     const IslandParameters& p, std::uint64_t seed, std::span<float> z) {
+  // What with_detail has pressed to the level of the sea is as even as what lies below it.
+  const float even_m = p.detail == "height" ? 0.0F : 0.01F;
   const Grid& fine = cells.fine();
   std::vector<std::uint8_t> wet(fine.size());
   std::vector<Index> front;
@@ -91,8 +112,9 @@ void dry_inland_dips(const PlanetCells& cells, std::span<const float> planet_ele
     }
   }
   std::vector<std::uint8_t> dips(fine.size());
-  for (Index c = 0; c < fine.size(); ++c) dips[c] = z[c] < 0.0F && wet[c] == 0 ? 1 : 0;
+  for (Index c = 0; c < fine.size(); ++c) dips[c] = z[c] < even_m && wet[c] == 0 ? 1 : 0;
   if (std::find(dips.begin(), dips.end(), 1) == dips.end()) return;
+  roughen(cells, p, seed, dips, z);
   grade_plains(fine, seam_m(cells), dips, wet, z);
 }
 

@@ -81,6 +81,33 @@ void read_planet(const PlanetCells& cells, std::span<const float> planet_elevati
   wind_coasts(cells, planet_elevation_m, p, seed, dry, wet, planet_m, z);
 }
 
+/// Detail on low ground rises as far as it likes, and dips no deeper than the sea: gives the ground
+/// over each planet cell its mean again. Heights above the level of the sea are multiplied by 1 +
+/// a, depths below it by 1 - a, so that the coast stays where it is, with
+///   a = (wanted mean - mean) / mean of |z|.
+void restore_planets_means(const PlanetCells& cells, std::span<const float> planet_m,
+                           std::span<float> z) {
+  constexpr int kRounds = 3;  // what is restored in one cell changes the cells beside it
+  constexpr float kMost = 0.8F;
+  const Grid& fine = cells.fine();
+  const std::vector<float> wanted = cells.means(planet_m, {}, 0.0F);
+  std::vector<float> relief(z.size());
+  for (int round = 0; round < kRounds; ++round) {
+    std::transform(z.begin(), z.end(), relief.begin(), [](float h) { return std::abs(h); });
+    std::vector<float> share = cells.means(relief, {}, 0.0F);
+    const std::vector<float> mean = cells.means(z, {}, 0.0F);
+    for (std::size_t k = 0; k < share.size(); ++k) {
+      share[k] =
+          share[k] > 0.0F ? std::clamp((wanted[k] - mean[k]) / share[k], -kMost, kMost) : 0.0F;
+    }
+    on_cells(fine, [&](int i, int j, Index c) {
+      const double a = edge_ramp(fine, i, j, seam_m(cells)) *
+                       std::clamp<double>(cells.interpolate(share, i, j), -kMost, kMost);
+      z[c] *= static_cast<float>(z[c] > 0.0F ? 1.0 + a : 1.0 - a);
+    });
+  }
+}
+
 /// Blueprint 9.4: the edges sink below the sea, over a margin that noise frays.
 void sink_edges(const Grid& fine, const IslandParameters& p, std::uint64_t seed,
                 std::span<float> z) {
@@ -113,7 +140,8 @@ void raise_island(const PlanetCells& cells, const PlanetTerrain& planet, const I
     read_planet(cells, planet.elevation_m, p, seed, planet_m, elevation_m);
     add_rough_detail(cells, planet, p, exemplars, seed, planet_m, elevation_m);
   }
-  dry_inland_dips(cells, planet.elevation_m, elevation_m);
+  dry_inland_dips(cells, planet.elevation_m, p, seed, elevation_m);
+  if (p.detail != "height") restore_planets_means(cells, planet_m, elevation_m);
   if (p.edge_fade) sink_edges(cells.fine(), p, seed, elevation_m);
 }
 
