@@ -88,7 +88,7 @@ void read_planet(const PlanetCells& cells, std::span<const float> planet_elevati
 void restore_planets_means(const PlanetCells& cells, std::span<const float> planet_m,
                            std::span<float> z) {
   constexpr int kRounds = 3;  // what is restored in one cell changes the cells beside it
-  constexpr float kMost = 0.8F;
+  constexpr float kMost = 0.5F;
   const Grid& fine = cells.fine();
   const std::vector<float> wanted = cells.means(planet_m, {}, 0.0F);
   std::vector<float> relief(z.size());
