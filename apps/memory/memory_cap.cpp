@@ -33,8 +33,8 @@ double clear_bytes(double cap_bytes, double least_bytes) {
 }
 
 /// Blocks that have memory of their own take so much of a cap: two fifths of what the program and
-/// its small blocks leave. Where the cap holds most of what is wanted they take more: what waits in
-/// a file is written to the disk again and again, and is write-protected each time.
+/// its small blocks leave. Where the cap holds most of what is wanted they take more: what can
+/// leave is written to the disk and read back again and again.
 constexpr double kShare = 0.4, kShareOfNearlyAll = 0.7;
 double own_memory_bytes(double cap_bytes, double share) {
   return share * std::max(0.0, cap_bytes - kProgram_bytes);
