@@ -84,24 +84,26 @@ void read_planet(const PlanetCells& cells, std::span<const float> planet_elevati
 /// Detail on low ground rises as far as it likes, and dips no deeper than the sea: gives the ground
 /// over each planet cell its mean again. Heights above the level of the sea are multiplied by 1 +
 /// a, depths below it by 1 - a, so that the coast stays where it is, with
-///   a = (wanted mean - mean) / mean of |z|.
+///   a = (wanted mean - mean) / mean of |z|, from -1/2 to 1/2: ground keeps half of its relief.
 void restore_planets_means(const PlanetCells& cells, std::span<const float> planet_m,
                            std::span<float> z) {
   constexpr int kRounds = 3;  // what is restored in one cell changes the cells beside it
   constexpr float kMost = 0.5F;
   const Grid& fine = cells.fine();
-  const std::vector<float> wanted = cells.means(planet_m, {}, 0.0F);
-  std::vector<float> relief(z.size());
+  const double seam = seam_m(cells);
+  const std::vector<float> wanted_m = cells.means(planet_m, {}, 0.0F);
+  std::vector<float> relief_m(z.size());
   for (int round = 0; round < kRounds; ++round) {
-    std::transform(z.begin(), z.end(), relief.begin(), [](float h) { return std::abs(h); });
-    std::vector<float> share = cells.means(relief, {}, 0.0F);
-    const std::vector<float> mean = cells.means(z, {}, 0.0F);
+    std::transform(z.begin(), z.end(), relief_m.begin(), [](float h) { return std::abs(h); });
+    const std::vector<float> mean_m = cells.means(z, {}, 0.0F);
+    const std::vector<float> mean_relief_m = cells.means(relief_m, {}, 0.0F);
+    std::vector<float> share(mean_m.size(), 0.0F);
     for (std::size_t k = 0; k < share.size(); ++k) {
-      share[k] =
-          share[k] > 0.0F ? std::clamp((wanted[k] - mean[k]) / share[k], -kMost, kMost) : 0.0F;
+      if (!(mean_relief_m[k] > 0.0F)) continue;
+      share[k] = std::clamp((wanted_m[k] - mean_m[k]) / mean_relief_m[k], -kMost, kMost);
     }
     on_cells(fine, [&](int i, int j, Index c) {
-      const double a = edge_ramp(fine, i, j, seam_m(cells)) *
+      const double a = edge_ramp(fine, i, j, seam) *
                        std::clamp<double>(cells.interpolate(share, i, j), -kMost, kMost);
       z[c] *= static_cast<float>(z[c] > 0.0F ? 1.0 + a : 1.0 - a);
     });
