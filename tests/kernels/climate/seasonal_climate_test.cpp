@@ -143,7 +143,7 @@ TEST(SeasonalClimate, AscentAddsNoMoreThanItsBound) {
   const auto rain_mm = [&](double time_d, double bound) {
     SeasonalClimate model;
     model.ascent_time_d = time_d;
-    model.ascent_bound = bound;
+    model.ascent_bound = model.descent_bound = bound;
     return continent.solve(model).precipitation_mm[6];
   };
   const auto weak = rain_mm(2.0, 1e-9), strong = rain_mm(20.0, 1e-9);
@@ -156,6 +156,76 @@ TEST(SeasonalClimate, AscentAddsNoMoreThanItsBound) {
   }
   EXPECT_GT(bounded_mm, 50.0);
   EXPECT_GT(bounded_mm, 100.0 * difference_mm);
+}
+
+/// Share of July's rain on the tropical sea that falls where that is warmer than on the mean.
+double share_of_warm_seas(const Continent& continent, const SeasonalFields& fields) {
+  constexpr int kJuly = 6;
+  const auto sum_up = [&](auto&& of_cell) {
+    double sum = 0.0;
+    for (Index c = 0; c < continent.grid.size(); ++c) {
+      const int row = continent.grid.row(c);
+      const bool counts = continent.land[c] == 0.0F && std::abs(continent.latitude_deg[row]) < 25.0;
+      if (counts) sum += continent.grid.area_m2(row) * of_cell(c);
+    }
+    return sum;
+  };
+  const double mean_c = sum_up([&](Index c) { return fields.temperature_c[kJuly][c]; }) /
+                        sum_up([](Index) { return 1.0; });
+  const auto& rain_mm = fields.precipitation_mm[kJuly];
+  return sum_up(
+             [&](Index c) { return fields.temperature_c[kJuly][c] > mean_c ? rain_mm[c] : 0.0; }) /
+         sum_up([&](Index c) { return rain_mm[c]; });
+}
+
+TEST(SeasonalClimate, ConvectionRainsOverTheWarmestSeas) {
+  const Continent continent;
+  SeasonalClimate model;
+  model.convection_latitude_deg = 25.0;
+  model.ascent_bound = model.descent_bound = 0.5;  // so that ascent does not decide alone
+  model.convection_1_k = 0.0;
+  const double without = share_of_warm_seas(continent, continent.solve(model));
+  model.convection_1_k = 0.2;
+  const double with = share_of_warm_seas(continent, continent.solve(model));
+  EXPECT_GT(with, without + 0.01) << without;
+}
+
+TEST(SeasonalClimate, EddiesRainLessUnderSinkingAir) {
+  const Continent continent;
+  SeasonalClimate model;
+  model.ascent_bound = 1e-9;  // so that ascent alone makes no difference
+  model.eddy_rain = 1.0;
+  const auto rain_mm = [&](double share) {
+    model.eddy_descent_share = share;
+    return continent.solve(model).precipitation_mm[0];
+  };
+  const auto untouched = rain_mm(0.0), lessened = rain_mm(1.0);
+  double before = 0.0, after = 0.0;  // in the winter's subtropics
+  for (Index c = 0; c < continent.grid.size(); ++c) {
+    const int row = continent.grid.row(c);
+    if (std::abs(continent.latitude_deg[row] - 22.5) > 10.0) continue;
+    before += continent.grid.area_m2(row) * untouched[c];
+    after += continent.grid.area_m2(row) * lessened[c];
+  }
+  EXPECT_LT(after, 0.9 * before);
+}
+
+// Where a planet hardly turns all of it is as its tropics.
+TEST(SeasonalClimate, SlowRotationMakesTropicsOfAllLatitudes) {
+  const Continent continent;
+  const auto edge_matters_mm = [&](double rotation_period_h) {
+    const auto rain_mm = [&](double edge_deg) {
+      SeasonalClimate model;
+      model.circulation.rotation_period_h = rotation_period_h;
+      model.ascent_latitude_deg = edge_deg;
+      return continent.solve(model).precipitation_mm[0];
+    };
+    const auto narrow = rain_mm(20.0), wide = rain_mm(60.0);
+    double sum_mm = 0.0;
+    for (std::size_t c = 0; c < continent.size(); ++c) sum_mm += std::abs(narrow[c] - wide[c]);
+    return sum_mm / static_cast<double>(continent.size());
+  };
+  EXPECT_LT(edge_matters_mm(480.0), 0.1 * edge_matters_mm(23.934));
 }
 
 }  // namespace

@@ -22,9 +22,11 @@ constexpr double kDaysPerMonth = 365.25 / kMonths, kSecondsPerDay = 86400.0;
 constexpr double kWattsPerMillimetreADay = 28.9;  // latent heat of rain
 constexpr double kLatentOverHeat_k = 2.5e6 / 1004.0;
 
-/// How far a latitude is one where planetary rotation is weak: half at the edge.
-double weak_rotation(double latitude_deg, double edge_deg) {
-  const double turning = std::sin(latitude_deg * kRadians) / std::sin(edge_deg * kRadians);
+/// How far a latitude is one where planetary rotation is weak: half where the Coriolis parameter is
+/// that of the Earth at the edge.
+double weak_rotation(double latitude_deg, double edge_deg, const Circulation& circulation) {
+  const double days = circulation.rotation_rad_s() / Circulation{}.rotation_rad_s();
+  const double turning = days * (std::sin(latitude_deg * kRadians) / std::sin(edge_deg * kRadians));
   return 1.0 / (1.0 + turning * turning * turning * turning);
 }
 
@@ -92,9 +94,9 @@ void SeasonalYear::blow() {
 }
 
 /// How far the moist static energy near the ground, in kelvins of dry air, exceeds that of the
-/// parallels around: where planetary rotation is weak, the free atmosphere above is level.
+/// tropics: where planetary rotation is weak, the free atmosphere above is level.
 std::vector<float> SeasonalYear::convective_excess_k(const AirOfMonth& month) const {
-  constexpr double kDryLapse_k_m = 0.0098, kSurfacePressure_pa = 1.0e5, kReach_deg = 10.0;
+  constexpr double kDryLapse_k_m = 0.0098, kSurfacePressure_pa = 1.0e5;
   std::vector<float> energy_k(size_);
   for (std::size_t cell = 0; cell < size_; ++cell) {
     const double at_sea_c = month.temperature_c[cell], height_m = height_m_[cell];
@@ -104,24 +106,27 @@ std::vector<float> SeasonalYear::convective_excess_k(const AirOfMonth& month) co
     energy_k[cell] =
         static_cast<float>(surface_c + kDryLapse_k_m * height_m + kLatentOverHeat_k * humidity);
   }
-  const std::vector<double> around_k =
-      smooth_rows(latitude_deg_, row_means<float>(grid_, energy_k), kReach_deg);
+  const auto weak = [&](Index cell) {
+    return weak_rotation(latitude_deg_[grid_.row(cell)], model_.convection_latitude_deg,
+                         model_.circulation);
+  };
+  const double tropics_k = area_sum<double>(grid_, [&](Index c) { return weak(c) * energy_k[c]; }) /
+                           area_sum<double>(grid_, weak);
   for (std::size_t cell = 0; cell < size_; ++cell) {
-    const int row = grid_.row(static_cast<Index>(cell));
     energy_k[cell] =
-        static_cast<float>((energy_k[cell] - around_k[row]) *
-                           weak_rotation(latitude_deg_[row], model_.convection_latitude_deg));
+        static_cast<float>((energy_k[cell] - tropics_k) * weak(static_cast<Index>(cell)));
   }
   return energy_k;
 }
 
 /// Rising air rains out, and so does air that is lighter than its surroundings; sinking air keeps
-/// its water.
+/// its water, also where eddies stir it.
 void SeasonalYear::activate(AirOfMonth& month) const {
+  constexpr double kMostConvection = 3.0;  // of the logarithm of rain-out
   std::vector<float> rising = convergence(grid_, month.wind_east, month.wind_north);
   for (std::size_t cell = 0; cell < size_; ++cell) {
     const double deep = weak_rotation(latitude_deg_[grid_.row(static_cast<Index>(cell))],
-                                      model_.ascent_latitude_deg);
+                                      model_.ascent_latitude_deg, model_.circulation);
     rising[cell] = static_cast<float>(
         deep * kSecondsPerDay *
         (model_.ascent_time_d * rising[cell] - model_.descent_time_d * month.descent_1_s[cell]));
@@ -129,10 +134,13 @@ void SeasonalYear::activate(AirOfMonth& month) const {
   smooth(grid_, rising, 1000.0 * model_.ascent_smoothing_km);
   const std::vector<float> excess_k = convective_excess_k(month);
   for (std::size_t cell = 0; cell < size_; ++cell) {
-    const double lighter = model_.convection_1_k * excess_k[cell];
-    month.activity[cell] = static_cast<float>(
-        ascent_[cell] * std::exp(bounded(rising[cell] + lighter, model_.ascent_bound)));
-    month.eddies[cell] = ascent_[cell] * month.own_eddies[cell];
+    const double lighter = bounded(model_.convection_1_k * excess_k[cell], kMostConvection);
+    const double moving = rising[cell] > 0.0F ? bounded(rising[cell], model_.ascent_bound)
+                                              : bounded(rising[cell], model_.descent_bound);
+    month.activity[cell] = static_cast<float>(ascent_[cell] * std::exp(moving + lighter));
+    month.eddies[cell] =
+        static_cast<float>(ascent_[cell] * month.own_eddies[cell] *
+                           std::exp(model_.eddy_descent_share * std::min(0.0, moving)));
   }
 }
 

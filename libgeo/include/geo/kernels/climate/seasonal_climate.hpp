@@ -39,10 +39,12 @@ struct SeasonalClimate {
   double ascent_time_d = 29.5;            ///< convergence over this time multiplies rain-out by e
   double descent_time_d = 0.996;          ///< the same of the descent that stationary waves make
   double ascent_bound = 1.93;             ///< most that ascent adds to the logarithm of rain-out
+  double descent_bound = 1.93;            ///< most that descent takes from it
+  double eddy_descent_share = 0;          ///< of that descent which the rain of eddies feels
   double ascent_latitude_deg = 36.1;  ///< at which converging winds make half as much rain as where
                                       ///< rotation is weak
   double ascent_smoothing_km = 575;   ///< over which ascent is felt
-  double convection_1_k = 0;          ///< by which rain-out grows with relative moist static energy
+  double convection_1_k = 0;          ///< growth of rain-out with excess moist static energy
   double convection_latitude_deg = 20.9;  ///< to which the free atmosphere is level
   double orographic_share = 0.0;  ///< of the mean height by which moist air is lifted over a cell
   double blocking_height_m = 4.67e+03;  ///< height at which topography halves the moist flow
