@@ -97,7 +97,8 @@ void SeasonalYear::blow() {
 /// tropics: where planetary rotation is weak, the free atmosphere above is level.
 std::vector<float> SeasonalYear::convective_excess_k(const AirOfMonth& month) const {
   constexpr double kDryLapse_k_m = 0.0098, kSurfacePressure_pa = 1.0e5;
-  std::vector<float> energy_k(size_);
+  std::vector<float> energy_k(size_, 0.0F);
+  if (!(model_.convection_1_k > 0.0)) return energy_k;
   for (std::size_t cell = 0; cell < size_; ++cell) {
     const double at_sea_c = month.temperature_c[cell], height_m = height_m_[cell];
     const double surface_c = at_sea_c - model_.energy.lapse_k_m * height_m;
