@@ -146,10 +146,11 @@ TEST(ArraySizes, OfRiversAndLakesAreChecked) {
     Floats z(n(cells()));
     carve_valleys(grid, graph, sea, discharge, {}, z);
   });
-  expect_refused("breach_depressions", 2, [&](Lengths& n) {
+  expect_refused("breach_depressions", 3, [&](Lengths& n) {
     const Bytes outlets(n(cells()));
     Floats z(n(cells()));
-    breach_depressions(grid, outlets, {}, z);
+    const Floats toughness(n(cells()));
+    breach_depressions(grid, outlets, {}, z, toughness);
   });
   expect_refused("grade_rivers", 4, [&](Lengths& n) {
     const FlowGraph graph = graph_of(n, false);

@@ -163,6 +163,32 @@ TEST(Breaching, KeepsItsLimitsOfDepthAndLength) {
   }
 }
 
+// A plateau between a hollow and a ditch, and a strip of soft ground that leads across it in a
+// bend.
+TEST(Breaching, GoesWhereTheGroundIsSoft) {
+  constexpr int kColumns = 20, kRows = 15, kMiddle = 7, kBend = 3;
+  const Grid grid = Grid::plane(kColumns, kRows, 1e3, 1e3, Edges::closed);
+  std::vector<float> level(grid.size(), 60.0F), toughness(grid.size(), 1.0F);
+  level[grid.cell(0, kMiddle)] = -10.0F;
+  level[grid.cell(kColumns - 1, kMiddle)] = 20.0F;
+  for (int i = 0; i < kColumns; ++i) {
+    const int away = std::min({i, kColumns - 1 - i, kBend});
+    toughness[grid.cell(i, kMiddle + away)] = 0.2F;
+  }
+  const auto outlets = find_outlets(grid, level);
+  const auto cells_cut = [&](std::span<const float> tough, int row) {
+    auto z = level;
+    EXPECT_EQ(breach_depressions(grid, outlets, {100.0, 1e5, 0.0}, z, tough), 1);
+    int cut = 0;
+    for (int i = kBend; i < kColumns - kBend; ++i) cut += z[grid.cell(i, row)] < 60.0F;
+    return cut;
+  };
+  constexpr int kAcross = kColumns - 2 * kBend;
+  EXPECT_EQ(cells_cut({}, kMiddle), kAcross);
+  EXPECT_EQ(cells_cut(toughness, kMiddle), 0);
+  EXPECT_EQ(cells_cut(toughness, kMiddle + kBend), kAcross);
+}
+
 TEST(GradeRivers, CutADamThatTheRiverCouldHaveCutAndNoOther) {
   const Dam dam;
   const auto graph = route_water(dam.grid, dam.z, dam.outlets).graph;

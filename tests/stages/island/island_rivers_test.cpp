@@ -310,10 +310,10 @@ TEST(Island, RiversBetweenThePlanetsCellsDoNotFollowTheGrid) {
   for (const std::uint64_t seed : {1U, 3U, 5U, 7U, 9U}) {
     SCOPED_TRACE("planets " + std::to_string(seed) + " and " + std::to_string(seed + 1));
     const Straight found = straight_rivers(islands_in_one_cell({seed, seed + 1}));
-    // Valleys of mountains run straight for three kilometres now and then: 0.06 of their length.
-    EXPECT_LT(found.inside, 0.08);
-    EXPECT_LT(found.near_edge, 0.08);
-    EXPECT_LT(found.longest, 32);
+    // Valleys of mountains run straight for three kilometres now and then: 0.03 of their length.
+    EXPECT_LT(found.inside, 0.045);
+    EXPECT_LT(found.near_edge, 0.045);
+    EXPECT_LT(found.longest, 28);
   }
 }
 

@@ -43,6 +43,12 @@ int cells_to_edge(const Grid& fine, Index c) {
   return std::min({i, fine.nx() - 1 - i, j, fine.ny() - 1 - j});
 }
 
+/// Factor of the cost of a path through ground of some noise.
+double toughness(double noise) {
+  constexpr double kWinding = 2.0;
+  return std::exp(kWinding * noise);
+}
+
 using Front = std::priority_queue<std::pair<double, Index>, std::vector<std::pair<double, Index>>,
                                   std::greater<>>;
 
@@ -165,8 +171,7 @@ class Network {
   /// Cost of a metre at a cell: low ground is easy, no ground is quite even, and the edge, which is
   /// nothing on the ground, does not lead rivers along it, nor along a line at a distance from it.
   [[nodiscard]] double resistance(Index c, const End& from, const End& to) const {
-    constexpr double kDigging_m = 20.0, kHollow_m = 100.0, kWinding = 2.0, kStrip = 6.0,
-                     kUneven = 0.5;
+    constexpr double kDigging_m = 20.0, kHollow_m = 100.0, kStrip = 6.0, kUneven = 0.5;
     const double di = fine_.column(to.cell) - fine_.column(from.cell);
     const double dj = fine_.row(to.cell) - fine_.row(from.cell);
     const double along = (fine_.column(c) - fine_.column(from.cell)) * di +
@@ -177,7 +182,7 @@ class Network {
     const double strip = strip_ * (1.0 + kUneven * noise_[c]);
     const double in_strip =
         std::max(0.0, 1.0 - static_cast<double>(cells_to_edge(fine_, c)) / std::max(1.0, strip));
-    return std::exp(kWinding * noise_[c]) * (1.0 + kStrip * in_strip * in_strip) *
+    return toughness(noise_[c]) * (1.0 + kStrip * in_strip * in_strip) *
            (1.0 + std::max(0.0, z_[c] - low_m) / kDigging_m);
   }
 
@@ -277,15 +282,14 @@ std::vector<Index> river_steps(const PlanetCells& cells, const PlanetWater& wate
 }
 
 /// Noise of unit variance from half a planet cell down to two fine ones, which makes courses wind.
-/// Its short waves are strong: a least path over even ground would follow the eight directions of
-/// the grid.
+/// All its waves are as strong: a least path over even ground would follow the eight directions of
+/// the grid, as a detour by one cell costs more than weaker short waves save.
 std::vector<float> winding(const PlanetCells& cells, std::uint64_t seed) {
-  constexpr double kShortWaves = 0.8;
   DetailLaw law;
   law.wavelength_m = 0.5 * cells.planet().step_north_m();
   const double octaves = std::log2(law.wavelength_m / cells.fine().step_north_m());
   law.octaves = static_cast<int>(std::clamp(octaves, 1.0, 12.0));
-  law.gain = kShortWaves;
+  law.gain = 1.0;
   std::vector<float> noise(cells.fine().size());
   unit_detail(cells.fine(), law, seed, "island.detail", noise);
   return noise;
@@ -375,13 +379,19 @@ class Tracing {
   std::vector<std::uint8_t> on_lake_;
 };
 
-/// Slopes of the ground beside the courses.
-std::vector<float> side_slopes(std::span<const float> noise) {
-  constexpr float kSteepest = 0.15F, kUneven = 0.8F;
-  std::vector<float> slopes(noise.size());
-  std::transform(noise.begin(), noise.end(), slopes.begin(),
-                 [](float n) { return kSteepest * std::exp(kUneven * std::min(0.0F, n)); });
-  return slopes;
+/// A function of noise, one value per cell.
+template <class Function>
+std::vector<float> of_noise(std::span<const float> noise, const Function& function) {
+  std::vector<float> values(noise.size());
+  std::transform(noise.begin(), noise.end(), values.begin(),
+                 [&](float n) { return static_cast<float>(function(n)); });
+  return values;
+}
+
+/// Slope of the ground beside a course.
+double side_slope(double noise) {
+  constexpr double kSteepest = 0.15, kUneven = 0.8;
+  return kSteepest * std::exp(kUneven * std::min(0.0, noise));
 }
 
 }  // namespace
@@ -396,7 +406,8 @@ RiverCourses trace_river_courses(const PlanetCells& cells, const PlanetWater& wa
   for (const Index from : river_steps(cells, water, tracing.beds())) tracing.trace_step(from);
   tracing.trace_brooks();
   RiverCourses courses = tracing.take();
-  courses.side_slope = side_slopes(noise);
+  courses.side_slope = of_noise(noise, side_slope);
+  courses.toughness = of_noise(noise, toughness);
   return courses;
 }
 

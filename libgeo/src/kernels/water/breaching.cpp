@@ -32,8 +32,13 @@ struct Entry {
 class Search {
  public:
   Search(const Grid& grid, std::span<const std::uint8_t> outlets, const BreachLimits& limits,
-         std::span<float> z)
-      : grid_(grid), outlets_(outlets), limits_(limits), z_(z), best_(grid.size(), kUnseen) {}
+         std::span<float> z, std::span<const float> toughness)
+      : grid_(grid),
+        outlets_(outlets),
+        limits_(limits),
+        z_(z),
+        toughness_(toughness),
+        best_(grid.size(), kUnseen) {}
 
   /// Lowers the way out of `pit`, if there is one.
   bool cut(Index pit) {
@@ -66,7 +71,8 @@ class Search {
         const double step = grid_.distances_m(j)[k];
         const double cut = node.cut_m + (depth > limits_.shallow_m ? step : 0.0);
         if (depth > limits_.depth_m || cut > limits_.length_m) continue;
-        const double cost = node.cost_m2 + depth * step;
+        const double tough = toughness_.empty() ? 1.0 : toughness_[to];
+        const double cost = node.cost_m2 + tough * depth * step;
         if (best_[to] != kUnseen && nodes_[best_[to]].cost_m2 <= cost) continue;
         add({to, at, cost, cut, node.way_m + step});
       }
@@ -95,6 +101,7 @@ class Search {
   std::span<const std::uint8_t> outlets_;
   BreachLimits limits_;
   std::span<float> z_;
+  std::span<const float> toughness_;
   std::vector<std::int32_t> best_;  // node by which a cell is best reached
   std::vector<Node> nodes_;
   std::vector<Entry> heap_;
@@ -103,9 +110,12 @@ class Search {
 }  // namespace
 
 int breach_depressions(const Grid& grid, std::span<const std::uint8_t> outlets,
-                       const BreachLimits& limits, std::span<float> elevation_m) {
+                       const BreachLimits& limits, std::span<float> elevation_m,
+                       std::span<const float> toughness) {
   check_sizes("breach_depressions", grid.size(),
-              {{"outlets", outlets.size()}, {"elevation_m", elevation_m.size()}});
+              {{"outlets", outlets.size()},
+               {"elevation_m", elevation_m.size()},
+               {"toughness", toughness.size(), ArraySize::May::be_empty}});
   if (!(limits.depth_m > 0) || !(limits.length_m > 0)) return 0;
   std::vector<Index> receiver(grid.size()), pits;
   steepest_receivers(grid, elevation_m, outlets, receiver);
@@ -114,7 +124,7 @@ int breach_depressions(const Grid& grid, std::span<const std::uint8_t> outlets,
   }
   std::stable_sort(pits.begin(), pits.end(),
                    [&](Index a, Index b) { return elevation_m[a] > elevation_m[b]; });
-  Search search(grid, outlets, limits, elevation_m);
+  Search search(grid, outlets, limits, elevation_m, toughness);
   int cuts = 0;
   for (const Index pit : pits) cuts += search.cut(pit);
   return cuts;

@@ -140,8 +140,8 @@ double add_inflow(std::span<const float> inflow_m3_s, std::span<double> water) {
 
 class HydrologyStage final : public Stage {
  public:
-  HydrologyStage(HydrologyParameters parameters, Bytes shut)
-      : p_(std::move(parameters)), shut_(std::move(shut)) {}
+  HydrologyStage(HydrologyParameters parameters, Bytes shut, std::vector<float> toughness)
+      : p_(std::move(parameters)), shut_(std::move(shut)), toughness_(std::move(toughness)) {}
   [[nodiscard]] const StageInfo& info() const override { return info_; }
   [[nodiscard]] std::vector<Parameter> parameters() override { return p_.declarations(); }
   [[nodiscard]] StageCost cost(std::span<const Parameter> /*configuration*/) const override {
@@ -249,7 +249,7 @@ class HydrologyStage final : public Stage {
                      std::span<const double> runoff, std::span<const double> inflow_area,
                      std::span<const float> ice_m, std::span<float> z) const {
     const std::vector<float> before(z.begin(), z.end());
-    breach_depressions(grid, kept, {p_.breach_depth_m, p_.breach_length_km * 1000}, z);
+    breach_depressions(grid, kept, {p_.breach_depth_m, p_.breach_length_km * 1000}, z, toughness_);
     const FlowGraph graph = route_water(grid, z, outlets).graph;
     double threshold_m3_s = 0.0;
     const std::vector<double> discharge =
@@ -307,6 +307,7 @@ class HydrologyStage final : public Stage {
 
   HydrologyParameters p_;
   Bytes shut_;
+  std::vector<float> toughness_;
   StageInfo info_{"hydrology",
                   "runoff, lakes, rivers and basins; valleys carved by rivers",
                   {&field::elevation, &field::temperature, &field::precipitation,
@@ -367,8 +368,10 @@ std::vector<Parameter> HydrologyParameters::declarations() {
 }
 
 std::unique_ptr<Stage> make_hydrology_stage(HydrologyParameters parameters,
-                                            std::vector<std::uint8_t> shut) {
-  return std::make_unique<HydrologyStage>(std::move(parameters), std::move(shut));
+                                            std::vector<std::uint8_t> shut,
+                                            std::vector<float> toughness) {
+  return std::make_unique<HydrologyStage>(std::move(parameters), std::move(shut),
+                                          std::move(toughness));
 }
 
 }  // namespace geo

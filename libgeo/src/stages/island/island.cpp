@@ -18,6 +18,7 @@
 #include "island_climate.hpp"
 #include "island_edge.hpp"
 #include "island_erosion.hpp"
+#include "island_floodplain.hpp"
 #include "island_surface.hpp"
 #include "island_window.hpp"
 #include "stages/climate/climate_events.hpp"
@@ -119,7 +120,7 @@ class IslandStage final : public Stage {
     // What the air and the water do depends on each other's surface: climate before hydrology.
     make_climate(io, context, PlanetCells(io.grid(), state.grid()), ground.planets_m, state);
     context.advance(0.75);
-    make_water_and_life(context, std::move(ground.shut), state);
+    make_water_and_life(context, std::move(ground.shut), std::move(ground.toughness), state);
     io.hand_over(std::move(state));
   }
 
@@ -158,6 +159,7 @@ class IslandStage final : public Stage {
   /// What is known of the finished surface beside the island's fields.
   struct Shaped {
     std::vector<float> planets_m;  ///< the planet's interpolated heights
+    std::vector<float> toughness;  ///< of the ground that breaches go through
     Bytes shut;                    ///< where water does not leave over the edge
   };
 
@@ -198,6 +200,7 @@ class IslandStage final : public Stage {
     const IslandErosion done = wear_island(
         cells, p_, law, {ways_out, held, inflow_area, erodibility},
         [&](double share) { context.advance(0.2 + 0.4 * share); }, z);
+    roughen_floodplains(cells, p_, context.seed, held, z);
     open_river_courses(fine, edges, courses, z);
 
     const Bytes lake = fill_hollows_across_edge(window, cells, outlets, water.lake_id, z);
@@ -209,7 +212,7 @@ class IslandStage final : public Stage {
     state.set(field::elevation, window.crop(z));
     report_erosion(*window.island(), {window.crop(done.lowered_m), window.crop(done.raised_m)},
                    context.budget, state);
-    return {window.crop(planets_m), std::move(edge.shut)};
+    return {window.crop(planets_m), window.crop(courses.toughness), std::move(edge.shut)};
   }
 
   void report_erosion(const Grid& fine, const IslandErosion& done, Budget& budget,
@@ -249,13 +252,15 @@ class IslandStage final : public Stage {
                    {io.read(field::elevation), planets_m, state.read(field::elevation)}, from, to);
   }
 
-  void make_water_and_life(Context& context, Bytes shut, State& state) const {
+  void make_water_and_life(Context& context, Bytes shut, std::vector<float> toughness,
+                           State& state) const {
     HydrologyParameters hydrology;
     configure(hydrology.declarations(), context.configuration);
     hydrology.river_threshold_m3_s = p_.river_threshold_m3_s;
     hydrology.river_reference_m3_s = p_.river_reference_m3_s;
     hydrology.channel_area_km2 = p_.channel_area_km2;
-    run_inside(*make_hydrology_stage(hydrology, std::move(shut)), 0.75, 0.92, context, state);
+    run_inside(*make_hydrology_stage(hydrology, std::move(shut), std::move(toughness)), 0.75, 0.92,
+               context, state);
 
     BiomesParameters biomes;
     configure(biomes.declarations(), context.configuration);

@@ -85,6 +85,7 @@ void read_planet(const PlanetCells& cells, std::span<const float> planet_elevati
 /// over each planet cell its mean again. Heights above the level of the sea are multiplied by 1 +
 /// a, depths below it by 1 - a, so that the coast stays where it is, with
 ///   a = (wanted mean - mean) / mean of |z|, from -1/2 to 1/2: ground keeps half of its relief.
+/// What is as the planet has it stays so.
 void restore_planets_means(const PlanetCells& cells, std::span<const float> planet_m,
                            std::span<float> z) {
   constexpr int kRounds = 3;  // what is restored in one cell changes the cells beside it
@@ -103,6 +104,7 @@ void restore_planets_means(const PlanetCells& cells, std::span<const float> plan
       share[k] = std::clamp((wanted_m[k] - mean_m[k]) / mean_relief_m[k], -kMost, kMost);
     }
     on_cells(fine, [&](int i, int j, Index c) {
+      if (z[c] == planet_m[c]) return;
       const double a = edge_ramp(fine, i, j, seam) *
                        std::clamp<double>(cells.interpolate(share, i, j), -kMost, kMost);
       z[c] *= static_cast<float>(z[c] > 0.0F ? 1.0 + a : 1.0 - a);

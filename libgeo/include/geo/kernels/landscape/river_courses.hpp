@@ -17,6 +17,8 @@ struct RiverCourses {
   std::vector<float> least_m;      ///< how far that may sink for the sake of hollows upstream
   /// How steep the sides of cuts are, one for each fine cell; empty: 0.15 everywhere.
   std::vector<float> side_slope;
+  /// Cost of a metre through each fine cell, over that through mean ground; empty: 1 everywhere.
+  std::vector<float> toughness;
   /// Steps along its course within which water may take a shorter way to a place downstream.
   int shortcut = 8;
 };

@@ -19,11 +19,14 @@ struct BreachLimits {
 /// highest first, the cheapest way (least section area, depth times length) to a lower cell is
 /// sought; if it keeps the limits, the cells along it are lowered to a gentle descent, though never
 /// below sea level. No pit appears that was not there. Returns the number of cuts.
+/// `toughness`: factor of the cost in each cell, or empty: through even ground the cheapest way
+/// would follow the directions of the grid.
 /// Method: least-cost breaching (Lindsay & Dhun 2015; Lindsay 2016), with limits on both depth and
 /// length. Cost: linear in cells, plus a search of some dozen cells for each pit.
 /// Arrays have one value per cell (`check_sizes`); Bug otherwise.
 int breach_depressions(const Grid& grid, std::span<const std::uint8_t> outlets,
-                       const BreachLimits& limits, std::span<float> elevation_m);
+                       const BreachLimits& limits, std::span<float> elevation_m,
+                       std::span<const float> toughness = {});
 
 /// How deep and how long a cut a river may make.
 struct GorgeLimits {

@@ -46,8 +46,10 @@ struct HydrologyParameters {
 /// the relative closing error.
 ///
 /// Over an open edge water leaves at every cell but those of its inflow and those that `shut` (one
-/// byte per cell, or none) marks: what is there flows on within the grid.
+/// byte per cell, or none) marks: what is there flows on within the grid. `toughness`: factor of
+/// what it costs to breach each cell, or none (breach_depressions).
 std::unique_ptr<Stage> make_hydrology_stage(HydrologyParameters parameters = {},
-                                            std::vector<std::uint8_t> shut = {});
+                                            std::vector<std::uint8_t> shut = {},
+                                            std::vector<float> toughness = {});
 
 }  // namespace geo
