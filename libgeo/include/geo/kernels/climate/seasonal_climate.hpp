@@ -23,32 +23,32 @@ struct SeasonalClimate {
   OceanCurrents currents;
   MoistureBudget moisture;
   SoilMoisture soil;
-  double itcz_share = 1.14;          ///< of the thermal equator's excursion that the cells follow
-  double itcz_lag_month = 1;         ///< by which the trough follows the warmth of the air
-  double heat_low_lag_month = 0.45;  ///< the same of heat lows and cold highs
-  double itcz_locality = 0;          ///< how far the trough follows its meridian's warmest latitude
-  double sensible_w_m2_k = 2.9;      ///< heating of the air over ground warmer than its parallel
-  double base_diffusivity_m2_s = 2.7e+06;
-  double eddy_diffusivity_m2_s = 4.5e+05;  ///< at the reference temperature gradient
-  double eddy_rain = 0.18;  ///< rain-out by eddies there, whether the mean air rises or sinks
+  double itcz_share = 0.6;            ///< of the thermal equator's excursion that the cells follow
+  double itcz_lag_month = 1;          ///< by which the trough follows the warmth of the air
+  double heat_low_lag_month = 0.266;  ///< the same of heat lows and cold highs
+  double itcz_locality = 0.0267;   ///< how far the trough follows its meridian's warmest latitude
+  double sensible_w_m2_k = 0.556;  ///< heating of the air over ground warmer than its parallel
+  double base_diffusivity_m2_s = 3.26e+06;
+  double eddy_diffusivity_m2_s = 5.06e+04;  ///< at the reference temperature gradient
+  double eddy_rain = 0.0854;  ///< rain-out by eddies there, whether the mean air rises or sinks
   double eddy_gradient_k_1000km = 3.87;  ///< the reference gradient
-  double eddy_exponent = 2.23;           ///< by which their strength grows with the gradient
-  double eddy_locality = 0;  ///< how far eddies follow the local gradient, not the parallel's
-  double gust_m_s = 4.48;    ///< of eddies' winds over the sea at the reference gradient
-  double cold_air_heat_j_m2_k = 3.9e+05;  ///< of air that evaporates as the sea warms it
-  double ascent_time_d = 29.5;            ///< convergence over this time multiplies rain-out by e
-  double descent_time_d = 0.996;          ///< the same of the descent that stationary waves make
-  double ascent_bound = 1.93;             ///< most that ascent adds to the logarithm of rain-out
-  double descent_bound = 1.93;            ///< most that descent takes from it
-  double eddy_descent_share = 0;          ///< of that descent which the rain of eddies feels
-  double ascent_latitude_deg = 36.1;  ///< at which converging winds make half as much rain as where
-                                      ///< rotation is weak
-  double ascent_smoothing_km = 575;   ///< over which ascent is felt
-  double convection_1_k = 0;          ///< growth of rain-out with excess moist static energy
-  double convection_latitude_deg = 20.9;  ///< to which the free atmosphere is level
-  double orographic_share = 0.0;  ///< of the mean height by which moist air is lifted over a cell
-  double blocking_height_m = 4.67e+03;  ///< height at which topography halves the moist flow
-  double land_transpiration = 1.0;      ///< share of the soil's evaporation that returns to the air
+  double eddy_exponent = 2.9;            ///< by which their strength grows with the gradient
+  double eddy_locality = 0.814;  ///< how far eddies follow the local gradient, not the parallel's
+  double gust_m_s = 3.34;        ///< of eddies' winds over the sea at the reference gradient
+  double cold_air_heat_j_m2_k = 6.18e+05;  ///< of air that evaporates as the sea warms it
+  double ascent_time_d = 26.2;             ///< convergence over this time multiplies rain-out by e
+  double descent_time_d = 1.9;             ///< the same of the descent that stationary waves make
+  double ascent_bound = 1.4;               ///< most that ascent adds to the logarithm of rain-out
+  double descent_bound = 3.57;             ///< most that descent takes from it
+  double eddy_descent_share = 0.45;        ///< of that descent which eddies feel
+  double ascent_latitude_deg = 43;   ///< at which converging winds make half as much rain as where
+                                     ///< rotation is weak
+  double ascent_smoothing_km = 529;  ///< over which ascent is felt
+  double convection_1_k = 0.02;      ///< growth of rain-out with excess moist static energy
+  double convection_latitude_deg = 36.7;  ///< to which the free atmosphere is level
+  double orographic_share = 0.01;         ///< of the mean height by which air is lifted over a cell
+  double blocking_height_m = 4.75e+03;    ///< height at which topography halves the moist flow
+  double land_transpiration = 1.0;  ///< share of the soil's evaporation that returns to the air
 };
 
 /// Water that passes between a surface and its air, m3 s-1 over the year. The two sides are summed
