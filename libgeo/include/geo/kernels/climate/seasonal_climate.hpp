@@ -40,7 +40,7 @@ struct SeasonalClimate {
   double descent_time_d = 1.9;             ///< the same of the descent that stationary waves make
   double ascent_bound = 1.4;               ///< most that ascent adds to the logarithm of rain-out
   double descent_bound = 3.57;             ///< most that descent takes from it
-  double eddy_descent_share = 0.45;        ///< of that descent which eddies feel
+  double eddy_descent_share = 0.45;        ///< of that descent which the rain of eddies feels
   double ascent_latitude_deg = 43;   ///< at which converging winds make half as much rain as where
                                      ///< rotation is weak
   double ascent_smoothing_km = 529;  ///< over which ascent is felt
