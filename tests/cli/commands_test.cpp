@@ -133,10 +133,10 @@ TEST_F(FinishedRun, InfoTellsWhatTheManifestTells) {
     const std::string table = told_by({"info", file});
     EXPECT_THAT(table, HasSubstr("stage    " + stage.at("name").get<std::string>()));
     const bool own_grid = stage.at("name") == "island";
-    EXPECT_THAT(table, HasSubstr(own_grid ? "1024 x 512 cells" : "72 x 36 cells, sphere"));
+    EXPECT_THAT(table, HasSubstr(own_grid ? "128 x 64 cells" : "72 x 36 cells, sphere"));
     EXPECT_THAT(table, HasSubstr("seed 11"));
     const auto json = nlohmann::json::parse(told_by({"info", "--json", file}));
-    EXPECT_EQ(json.at("nx"), own_grid ? 1024 : 72);
+    EXPECT_EQ(json.at("nx"), own_grid ? 128 : 72);
     EXPECT_EQ(json.at("seed"), 11);
     ASSERT_EQ(json.at("fields").size(), stage.at("fields").size());
     for (const auto& [name, field] : stage.at("fields").items()) {

@@ -12,13 +12,16 @@
 
 namespace geo {
 
-/// Arguments of a run that takes a moment: a coarse climate, no pictures, two threads.
+/// Arguments of a run that takes a moment: a coarse climate, a small island, no pictures, two
+/// threads.
 inline std::vector<std::string> quick_run(const std::filesystem::path& relief,
                                           const std::filesystem::path& folder,
                                           const std::vector<std::string>& more = {}) {
-  std::vector<std::string> arguments{
-      "run",           "--dem",     relief.string(), "-o",
-      folder.string(), "--no-maps", "--set",         "climate.resolution_deg=10"};
+  std::vector<std::string> arguments{"run", "--dem",         relief.string(),
+                                     "-o",  folder.string(), "--no-maps"};
+  for (const char* setting : {"climate.resolution_deg=10", "island.nx=128", "island.ny=64"}) {
+    arguments.insert(arguments.end(), {"--set", setting});
+  }
   if (std::find(more.begin(), more.end(), "--threads") == more.end()) {
     arguments.insert(arguments.end(), {"--threads", "2"});
   }

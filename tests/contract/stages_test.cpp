@@ -69,12 +69,16 @@ std::unique_ptr<Stage> quick(const StageEntry& entry, const std::string& model) 
   };
   set("plates.sphere.samples", "1500");
   set("plates.sphere.time_myr", "44");
+  set("plates.raster.map_columns", "96");
+  set("plates.raster.cycle_steps", "100");
   set("erosion.steps", "3");
   set("erosion.uplift_mm_yr", "0.2");
   set("erosion.rebound_fraction", "0.8");
   set("climate.resolution_deg", "10");
   set("climate.temperature_noise_k", "1");
   set("climate.precipitation_noise_mm_yr", "50");
+  set("island.nx", "96");
+  set("island.ny", "64");
   return stage;
 }
 

@@ -269,7 +269,7 @@ TEST(MemoryCap, OfAPartOfWhatARunTakesIsToldToTakeLonger) {
   std::array<double, 2> least_min;
   least_min.fill(std::numeric_limits<double>::infinity());
   const std::array<const char*, 2> caps{"1000GB", "20GB"};
-  constexpr int kPredictions = 3;
+  constexpr int kPredictions = 8;
   for (int time = 0; time < kPredictions; ++time) {
     for (std::size_t k = 0; k < caps.size(); ++k) {
       const std::string line = "time    about ";
