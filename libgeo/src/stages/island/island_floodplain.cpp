@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "geo/kernels/landscape/surface_detail.hpp"
+#include "geo/kernels/numerics/smoothing.hpp"
 #include "island_cells.hpp"
 
 namespace geo {
@@ -29,29 +30,11 @@ std::vector<float> square_bumps(const Grid& fine, std::span<const float> z) {
   return square;
 }
 
-/// Means over squares of 2 kReach + 1 cells, of which those beyond the edge do not count.
-std::vector<float> means_around(const Grid& fine, std::span<const float> values) {
-  constexpr int kReach = 2;
-  std::vector<float> along(values.size()), means(values.size());
-  const auto mean = [](int at, int end, const auto& value) {
-    const int first = std::max(0, at - kReach), last = std::min(end - 1, at + kReach);
-    float sum = 0.0F;
-    for (int k = first; k <= last; ++k) sum += value(k);
-    return sum / static_cast<float>(last - first + 1);
-  };
-  on_cells(fine, [&](int i, int j, Index c) {
-    along[c] = mean(i, fine.nx(), [&](int k) { return values[fine.cell(k, j)]; });
-  });
-  on_cells(fine, [&](int i, int j, Index c) {
-    means[c] = mean(j, fine.ny(), [&](int k) { return along[fine.cell(i, k)]; });
-  });
-  return means;
-}
-
 }  // namespace
 
 void roughen_floodplains(const PlanetCells& cells, const IslandParameters& p, std::uint64_t seed,
                          std::span<const std::uint8_t> held, std::span<float> z) {
+  constexpr double kAround_cells = 1.4;  // over which a place has as many bumps as it needs
   const Grid& fine = cells.fine();
   const DetailLaw law = plain_law(cells, p.cell_m);
   const double least_m = plain_roughness_m(p, law);
@@ -62,7 +45,8 @@ void roughen_floodplains(const PlanetCells& cells, const IslandParameters& p, st
   const double of_noise =
       std::accumulate(own.begin(), own.end(), 0.0) / static_cast<double>(own.size());
   std::transform(z.begin(), z.end(), ground_m.begin(), [](float h) { return std::max(h, 0.0F); });
-  const std::vector<float> bumps_m2 = means_around(fine, square_bumps(fine, ground_m));
+  std::vector<float> bumps_m2 = square_bumps(fine, ground_m);
+  smooth(fine, bumps_m2, kAround_cells * p.cell_m);
   on_cells(fine, [&](int, int, Index c) {
     if (z[c] < 0.0F || held[c] != 0) return;
     const double lacks_m2 = least_m * least_m - bumps_m2[c] / of_noise;
