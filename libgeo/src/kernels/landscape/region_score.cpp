@@ -70,8 +70,10 @@ void add_rows(const Grid& planet, std::span<const float> z,
   }
 }
 
-/// Figures of the window of columns first .. first + count - 1, wrapping.
-RegionFigures figures_of(const ColumnSums& sums, int first, int count) {
+/// Figures of the window of columns first .. first + count - 1, wrapping, whose middle row is
+/// given.
+RegionFigures figures_of(const Grid& planet, int middle, const ColumnSums& sums, int first,
+                         int count) {
   const int nx = static_cast<int>(sums.land.size());
   RegionFigures figures;
   float lowest = std::numeric_limits<float>::infinity(), highest = -lowest;
@@ -84,6 +86,9 @@ RegionFigures figures_of(const ColumnSums& sums, int first, int count) {
     highest = std::max(highest, sums.highest[i]);
   }
   const double area = sums.area * count;
+  const double width_m = count * planet.spacing_east_m(middle);
+  figures.coast_share =
+      figures.coast_fraction / planet.face_east_m(middle) / (2.0 * (width_m + area / width_m));
   figures.land_fraction /= area;
   figures.coast_fraction /= area;
   figures.boundary_fraction /= area;
@@ -205,13 +210,23 @@ Index wholest(std::span<const Candidate> candidates, const Grid& planet, std::sp
   return best.cell;
 }
 
+/// What mix, relief and boundaries make of a window whatever its coasts.
+double setting(const RegionFigures& figures) {
+  const double mix = 1.0 - std::abs(figures.land_fraction - 0.4) * 2.5;
+  const double range = std::min(figures.elevation_range_m / 5000.0, 1.0);
+  const double boundary = 1.0 + 2.0 * std::min(figures.boundary_fraction, 0.5);
+  return mix * range * boundary;
+}
+
 }  // namespace
 
 double RegionFigures::score(double noise) const {
-  const double mix = 1.0 - std::abs(land_fraction - 0.4) * 2.5;
-  const double range = std::min(elevation_range_m / 5000.0, 1.0);
-  const double boundary = 1.0 + 2.0 * std::min(boundary_fraction, 0.5);
-  return mix * coast_fraction * range * boundary + 0.3 * noise;
+  return setting(*this) * coast_fraction + 0.3 * noise;
+}
+
+double RegionFigures::appeal(double noise) const {
+  constexpr double kBetweenEquals = 1e-3;
+  return setting(*this) * std::min(coast_share, 1.0) * (1.0 + 0.3 * noise) + kBetweenEquals * noise;
 }
 
 RegionFigures region_figures(const Grid& planet, std::span<const float> elevation_m,
@@ -228,7 +243,7 @@ RegionFigures region_figures(const Grid& planet, std::span<const float> elevatio
   add_rows(planet, elevation_m, boundary_type, std::max(0, j - reach.rows),
            std::min(planet.ny() - 1, j + reach.rows), i - reach.columns, i + reach.columns + 1,
            sums);
-  return figures_of(sums, 0, count);
+  return figures_of(planet, j, sums, 0, count);
 }
 
 double region_noise(const Grid& planet, Index centre, double width_m, std::uint64_t seed) {
@@ -241,7 +256,7 @@ double region_noise(const Grid& planet, Index centre, double width_m, std::uint6
 }
 
 double RegionLand::weight() const {
-  constexpr double kCut = 0.15, kOthers = 3.0;
+  constexpr double kCut = 0.4, kOthers = 3.0;
   return std::clamp(1.0 - kCut * main - kOthers * others, 0.0, 1.0);
 }
 
@@ -284,10 +299,12 @@ Index best_region(const Grid& planet, std::span<const float> elevation_m,
       std::vector<Candidate>& candidates = of_row[at];
       for (int i = 0; i < planet.nx(); i += std::max(1, count / 8)) {
         const Index cell = planet.cell(i, j);
-        const RegionFigures figures = figures_of(sums, i - reach.columns, count);
+        const RegionFigures figures = figures_of(planet, j, sums, i - reach.columns, count);
         const bool is_small = reach.columns == 1 || reach.rows == 1;
-        candidates.push_back({is_small ? elevation_m[cell] >= 0.0F : figures.land_fraction > 0.0,
-                              figures.score(region_noise(planet, cell, width_m, seed)), cell});
+        const double noise = region_noise(planet, cell, width_m, seed);
+        candidates.push_back(
+            {is_small ? elevation_m[cell] >= 0.0F : figures.land_fraction > 0.0,
+             rule == RegionRule::figures ? figures.score(noise) : figures.appeal(noise), cell});
       }
       keep_best(candidates);
     });

@@ -48,16 +48,16 @@ void local_roughness(const PlanetCells& cells, std::span<const float> planet_ele
 #pragma omp parallel for schedule(static)
   for (int j = cells.first_row(); j < end; ++j) {
     for (int i = 0; i < planet.nx(); ++i) {
-      double sum = variance[cells.at(i, j)];
-      int count = 1;
+      double weight = 4.0, sum = weight * variance[cells.at(i, j)];
       for (int k = 0; k < kDirections; ++k) {
         const Index next = planet.neighbour(i, j, k);
         const int row = planet.row(next);
         if (row < cells.first_row() || row >= end) continue;
-        sum += variance[cells.at(planet.column(next), row)];
-        ++count;
+        const double of_next = k % 2 == 0 ? 2.0 : 1.0;  // beside the cell, or at its corner
+        sum += of_next * variance[cells.at(planet.column(next), row)];
+        weight += of_next;
       }
-      covered[cells.at(i, j)] = static_cast<float>(std::sqrt(sum / count));
+      covered[cells.at(i, j)] = static_cast<float>(std::sqrt(sum / weight));
     }
   }
 }

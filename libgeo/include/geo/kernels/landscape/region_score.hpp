@@ -12,11 +12,18 @@ namespace geo {
 ///   mix = 1 - 2.5 |land fraction - 0.4|
 ///   score = mix * coast fraction * min(elevation range / 5000 m, 1)
 ///           * (1 + 2 min(boundary fraction, 0.5)) + 0.3 noise
-/// Coast cells are land (elevation >= 0) with sea in one of four neighbours.
+/// Coast cells are land (elevation >= 0) with sea in one of four neighbours: the finer the planet's
+/// grid, the smaller their share, until noise alone decides. The appeal of a window is the same
+/// without that: coasts count by their length over the circumference of the window, 1 at most, and
+/// noise multiplies (design):
+///   appeal = mix * min(coast, 1) * min(elevation range / 5000 m, 1)
+///            * (1 + 2 min(boundary fraction, 0.5)) * (1 + 0.3 noise) + 0.001 noise
 struct RegionFigures {
   double land_fraction = 0.0, coast_fraction = 0.0, boundary_fraction = 0.0;
+  double coast_share = 0.0;  ///< length, a cell as long as a row is high, over the circumference
   double elevation_range_m = 0.0;
   [[nodiscard]] double score(double noise) const;
+  [[nodiscard]] double appeal(double noise) const;
 };
 
 /// The window of `width_m` x `height_m` round a cell: whole rows and columns of the planet, as many
@@ -33,7 +40,7 @@ RegionFigures region_figures(const Grid& planet, std::span<const float> elevatio
 /// or every third and so on.
 struct RegionLand {
   double whole = 0.0, main = 0.0, others = 0.0;
-  /// What its score is multiplied by where it is positive: 1 for islands, 0.85 for one coast, less
+  /// What its score is multiplied by where it is positive: 1 for islands, 0.6 for one coast, less
   /// the more of other lands the window cuts (design).
   [[nodiscard]] double weight() const;
 };
@@ -41,7 +48,7 @@ struct RegionLand {
 RegionLand region_land(const Grid& planet, std::span<const float> elevation_m, Index centre,
                        double width_m, double height_m);
 
-/// By what windows are compared: by eq. 9.1 alone, or also by how whole their land is.
+/// By what windows are compared: by eq. 9.1, or by their appeal and by how whole their land is.
 enum class RegionRule { figures, whole };
 
 /// The best window's centre cell, of those that have land where any has. Windows smaller than three
