@@ -12,9 +12,9 @@ namespace geo {
 /// Roughness of a planet's surface at the scale of its own cells, m: the root mean square, over the
 /// four directions through a cell, of its height above the mean of the two neighbours, and over the
 /// cell and its eight neighbours with the weights 4, 2 (sides) and 1 (corners): about a single
-/// mount a disc is rough, not a square. Slopes do not count, and heights beyond a shore count as the sea
-/// level. `covered` holds one value per covered cell of the planet.
-/// `planet_elevation_m`: one value per cell of the planet; `covered`: cells.size(). Bug otherwise.
+/// mount a disc is rough, not a square. Slopes do not count, and heights beyond a shore count as
+/// the sea level. `covered` holds one value per covered cell of the planet. `planet_elevation_m`:
+/// one value per cell of the planet; `covered`: cells.size(). Bug otherwise.
 void local_roughness(const PlanetCells& cells, std::span<const float> planet_elevation_m,
                      std::span<float> covered);
 
