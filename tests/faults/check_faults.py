@@ -17,14 +17,16 @@ import sys
 import time
 from pathlib import Path
 
+COARSE_AIR = ["--set", "climate.resolution_deg=10"]
 PLANET = ["run", "--preset", "preview", "--grid", "96x48", "--to", "island", "--set", "output.vtk=true",
-          "--set", "output.globe=true", "--set", "output.map_width_px=300", "--set", "island.nx=64", "--set", "island.ny=32", "--set", "erosion.steps=10",
-          "--threads", "2"]
+          "--set", "output.globe=true", "--set", "output.map_width_px=300", "--set", "island.nx=64", "--set", "island.ny=32",
+          "--set", "erosion.steps=10", *COARSE_AIR, "--threads", "2"]
 DRIFT = ["run", "--preset", "sphere", "--grid", "64x32", "--to", "erosion", "--no-maps", "--set",
-         "plates.sphere.samples=3000", "--set", "plates.sphere.time_myr=120", "--set", "plates.sphere.frames_myr=10", "--threads", "2"]
+         "plates.sphere.samples=3000", "--set", "plates.sphere.time_myr=120", "--set", "plates.sphere.frames_myr=10",
+         *COARSE_AIR, "--threads", "2"]
 FIT = ["calibrate", "--target", "earth", "--preset", "preview", "--set", "calibration.grid=64x32", "--set",
        "calibration.seeds=1", "--set", "calibration.held_out=2", "--set", "calibration.held_out_grid=", "--set",
-       "calibration.iterations=3", "--set", "climate.resolution_deg=10", "--threads", "2"]
+       "calibration.iterations=3", *COARSE_AIR, "--threads", "2"]
 
 
 class Failure(Exception):

@@ -90,8 +90,8 @@ class LimitedMemory : public testing::Test {
 TEST_F(LimitedMemory, ThatRunsOutInARunIsToldAtTwentyLimits) {
   const TemporaryFolder folder;
   expect_told_at_all_limits({"run", "--preset", "preview", "--grid", "512x256", "--to", "hydrology",
-                             "--set", "erosion.steps=5", "--threads", "2", "--quiet", "--overwrite",
-                             "-o", folder / "out"});
+                             "--set", "erosion.steps=5", "--set", "climate.resolution_deg=10",
+                             "--threads", "2", "--quiet", "--overwrite", "-o", folder / "out"});
 }
 
 TEST_F(LimitedMemory, ThatRunsOutInFilesAndPicturesIsToldAtTwentyLimits) {
