@@ -57,6 +57,14 @@ TEST(RegionScore, IsTheFormulaOverTrueAreas) {
                                   (1.0 + 2.0 * std::min(edge / area, 0.5)) +
                               0.3 * 0.25;
       EXPECT_NEAR(figures.score(0.25), expected, 1e-9);
+      const double across_m = columns * planet.spacing_east_m(26);
+      const double circumference_m = 2.0 * (across_m + area / across_m);
+      const double shore = coast / planet.spacing_north_m(26) / circumference_m;
+      EXPECT_NEAR(figures.coast_share, shore, 0.01 * shore);
+      EXPECT_NEAR(figures.appeal(0.25) - 0.001 * 0.25,
+                  (expected - 0.3 * 0.25) * area / coast * std::min(figures.coast_share, 1.0) *
+                      (1.0 + 0.3 * 0.25),
+                  1e-9);
     }
   }
   EXPECT_TRUE(found);
@@ -79,7 +87,7 @@ TEST(RegionScore, FindsTheCoastAndKeepsAwayFromThePoles) {
   EXPECT_GE(near, 7);
 }
 
-// A tenth of the window's land on one islet, or half of it on a large island: on any grid.
+// An islet that takes a tenth of the window, or an island that takes a third of it: on any grid.
 TEST(RegionScore, PrefersTheLargerIslandHoweverFineTheCellsAre) {
   for (const int ny : {90, 180, 360}) {
     const Grid planet = Grid::sphere(2 * ny, ny);
