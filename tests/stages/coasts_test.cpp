@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstdlib>
 #include <vector>
 
 #include "geo/kernels/water/flow_graph.hpp"
+#include "geo/kernels/water/sea_parts.hpp"
 #include "geo/stages/erosion/landscape.hpp"
 #include "geo/stages/erosion/seas.hpp"
 #include "geo/stages/erosion/wear_down.hpp"
@@ -71,6 +73,33 @@ TEST(Coasts, FlatsDrownFromTheirShoresOn) {
                                            : 97.0F;
     ASSERT_FLOAT_EQ(z[c], expected_m) << "row " << j;
   }
+}
+
+/// A sea within high land with one low pass, and a shoal off its end. The strait adds to the sea,
+/// whose level falls below the shoal.
+TEST(Coasts, StraitsStayOpenWhereTheSeaSinksBelowAShoalBeforeThem) {
+  const Grid grid = Grid::sphere(96, 48);
+  constexpr int kShelf = 4, kColumn = 48, kRow = 24, kSea = 4, kLand = 9;  // rows; from the middle
+  std::vector<float> z(grid.size());
+  for (Index c = 0; c < grid.size(); ++c) {
+    const int east = std::abs(grid.column(c) - kColumn), north = grid.row(c) - kRow;
+    const int away = std::max(east, std::abs(north));
+    z[c] = away <= kSea || away > kLand ? -4000.0F : east == 0 && north > 0 ? 50.0F : 2000.0F;
+    if (north == kLand + 1 && east <= 1) z[c] = -0.2F;
+    if (grid.row(c) < kShelf) z[c] = -10.0F;
+  }
+  const ErosionParameters p;
+  const double share = share_of_sea(grid, z);
+  ASSERT_EQ(parts_of_sea(grid, z).size(), 2U);
+  std::vector<float> once = z;
+  ASSERT_TRUE(join_seas(p, grid, once));
+  ASSERT_TRUE(keep_sea_share(p, grid, once, share));
+  ASSERT_EQ(parts_of_sea(grid, once).size(), 2U) << "the shoal does not fall dry";
+
+  ASSERT_TRUE(settle_seas(p, grid, z, share));
+  EXPECT_EQ(parts_of_sea(grid, z).size(), 1U);
+  const double cell = grid.area_m2(kRow) / grid.total_area_m2();
+  EXPECT_NEAR(share_of_sea(grid, z), share, cell);
 }
 
 }  // namespace

@@ -193,12 +193,7 @@ void ErosionRun::finish() {
   landscape_.relax();
   reshape([&] { return SurfaceFinish(p_, grid_, context_).reshape(elevation_m_); });
   if (p_.steps > 0) {
-    const auto keep_share = [&] {
-      return reshape([&] { return keep_sea_share(p_, grid_, elevation_m_, sea_share_); });
-    };
-    // Where the sea has sunk, straits may have fallen dry.
-    keep_share();
-    if (reshape([&] { return join_seas(p_, grid_, elevation_m_); })) keep_share();
+    reshape([&] { return settle_seas(p_, grid_, elevation_m_, sea_share_); });
   }
   strike(p_.steps);
   climate_.reset();  // files have the area

@@ -83,4 +83,17 @@ bool keep_sea_share(const ErosionParameters& p, const Grid& grid, std::span<floa
   return true;
 }
 
+bool settle_seas(const ErosionParameters& p, const Grid& grid, std::span<float> elevation_m,
+                 double share) {
+  // A strait adds to the sea, which sinks; where that lays shoals dry that a way led over, another
+  // is cut, and the sea sinks again, each time by less.
+  constexpr int kStraits = 6;
+  bool changed = keep_sea_share(p, grid, elevation_m, share);
+  for (int time = 0; time < kStraits && join_seas(p, grid, elevation_m); ++time) {
+    changed = true;
+    if (time + 1 < kStraits) keep_sea_share(p, grid, elevation_m, share);
+  }
+  return changed;
+}
+
 }  // namespace geo

@@ -34,4 +34,9 @@ bool join_seas(const ErosionParameters& parameters, const Grid& grid, std::span<
 bool keep_sea_share(const ErosionParameters& parameters, const Grid& grid,
                     std::span<float> elevation_m, double share);
 
+/// Both in turn, until the sea covers `share` and no strait has fallen dry; straits come last.
+/// Returns whether anything changed.
+bool settle_seas(const ErosionParameters& parameters, const Grid& grid,
+                 std::span<float> elevation_m, double share);
+
 }  // namespace geo
