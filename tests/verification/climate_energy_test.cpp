@@ -459,7 +459,7 @@ struct Currents {
 
 EnergyBalance only_upwelling() {
   EnergyBalance model;
-  model.gyre_heat_w_m2 = model.subpolar_heat_w_m2 = 0.0;
+  model.gyre_heat_w_m2 = model.subpolar_heat_w_m2 = model.coastal_upwelling_w_m2 = 0.0;
   model.upwelling_w_m2 = 50.0;
   model.upwelling_reach_km = 6000.0;
   return model;
@@ -473,6 +473,90 @@ TEST(OceanHeat, WellsUpAtTheEquatorOffTheCoastThatTradesLeave) {
   EXPECT_NEAR(back.at(20, 15), forward.at(59, 15), 1e-9) << "mirrored";
   const Currents narrow(only_upwelling(), false, 50);
   EXPECT_GT(narrow.at(59, 15), 0.7 * forward.at(59, 15)) << "a narrow ocean is tilted less";
+}
+
+TEST(OceanHeat, WellsUpAtTheEquatorUnderTradesAlone) {
+  EnergyBalance model = only_upwelling();
+  model.upwelling_trades_m_s = 6.0;
+  for (const bool retrograde : {false, true}) {
+    const double forward = retrograde ? -1.0 : 1.0;
+    const Currents always(model, retrograde);
+    const auto& planet = always.planet;
+    const auto under = [&](double wind_m_s) {
+      std::vector<double> heat_w_m2(planet.land.size());
+      const std::vector<double> winds_m_s(planet.grid.nx(), forward * wind_m_s);
+      ocean_heat(planet.grid, model, retrograde, planet.latitude, planet.land, heat_w_m2,
+                 winds_m_s);
+      return heat_w_m2;
+    };
+    EXPECT_EQ(under(-9.0), always.heat_w_m2);
+    const auto half = under(-2.0), none = under(2.0);
+    for (Index c = 0; c < planet.grid.size(); ++c) {
+      ASSERT_NEAR(half[c], 0.5 * always.heat_w_m2[c], 1e-9);
+      ASSERT_EQ(none[c], 0.0);
+    }
+  }
+}
+
+// What is known when the winds are is what would have been found with them from the start.
+TEST(OceanHeat, TemperaturesFollowTheWindsAlongTheEquator) {
+  const EnergyBalance model;
+  const Currents currents(model, false);
+  const WindyPlanet& planet = currents.planet;
+  const std::vector<float> flat(planet.land.size(), 0.0F);
+  const auto begin = [&](const EnergyBalance& energy) {
+    return EnergyBalanceYear(planet.grid, energy, false, planet.latitude, planet.land, flat, {},
+                             {});
+  };
+  const auto differ_most_k = [&](const TemperatureCycle& a, const TemperatureCycle& b) {
+    double most = 0.0;
+    for (std::size_t c = 0; c < flat.size(); ++c) {
+      most = std::max(most, std::abs(a.mean_c(c) - b.mean_c(c)));
+    }
+    return most;
+  };
+  EnergyBalanceYear year = begin(model);
+  const TemperatureCycle first = year.temperature();
+  year.upwell(std::vector<double>(planet.grid.nx(), -1e3));
+  EXPECT_LT(differ_most_k(year.temperature(), first), 0.01) << "trades all along, as assumed";
+  EnergyBalance without = model;
+  without.upwelling_w_m2 = 0.0;
+  const EnergyBalanceYear expected = begin(without);
+  EXPECT_GT(differ_most_k(first, expected.temperature()), 1.0);
+  year.upwell(std::vector<double>(planet.grid.nx(), 1e3));
+  EXPECT_LT(differ_most_k(year.temperature(), expected.temperature()), 0.3) << "westerlies";
+}
+
+TEST(OceanHeat, WellsUpOffEasternCoastsBelowTheSubtropicalHighs) {
+  EnergyBalance model = only_upwelling();
+  model.upwelling_w_m2 = 0.0;
+  model.coastal_upwelling_w_m2 = 40.0;
+  model.coastal_upwelling_reach_km = 1500.0;
+  const Currents forward(model, false), back(model, true);
+  const int below_highs = 18, polar = 24;  // 21 and 57 N
+  EXPECT_LT(forward.at(59, below_highs), forward.at(22, below_highs) - 25.0) << "by the coast";
+  EXPECT_GT(forward.at(22, below_highs), 0.0) << "far from it";
+  EXPECT_NEAR(forward.at(59, polar), forward.at(40, polar), 1e-9) << "poleward of the highs";
+  EXPECT_GT(forward.at(59, 15), forward.at(22, 15) - 3.0) << "near the equator";
+  EXPECT_NEAR(back.at(20, below_highs), forward.at(59, below_highs), 1e-9) << "mirrored";
+}
+
+TEST(OceanHeat, MakesTheSeaWarmerThanTheAirByWhatItPassesOn) {
+  const EnergyBalance model;
+  const Currents currents(model, false);
+  const auto& planet = currents.planet;
+  std::vector<double> annual_mean_c(planet.land.size(), 20.0);
+  const Index frozen = planet.grid.cell(40, 28), open = planet.grid.cell(59, 18);
+  annual_mean_c[frozen] = -40.0;
+  const auto warmer_k =
+      sea_warmth_k(planet.grid, model, false, planet.latitude, planet.land, annual_mean_c);
+  EXPECT_NEAR(warmer_k[open] * sea_exchange_w_m2_k(model, 20.0), currents.heat_w_m2[open], 1e-4);
+  EXPECT_LT(warmer_k[open], -0.5F);
+  EXPECT_NEAR(warmer_k[frozen], 0.0F, 1e-3F) << "ice keeps the air from the water";
+  EXPECT_EQ(warmer_k[planet.grid.cell(10, 18)], 0.0F) << "on land";
+  EXPECT_DOUBLE_EQ(sea_exchange_w_m2_k(model, 15.0), model.sea_exchange_w_m2_k);
+  EXPECT_GT(sea_exchange_w_m2_k(model, 25.0), 1.2 * model.sea_exchange_w_m2_k);
+  EXPECT_LT(dry_sea_exchange_w_m2_k(model), 0.6 * model.sea_exchange_w_m2_k);
 }
 
 TEST(OceanHeat, IsMovedAndNotMade) {
@@ -489,7 +573,7 @@ TEST(OceanHeat, IsMovedAndNotMade) {
 
 TEST(OceanHeat, WarmsTheEasternCoastsOfSubpolarSeas) {
   EnergyBalance model;
-  model.gyre_heat_w_m2 = model.upwelling_w_m2 = 0.0;
+  model.gyre_heat_w_m2 = model.upwelling_w_m2 = model.coastal_upwelling_w_m2 = 0.0;
   model.subpolar_heat_w_m2 = 40.0;
   const Currents currents(model, false);
   const int subpolar = 25, subtropical = 20;  // 63 and 33 N

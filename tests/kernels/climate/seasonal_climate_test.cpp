@@ -190,6 +190,33 @@ TEST(SeasonalClimate, ConvectionRainsOverTheWarmestSeas) {
   EXPECT_GT(with, without + 0.01) << without;
 }
 
+// Gyres make the west of the sea warmer than its air and the east colder. Where water and air
+// hardly differ, as they exchange all heat at once, only the temperature of the air tells them
+// apart.
+TEST(SeasonalClimate, SeaThatIsWarmerThanTheAirHasMoreRainAboveIt) {
+  const Continent continent;
+  const auto west_over_east = [&](double exchange_w_m2_k) {
+    SeasonalClimate model;
+    model.energy.sea_exchange_w_m2_k = exchange_w_m2_k;
+    const SeasonalFields fields = continent.solve(model);
+    const auto rain_mm = [&](int first, int end) {
+      double sum = 0.0;
+      for (Index c = 0; c < continent.grid.size(); ++c) {
+        const int i = continent.grid.column(c), j = continent.grid.row(c);
+        const double latitude = std::abs(continent.latitude_deg[j]);
+        if (i < first || i >= end || latitude < 10.0 || latitude > 40.0) continue;
+        for (const auto& month : fields.precipitation_mm)
+          sum += continent.grid.area_m2(j) * month[c];
+      }
+      return sum;
+    };
+    constexpr int kWide = 12;
+    return rain_mm(Continent::kEast, Continent::kEast + kWide) /
+           rain_mm(Continent::kWest - kWide, Continent::kWest);
+  };
+  EXPECT_GT(west_over_east(20.0), 1.05 * west_over_east(200.0));
+}
+
 TEST(SeasonalClimate, EddiesRainLessUnderSinkingAir) {
   const Continent continent;
   SeasonalClimate model;

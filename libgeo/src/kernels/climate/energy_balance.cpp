@@ -180,14 +180,6 @@ class Surface {
                (model_.ice_heat_capacity_w_yr_m2_k - model_.ocean_heat_capacity_w_yr_m2_k);
   }
 
-  /// Heat and vapour that pass from sea to air, per kelvin.
-  [[nodiscard]] double exchange_w_m2_k(double annual_mean_c) const {
-    const auto moist = [](double temperature_c) {
-      return 1.0 + latent_to_sensible_slope(temperature_c);
-    };
-    return model_.sea_exchange_w_m2_k * moist(annual_mean_c) / moist(15.0);
-  }
-
   /// How the sea answers one harmonic of the year through its exchange with the air, C dT_s/dt =
   /// Q_s + g (T - T_s): what takes the place of i omega C in the air's equation, and the share of
   /// the source that reaches the air.
@@ -197,7 +189,7 @@ class Surface {
   [[nodiscard]] Answer answer(int k, double annual_mean_c, Index cell) const {
     const Complex land_loss(0.0, 2.0 * kPi * k * model_.land_heat_capacity_w_yr_m2_k);
     const Complex sea_loss(0.0, 2.0 * kPi * k * sea_capacity_w_yr_m2_k(annual_mean_c));
-    const double land = land_[cell], exchange = exchange_w_m2_k(annual_mean_c);
+    const double land = land_[cell], exchange = sea_exchange_w_m2_k(model_, annual_mean_c);
     const Complex passed = exchange / (exchange + sea_loss);
     return {
         land * land_loss + (1.0 - land) * sea_loss * passed,
@@ -264,6 +256,17 @@ double open_to_heat(const EnergyBalance& model, double height_m) {
   return 1.0 / (1.0 + relative * relative);
 }
 
+double sea_exchange_w_m2_k(const EnergyBalance& model, double annual_mean_c) {
+  const auto moist = [](double temperature_c) {
+    return 1.0 + latent_to_sensible_slope(temperature_c);
+  };
+  return model.sea_exchange_w_m2_k * moist(annual_mean_c) / moist(15.0);
+}
+
+double dry_sea_exchange_w_m2_k(const EnergyBalance& model) {
+  return model.sea_exchange_w_m2_k / (1.0 + latent_to_sensible_slope(15.0));
+}
+
 double sea_ice_share(const EnergyBalance& model, double annual_mean_c) {
   return frozen_share(annual_mean_c, model.ice_temperature_c, model.ice_width_k);
 }
@@ -275,13 +278,17 @@ class PeriodicYear {
  public:
   PeriodicYear(const Grid& grid, const EnergyBalance& model, bool retrograde,
                std::span<const double> latitude_deg, std::span<const float> land_fraction,
-               std::span<const float> height_m, const HeatWinds& winds,
+               std::span<const float> height_m, HeatWinds winds,
                std::span<const float> glacier_fraction)
       : grid_(grid),
         model_(model),
+        retrograde_(retrograde),
+        latitude_deg_(latitude_deg),
+        land_(land_fraction),
+        winds_(std::move(winds)),
         size_(static_cast<std::size_t>(grid.size())),
         surface_(grid, model, latitude_deg, land_fraction, height_m, glacier_fraction),
-        advection_(grid, model.advected_heat_j_m2_k, winds),
+        advection_(grid, model.advected_heat_j_m2_k, winds_),
         ocean_(size_),
         diffusivity_(size_),
         temperature_(size_) {
@@ -296,28 +303,50 @@ class PeriodicYear {
 
   /// Snow, ice, winds and moist transport follow the temperature; factors are kept while they still
   /// do.
-  TemperatureCycle solve() && {
+  void solve() {
     constexpr int kRounds = 14, kFactorRounds = 3;
-    constexpr double kNear = 1e-4, kClosed = 1e-7;
     for (int round = 0; round < kRounds; ++round) {
       const bool refactor = round < kFactorRounds;
       if (refactor) take_coefficients();
       gather_sources(round > 0);
       if (round > 0) advection_.advance(temperature_);
-      ParallelErrors errors;
-#pragma omp parallel for schedule(dynamic, 1)
-      for (int k = 0; k <= kHarmonics; ++k) {
-        errors.guard([&] {
-          if (refactor) factor(k);
-          solve(k, round + 1 < kRounds ? kNear : kClosed);
-        });
-      }
-      errors.rethrow();
+      solve_harmonics(refactor, round + 1 == kRounds);
     }
-    return std::move(temperature_);
   }
 
+  void upwell(std::span<const double> equatorial_wind_m_s) {
+    constexpr int kRounds = 6;
+    const std::vector<double> before = ocean_;
+    ocean_heat(grid_, model_, retrograde_, latitude_deg_, land_, ocean_, equatorial_wind_m_s);
+    for (std::size_t cell = 0; cell < size_; ++cell) {
+      sources_[0][cell] +=
+          grid_.area_m2(grid_.row(static_cast<Index>(cell))) * (ocean_[cell] - before[cell]);
+    }
+    for (int round = 0; round < kRounds; ++round) {
+      if (round > 0) {
+        gather_sources(true);
+        advection_.advance(temperature_);
+      }
+      solve_harmonics(false, round + 1 == kRounds);
+    }
+  }
+
+  [[nodiscard]] const TemperatureCycle& temperature() const { return temperature_; }
+
  private:
+  void solve_harmonics(bool refactor, bool last) {
+    constexpr double kNear = 1e-4, kClosed = 1e-7;
+    ParallelErrors errors;
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int k = 0; k <= kHarmonics; ++k) {
+      errors.guard([&] {
+        if (refactor) factor(k);
+        solve(k, last ? kClosed : kNear);
+      });
+    }
+    errors.rethrow();
+  }
+
   void take_coefficients() {
     for (std::size_t cell = 0; cell < size_; ++cell) {
       diffusivity_[cell] =
@@ -381,6 +410,10 @@ class PeriodicYear {
 
   const Grid& grid_;
   const EnergyBalance& model_;
+  bool retrograde_;
+  std::span<const double> latitude_deg_;
+  std::span<const float> land_;
+  HeatWinds winds_;
   std::size_t size_;
   Surface surface_;
   HeatAdvection advection_;
@@ -393,19 +426,42 @@ class PeriodicYear {
 
 }  // namespace
 
-TemperatureCycle solve_energy_balance(const Grid& grid, const EnergyBalance& model, bool retrograde,
-                                      std::span<const double> latitude_deg,
-                                      std::span<const float> land_fraction,
-                                      std::span<const float> height_m, const HeatWinds& winds,
-                                      std::span<const float> glacier_fraction) {
+class EnergyBalanceYear::Solver : public PeriodicYear {
+  using PeriodicYear::PeriodicYear;
+};
+
+EnergyBalanceYear::EnergyBalanceYear(const Grid& grid, const EnergyBalance& model, bool retrograde,
+                                     std::span<const double> latitude_deg,
+                                     std::span<const float> land_fraction,
+                                     std::span<const float> height_m, HeatWinds winds,
+                                     std::span<const float> glacier_fraction) {
   check_sizes("solve_energy_balance", grid.ny(), {{"latitude_deg", latitude_deg.size()}});
   check_sizes("solve_energy_balance", grid.size(),
               {{"land_fraction", land_fraction.size()},
                {"height_m", height_m.size()},
                {"glacier_fraction", glacier_fraction.size(), ArraySize::May::be_empty}});
-  return PeriodicYear(grid, model, retrograde, latitude_deg, land_fraction, height_m, winds,
-                      glacier_fraction)
-      .solve();
+  solver_ = std::make_unique<Solver>(grid, model, retrograde, latitude_deg, land_fraction, height_m,
+                                     std::move(winds), glacier_fraction);
+  solver_->solve();
+}
+
+EnergyBalanceYear::EnergyBalanceYear(EnergyBalanceYear&&) noexcept = default;
+EnergyBalanceYear::~EnergyBalanceYear() = default;
+
+const TemperatureCycle& EnergyBalanceYear::temperature() const { return solver_->temperature(); }
+
+void EnergyBalanceYear::upwell(std::span<const double> equatorial_wind_m_s) {
+  solver_->upwell(equatorial_wind_m_s);
+}
+
+TemperatureCycle solve_energy_balance(const Grid& grid, const EnergyBalance& model, bool retrograde,
+                                      std::span<const double> latitude_deg,
+                                      std::span<const float> land_fraction,
+                                      std::span<const float> height_m, const HeatWinds& winds,
+                                      std::span<const float> glacier_fraction) {
+  return EnergyBalanceYear(grid, model, retrograde, latitude_deg, land_fraction, height_m, winds,
+                           glacier_fraction)
+      .temperature();
 }
 
 }  // namespace geo

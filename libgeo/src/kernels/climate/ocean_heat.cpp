@@ -93,28 +93,49 @@ class Parallel {
   std::span<const float> land_fraction_;
 };
 
-/// Currents move heat and make none: what they release too much is taken from all water alike.
-void close_budget(const Grid& grid, std::span<const float> land_fraction,
-                  std::span<double> heat_w_m2) {
-  const double water_m2 =
-      area_sum<double>(grid, [&](Index cell) { return 1.0 - land_fraction[cell]; });
+/// Currents move heat and make none: what they release too much is taken from all water, and what
+/// they take too much is given to it, less and less towards the poles.
+void close_budget(const Grid& grid, std::span<const double> latitude_deg,
+                  std::span<const float> land_fraction, std::span<double> heat_w_m2) {
+  const auto share = [&](Index cell) {
+    const double cosine = std::cos(latitude_deg[grid.row(cell)] * kRadians);
+    return cosine * cosine * (1.0 - land_fraction[cell]);
+  };
+  const double water_m2 = area_sum<double>(grid, share);
   if (water_m2 <= 0.0) return;
   const double excess_w_m2 =
       area_sum<double>(grid, [&](Index cell) { return heat_w_m2[cell]; }) / water_m2;
   for (std::size_t cell = 0; cell < heat_w_m2.size(); ++cell) {
-    heat_w_m2[cell] -= excess_w_m2 * (1.0 - land_fraction[cell]);
+    heat_w_m2[cell] -= excess_w_m2 * share(static_cast<Index>(cell));
   }
+}
+
+/// Of each column of the equator, how far the winds there are trades.
+std::vector<double> share_of_trades(int nx, const EnergyBalance& model, bool retrograde,
+                                    std::span<const double> wind_m_s) {
+  constexpr double kCalm_m_s = 1.0;
+  std::vector<double> share(nx, 1.0);
+  for (std::size_t i = 0; i < wind_m_s.size(); ++i) {
+    const double forward_m_s = retrograde ? -wind_m_s[i] : wind_m_s[i];
+    share[i] = std::clamp((kCalm_m_s - forward_m_s) / model.upwelling_trades_m_s, 0.0, 1.0);
+  }
+  return share;
 }
 
 }  // namespace
 
 void ocean_heat(const Grid& grid, const EnergyBalance& model, bool retrograde,
                 std::span<const double> latitude_deg, std::span<const float> land_fraction,
-                std::span<double> heat_w_m2) {
+                std::span<double> heat_w_m2, std::span<const double> equatorial_wind_m_s) {
   check_sizes("ocean_heat", grid.ny(), {{"latitude_deg", latitude_deg.size()}});
   check_sizes("ocean_heat", grid.size(),
               {{"land_fraction", land_fraction.size()}, {"heat_w_m2", heat_w_m2.size()}});
-  constexpr double kUpwelling_deg = 5.0, kNone = 1e-6;
+  check_sizes("ocean_heat", grid.nx(),
+              {{"equatorial_wind_m_s", equatorial_wind_m_s.size(), ArraySize::May::be_empty}});
+  const std::vector<double> trades =
+      share_of_trades(grid.nx(), model, retrograde, equatorial_wind_m_s);
+  const std::vector<double> always(grid.nx(), 1.0);
+  constexpr double kHighs_deg = 22.0, kNone = 1e-6;
   for (int j = 0; j < grid.ny(); ++j) {
     const Parallel parallel(grid, j, retrograde, land_fraction);
     const double curl = std::sin(4.0 * std::abs(latitude_deg[j]) * kRadians);
@@ -125,17 +146,42 @@ void ocean_heat(const Grid& grid, const EnergyBalance& model, bool retrograde,
     for (int i = 0; i < grid.nx(); ++i) {
       heat_w_m2[grid.cell(i, j)] = gyre * contrast[i] * (1.0 - parallel.land(i));
     }
-    const double from_equator = latitude_deg[j] / kUpwelling_deg;
-    const double upwelling = model.upwelling_w_m2 * std::exp(-from_equator * from_equator);
-    if (upwelling < kNone) continue;
-    const auto east = parallel.nearness_of_eastern_coast(model.upwelling_reach_km);
-    const auto west = parallel.nearness_of_western_coast(model.upwelling_reach_km);
-    for (int i = 0; i < grid.nx(); ++i) {
-      heat_w_m2[grid.cell(i, j)] -=
-          upwelling * east[i] * (1.0 - west[i]) * (1.0 - parallel.land(i));
-    }
+    const double from_equator = latitude_deg[j] / model.upwelling_width_deg;
+    const auto upwell = [&](double upwelling_w_m2, double reach_km, std::span<const double> share) {
+      if (upwelling_w_m2 < kNone) return;
+      const auto east = parallel.nearness_of_eastern_coast(reach_km);
+      const auto west = parallel.nearness_of_western_coast(reach_km);
+      for (int i = 0; i < grid.nx(); ++i) {
+        heat_w_m2[grid.cell(i, j)] -=
+            upwelling_w_m2 * share[i] * east[i] * (1.0 - west[i]) * (1.0 - parallel.land(i));
+      }
+    };
+    upwell(model.upwelling_w_m2 * std::exp(-from_equator * from_equator), model.upwelling_reach_km,
+           trades);
+    const double high = std::clamp(std::abs(latitude_deg[j]) / kHighs_deg, 0.0, 2.0);
+    upwell(model.coastal_upwelling_w_m2 * std::pow(std::sin(0.5 * std::numbers::pi * high), 2),
+           model.coastal_upwelling_reach_km, always);
   }
-  close_budget(grid, land_fraction, heat_w_m2);
+  close_budget(grid, latitude_deg, land_fraction, heat_w_m2);
+}
+
+std::vector<float> sea_warmth_k(const Grid& grid, const EnergyBalance& model, bool retrograde,
+                                std::span<const double> latitude_deg,
+                                std::span<const float> land_fraction,
+                                std::span<const double> annual_mean_c,
+                                std::span<const double> equatorial_wind_m_s) {
+  check_sizes("sea_warmth_k", grid.size(), {{"annual_mean_c", annual_mean_c.size()}});
+  std::vector<double> heat_w_m2(annual_mean_c.size());
+  ocean_heat(grid, model, retrograde, latitude_deg, land_fraction, heat_w_m2, equatorial_wind_m_s);
+  std::vector<float> warmer_k(annual_mean_c.size(), 0.0F);
+  for (std::size_t cell = 0; cell < warmer_k.size(); ++cell) {
+    const double water = 1.0 - land_fraction[cell];
+    if (!(water > 0.0)) continue;
+    const double open = 1.0 - sea_ice_share(model, annual_mean_c[cell]);
+    warmer_k[cell] = static_cast<float>(open * heat_w_m2[cell] / water /
+                                        sea_exchange_w_m2_k(model, annual_mean_c[cell]));
+  }
+  return warmer_k;
 }
 
 std::vector<double> open_channels(const Grid& grid, std::span<const double> latitude_deg,

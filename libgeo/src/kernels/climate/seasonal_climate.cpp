@@ -35,15 +35,18 @@ double bounded(double x, double bound) { return bound * std::tanh(x / bound); }
 
 }  // namespace
 
-/// Heat that the air gets from rain and from ground that is warmer than its parallel.
+/// Heat that the air gets from rain, from ground that is warmer than its parallel and from sea that
+/// is warmer than the air.
 void SeasonalYear::heat_air(AirOfMonth& month) const {
   constexpr double kRelaxed = 0.5;
+  const double dry = dry_sea_exchange_w_m2_k(model_.energy);
   const std::vector<double> zonal_c = row_means<float>(grid_, month.temperature_c);
   for (std::size_t cell = 0; cell < size_; ++cell) {
     const double warmer_k =
         month.temperature_c[cell] - zonal_c[grid_.row(static_cast<Index>(cell))];
     const double heating = kWattsPerMillimetreADay * month.rain_mm_d[cell] +
-                           model_.sensible_w_m2_k * land_[cell] * warmer_k;
+                           model_.sensible_w_m2_k * land_[cell] * warmer_k +
+                           dry * (1.0 - land_[cell]) * sea_warmer_k_[cell];
     month.heating_w_m2[cell] += static_cast<float>(kRelaxed * (heating - month.heating_w_m2[cell]));
   }
 }
@@ -51,7 +54,7 @@ void SeasonalYear::heat_air(AirOfMonth& month) const {
 /// What the sea gives to the air above it: the more, the faster that blows, and besides it warms
 /// and moistens air that comes from colder places.
 void SeasonalYear::evaporate_sea(AirOfMonth& month) const {
-  constexpr double kReference_m_s = 8.0;
+  constexpr double kReference_m_s = 8.0, kSaturation_1_k = 0.065, kMostDew = 0.3;
   const std::vector<float> cooling_k_s =
       cold_advection_k_s(grid_, month.temperature_c, month.wind_east, month.wind_north);
   for (std::size_t cell = 0; cell < size_; ++cell) {
@@ -63,8 +66,11 @@ void SeasonalYear::evaporate_sea(AirOfMonth& month) const {
     const int row = grid_.row(static_cast<Index>(cell));
     month.open_water_1_d[cell] = static_cast<float>(
         water / (1.0 / velocity_1_d + month.saturated_mm[cell] / most_evaporation_mm_d_[row]));
+    // At warm water the air is saturated with more.
+    const double more = std::max(-kMostDew, std::expm1(kSaturation_1_k * sea_warmer_k_[cell]));
     month.cold_air_evaporation_mm_d[cell] = static_cast<float>(
-        water * model_.cold_air_heat_j_m2_k * cooling_k_s[cell] / kWattsPerMillimetreADay);
+        water * model_.cold_air_heat_j_m2_k * cooling_k_s[cell] / kWattsPerMillimetreADay +
+        more * month.open_water_1_d[cell] * month.saturated_mm[cell]);
   }
 }
 
@@ -135,7 +141,10 @@ void SeasonalYear::activate(AirOfMonth& month) const {
   smooth(grid_, rising, 1000.0 * model_.ascent_smoothing_km);
   const std::vector<float> excess_k = convective_excess_k(month);
   for (std::size_t cell = 0; cell < size_; ++cell) {
-    const double lighter = bounded(model_.convection_1_k * excess_k[cell], kMostConvection);
+    const double lighter =
+        bounded(model_.convection_1_k * excess_k[cell] +
+                    model_.sea_convection_1_k * (1.0 - land_[cell]) * sea_warmer_k_[cell],
+                kMostConvection);
     const double moving = rising[cell] > 0.0F ? bounded(rising[cell], model_.ascent_bound)
                                               : bounded(rising[cell], model_.descent_bound);
     month.activity[cell] = static_cast<float>(ascent_[cell] * std::exp(moving + lighter));
@@ -308,9 +317,10 @@ SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& m
                {"glacier_fraction", glacier_fraction.size(), ArraySize::May::be_empty}});
   SeasonalYear year(grid, model, latitude_deg, land_fraction, height_m, glacier_fraction);
   year.warm();
-  constexpr int kRounds = 7, kLevelRounds = 3;
+  constexpr int kRounds = 7, kTradesRounds = 2, kLevelRounds = 3;
   constexpr double kNearlyClosed = 1e-4, kClosed = 1e-7;
   for (int round = 0; round < kRounds; ++round) {
+    if (round == kTradesRounds) year.warm_again();
     if (round == kLevelRounds && ascent) year.lift(ascent);
     year.blow();
     year.exchange();

@@ -4,7 +4,9 @@
 
 #include "geo/kernels/climate/evaporation.hpp"
 #include "geo/kernels/climate/insolation.hpp"
+#include "geo/kernels/climate/ocean_heat.hpp"
 #include "geo/kernels/climate/thermodynamics.hpp"
+#include "geo/kernels/numerics/smoothing.hpp"
 #include "kernels/climate/zonal.hpp"
 #include "seasonal_year.hpp"
 
@@ -42,30 +44,79 @@ void SeasonalYear::carry_heat(std::span<const float> month_c, std::span<const do
   }
 }
 
-/// Temperatures of the months, and all that follows from them alone.
-void SeasonalYear::warm() {
-  const int ny = grid_.ny();
-  const TemperatureCycle temperature = solve_energy_balance(
-      grid_, model_.energy, model_.circulation.retrograde, latitude_deg_, land_, height_m_,
-      [this](auto... fields) { carry_heat(fields...); }, glacier_);
-  // Evaporation in series with the energy that the sun gives through the year.
-  constexpr double kWattsEvaporating = 28.36;
-  most_evaporation_mm_d_.resize(ny);
-  const std::vector<double> sun_w_m2 =
-      annual_insolation_w_m2(latitude_deg_, model_.energy.orbit, model_.energy.solar_constant_w_m2);
-  for (int j = 0; j < ny; ++j) {
-    most_evaporation_mm_d_[j] =
-        std::max(1.0e-6, model_.moisture.evaporating_share * sun_w_m2[j] / kWattsEvaporating);
+/// What currents make the sea warmer than the air, and how an eddy as wide as the deformation
+/// radius feels it.
+void SeasonalYear::find_warm_sea(std::span<const double> equatorial_wind_m_s) {
+  constexpr double kEddy_m = 600e3;
+  const TemperatureCycle& temperature = temperatures_->temperature();
+  std::vector<double> annual_mean_c(size_);
+  for (std::size_t cell = 0; cell < size_; ++cell) annual_mean_c[cell] = temperature.mean_c(cell);
+  sea_warmer_k_ = sea_warmth_k(grid_, model_.energy, model_.circulation.retrograde, latitude_deg_,
+                               land_, annual_mean_c, equatorial_wind_m_s);
+  warmer_below_eddies_k_.resize(size_);
+  for (std::size_t cell = 0; cell < size_; ++cell) {
+    warmer_below_eddies_k_[cell] = (1.0F - land_[cell]) * sea_warmer_k_[cell];
   }
+  smooth(grid_, warmer_below_eddies_k_, kEddy_m);
+}
+
+void SeasonalYear::begin_months(std::span<const double> equatorial_wind_m_s) {
+  find_warm_sea(equatorial_wind_m_s);
   ParallelErrors errors;
 #pragma omp parallel for schedule(dynamic, 1)
-  for (int m = 0; m < kMonths; ++m) errors.guard([&] { begin_month(m, temperature); });
+  for (int m = 0; m < kMonths; ++m) errors.guard([&] { begin_month(m); });
   errors.rethrow();
 }
 
-void SeasonalYear::begin_month(int m, const TemperatureCycle& temperature) {
+/// All that follows from the temperatures of the months alone.
+void SeasonalYear::warm() {
+  // Evaporation in series with the energy that the sun gives through the year.
+  constexpr double kWattsEvaporating = 28.36;
+  most_evaporation_mm_d_.resize(grid_.ny());
+  const std::vector<double> sun_w_m2 =
+      annual_insolation_w_m2(latitude_deg_, model_.energy.orbit, model_.energy.solar_constant_w_m2);
+  for (int j = 0; j < grid_.ny(); ++j) {
+    most_evaporation_mm_d_[j] =
+        std::max(1.0e-6, model_.moisture.evaporating_share * sun_w_m2[j] / kWattsEvaporating);
+  }
+  temperatures_.emplace(
+      grid_, model_.energy, model_.circulation.retrograde, latitude_deg_, land_, height_m_,
+      [this](auto... fields) { carry_heat(fields...); }, glacier_);
+  for (AirOfMonth& month : months_) clear(month);
+  begin_months({});
+  for (AirOfMonth& month : months_) guess(month);
+}
+
+/// Water wells up along the equator where trades blow.
+void SeasonalYear::warm_again() {
+  const std::vector<double> wind_m_s = equatorial_wind_m_s();
+  if (has_sea_ && model_.energy.upwelling_w_m2 > 0.0 && !wind_m_s.empty()) {
+    temperatures_->upwell(wind_m_s);
+    begin_months(wind_m_s);
+  }
+  temperatures_.reset();
+}
+
+/// Annual mean of the wind along the equator, east, by column; none where no row is near it.
+std::vector<double> SeasonalYear::equatorial_wind_m_s() const {
+  constexpr double kNear_deg = 5.0;
+  std::vector<double> sum(grid_.nx(), 0.0);
+  int count = 0;
+  for (int j = 0; j < grid_.ny(); ++j) {
+    if (std::abs(latitude_deg_[j]) > kNear_deg) continue;
+    ++count;
+    for (const AirOfMonth& month : months_) {
+      for (int i = 0; i < grid_.nx(); ++i) sum[i] += month.wind_east[grid_.cell(i, j)];
+    }
+  }
+  if (count == 0) return {};
+  for (double& wind : sum) wind /= count * kMonths;
+  return sum;
+}
+
+void SeasonalYear::begin_month(int m) {
   AirOfMonth& month = months_[m];
-  clear(month);
+  const TemperatureCycle& temperature = temperatures_->temperature();
   std::vector<double> annual_c(size_);
   for (std::size_t cell = 0; cell < size_; ++cell) {
     month.temperature_c[cell] = static_cast<float>(temperature.month_c(cell, m));
@@ -121,16 +172,19 @@ void SeasonalYear::press(AirOfMonth& month, std::span<const float> trough_c,
     month.pressure_hpa[cell] = static_cast<float>(
         three_cell_pressure_hpa(latitude_deg_[row], model_.circulation,
                                 model_.itcz_share * trough_deg[grid_.column(here)]) +
-        thermal_pressure_hpa(low_c[cell] - annual_mean_c[row]));
+        thermal_pressure_hpa(low_c[cell] - annual_mean_c[row]) -
+        model_.sea_low_hpa_k * (1.0 - land_[cell]) * sea_warmer_k_[cell]);
   }
 }
 
 /// Eddies, which mix the air's water and let it rain; mountains hold the flow back.
 void SeasonalYear::stir(AirOfMonth& month, std::span<const double> zonal_c) const {
   constexpr double kFastest_1_s = 0.01;  // on tiny planets: what mixes in minutes is mixed
+  std::vector<float> surface_c = month.temperature_c;
+  for (std::size_t cell = 0; cell < size_; ++cell) surface_c[cell] += warmer_below_eddies_k_[cell];
   const std::vector<float> eddies =
-      eddy_strength(grid_, latitude_deg_, month.temperature_c, zonal_c,
-                    model_.eddy_gradient_k_1000km, model_.eddy_exponent, model_.eddy_locality);
+      eddy_strength(grid_, latitude_deg_, surface_c, zonal_c, model_.eddy_gradient_k_1000km,
+                    model_.eddy_exponent, model_.eddy_locality);
   for (std::size_t cell = 0; cell < size_; ++cell) {
     const double relative = height_m_[cell] / model_.blocking_height_m;
     month.open_flow[cell] = static_cast<float>(1.0 / (1.0 + relative * relative));
@@ -145,7 +199,7 @@ void SeasonalYear::stir(AirOfMonth& month, std::span<const double> zonal_c) cons
   }
 }
 
-/// What the air can hold, what sea and ground can give it, and a first guess of both.
+/// What the air can hold, and what ground can give it.
 void SeasonalYear::moisten(AirOfMonth& month) const {
   for (std::size_t cell = 0; cell < size_; ++cell) {
     const int row = grid_.row(static_cast<Index>(cell));
@@ -157,7 +211,13 @@ void SeasonalYear::moisten(AirOfMonth& month) const {
     month.saturated_mm[cell] = static_cast<float>(saturated);
     month.potential_evapotranspiration_mm_d[cell] =
         static_cast<float>(oudin_evaporation_mm_d(month.sun_w_m2[row], surface_c));
-    month.column_mm[cell] = (has_sea_ ? 0.7 : 0.0) * saturated;
+  }
+}
+
+/// A first guess of the water in the air, and of what land gives it.
+void SeasonalYear::guess(AirOfMonth& month) const {
+  for (std::size_t cell = 0; cell < size_; ++cell) {
+    month.column_mm[cell] = (has_sea_ ? 0.7 : 0.0) * month.saturated_mm[cell];
     month.land_evaporation_mm_d[cell] = has_sea_ ? static_cast<float>(0.5 * land_[cell]) *
                                                        month.potential_evapotranspiration_mm_d[cell]
                                                  : 0.0F;

@@ -32,7 +32,8 @@ struct AirOfMonth {
 
 /// The year that is being solved. First warm(), which gives temperatures and all that follows from
 /// them alone (seasonal_start.cpp); then rounds of winds, moisture and rain, each with the heat of
-/// the rain before (seasonal_climate.cpp).
+/// the rain before (seasonal_climate.cpp). After some of them warm_again(): the winds along the
+/// equator say where cold water wells up.
 class SeasonalYear {
  public:
   SeasonalYear(const Grid& grid, const SeasonalClimate& model, std::span<const double> latitude_deg,
@@ -51,6 +52,7 @@ class SeasonalYear {
                              [](float land) { return land < 1.0F; })) {}
 
   void warm();
+  void warm_again();
   void blow();
   void exchange();
   void rain(double closed_to);
@@ -62,12 +64,16 @@ class SeasonalYear {
   [[nodiscard]] double thermal_pressure_hpa(double warmer_k) const;
   void carry_heat(std::span<const float> month_c, std::span<const double> annual_mean_c,
                   std::span<float> east, std::span<float> north) const;
-  void begin_month(int m, const TemperatureCycle& temperature);
+  [[nodiscard]] std::vector<double> equatorial_wind_m_s() const;
+  void begin_months(std::span<const double> equatorial_wind_m_s);
+  void find_warm_sea(std::span<const double> equatorial_wind_m_s);
+  void begin_month(int m);
   void clear(AirOfMonth& month) const;
   void press(AirOfMonth& month, std::span<const float> trough_c, std::span<const float> low_c,
              std::span<const double> annual_mean_c) const;
   void stir(AirOfMonth& month, std::span<const double> zonal_c) const;
   void moisten(AirOfMonth& month) const;
+  void guess(AirOfMonth& month) const;
   void heat_air(AirOfMonth& month) const;
   void evaporate_sea(AirOfMonth& month) const;
   void activate(AirOfMonth& month) const;
@@ -90,7 +96,10 @@ class SeasonalYear {
   std::span<const float> land_, height_m_, glacier_;
   std::size_t size_;
   std::array<AirOfMonth, kMonths> months_;
-  std::vector<float> ascent_;  ///< of single ranges
+  std::optional<EnergyBalanceYear> temperatures_;  ///< until winds have said where water wells up
+  std::vector<float> ascent_;                      ///< of single ranges
+  std::vector<float> sea_warmer_k_;  ///< than the air above it, where currents bring heat
+  std::vector<float> warmer_below_eddies_k_;
   std::vector<double> most_evaporation_mm_d_;
   std::vector<std::optional<SteadyMoisture>> budgets_;
   bool has_sea_;

@@ -3,6 +3,7 @@
 #include <array>
 #include <complex>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -40,16 +41,21 @@ struct EnergyBalance {
   double sunlit_air_share = 0.287;    ///< of the absorbed sunlight that air over the sea absorbs
   double ice_heat_capacity_w_yr_m2_k = 0.976;  ///< of sea ice that does not melt
   double melt_w_m2_k = 5.69;         ///< heat that melting ice takes for each kelvin above -1 degC
-  double gyre_heat_w_m2 = 10;        ///< heat that gyres release along a western coast of an ocean
-  double gyre_reach_km = 1.6e+03;    ///< e-folding distance of a coast's influence
-  double subpolar_heat_w_m2 = 56.4;  ///< heat that subpolar gyres release along an eastern coast
-  double subpolar_reach_km = 2.53e+03;
+  double gyre_heat_w_m2 = 9.96;      ///< heat that gyres release along a western coast of an ocean
+  double gyre_reach_km = 1.34e+03;   ///< e-folding distance of a coast's influence
+  double subpolar_heat_w_m2 = 46.9;  ///< heat that subpolar gyres release along an eastern coast
+  double subpolar_reach_km = 2.64e+03;
   double blocking_height_m = 1580;  ///< of topography that halves the heat passing over
   double lapse_k_m = 0.00511;
-  double heat_wind_share = 0.232;  ///< of the zonal wind in mid-troposphere that carries heat
-  double heat_wave_share = 0;      ///< of the winds about warm and cold ground that carries it
-  double upwelling_w_m2 = 150;     ///< heat that water welling up along the equator takes
-  double upwelling_reach_km = 3.63e+03;  ///< to the west of a coast, over which that falls by e
+  double heat_wind_share = 0.232;       ///< of the zonal wind in mid-troposphere that carries heat
+  double heat_wave_share = 0;           ///< of the winds about warm and cold ground that carries it
+  double upwelling_w_m2 = 182;          ///< heat that water welling up along the equator takes
+  double upwelling_trades_m_s = 1.73;   ///< wind from the east with which all of that wells up
+  double upwelling_width_deg = 5.36;    ///< of latitude, over which it falls by e
+  double upwelling_reach_km = 4.4e+03;  ///< to the west of a coast, over which that falls by e
+  double coastal_upwelling_w_m2 = 49.4;  ///< heat that water and clouds off eastern coasts take
+  double coastal_upwelling_reach_km =
+      3.77e+03;                        ///< to the west of a coast, over which that falls by e
   double dry_warming_k_m2_w = 0.0282;  ///< by which dry ground is warmer for each W m-2 of sunlight
   double dry_warming_from_w_m2 = 201;  ///< above this
   double inversion_k = 1.74;           ///< by which snow is colder than the air in polar nights
@@ -64,6 +70,12 @@ struct EnergyBalance {
 /// Share of the sea that ice covers where the mean of the year is a temperature:
 ///   1 / (1 + exp((T - ice_temperature) / ice_width)), none without a width.
 [[nodiscard]] double sea_ice_share(const EnergyBalance& model, double annual_mean_c);
+
+/// Heat and vapour that pass from sea to air, per kelvin between them, where the annual mean of the
+/// air is a temperature: what latent heat adds grows with it (Haney 1971).
+[[nodiscard]] double sea_exchange_w_m2_k(const EnergyBalance& model, double annual_mean_c);
+/// What of it is not latent heat.
+[[nodiscard]] double dry_sea_exchange_w_m2_k(const EnergyBalance& model);
 
 /// Temperature at sea level through the year, in harmonics of the time of the year t (0 to 1):
 ///   T(t) = mean + Re(sum over k of harmonic_k e^(2 pi i k t)).
@@ -120,5 +132,26 @@ using HeatWinds =
                                                     std::span<const float> height_m,
                                                     const HeatWinds& winds = {},
                                                     std::span<const float> glacier_fraction = {});
+
+/// The same for who goes on when winds are known: temperatures, and then those with the upwelling
+/// that the winds along the equator make. Arguments as above; what spans view must live as long.
+class EnergyBalanceYear {
+ public:
+  EnergyBalanceYear(const Grid& grid, const EnergyBalance& model, bool retrograde,
+                    std::span<const double> latitude_deg, std::span<const float> land_fraction,
+                    std::span<const float> height_m, HeatWinds winds,
+                    std::span<const float> glacier_fraction);
+  EnergyBalanceYear(EnergyBalanceYear&&) noexcept;
+  ~EnergyBalanceYear();
+
+  [[nodiscard]] const TemperatureCycle& temperature() const;
+  /// `equatorial_wind_m_s`: see ocean_heat. Diffusivity, capacities and the mean of the winds stay
+  /// those of the first solution; a few rounds from there.
+  void upwell(std::span<const double> equatorial_wind_m_s);
+
+ private:
+  class Solver;
+  std::unique_ptr<Solver> solver_;
+};
 
 }  // namespace geo

@@ -23,31 +23,33 @@ struct SeasonalClimate {
   OceanCurrents currents;
   MoistureBudget moisture;
   SoilMoisture soil;
-  double itcz_share = 0.6;            ///< of the thermal equator's excursion that the cells follow
+  double itcz_share = 0.671;          ///< of the thermal equator's excursion that the cells follow
   double itcz_lag_month = 1;          ///< by which the trough follows the warmth of the air
-  double heat_low_lag_month = 0.266;  ///< the same of heat lows and cold highs
-  double itcz_locality = 0.0267;   ///< how far the trough follows its meridian's warmest latitude
-  double sensible_w_m2_k = 0.556;  ///< heating of the air over ground warmer than its parallel
-  double base_diffusivity_m2_s = 3.26e+06;
-  double eddy_diffusivity_m2_s = 5.06e+04;  ///< at the reference temperature gradient
-  double eddy_rain = 0.0854;  ///< rain-out by eddies there, whether the mean air rises or sinks
+  double heat_low_lag_month = 0.239;  ///< the same of heat lows and cold highs
+  double itcz_locality = 0.0233;   ///< how far the trough follows its meridian's warmest latitude
+  double sensible_w_m2_k = 0.591;  ///< heating of the air over ground warmer than its parallel
+  double base_diffusivity_m2_s = 2.95e+06;
+  double eddy_diffusivity_m2_s = 5.53e+04;  ///< at the reference temperature gradient
+  double eddy_rain = 0.104;  ///< rain-out by eddies there, whether the mean air rises or sinks
   double eddy_gradient_k_1000km = 3.87;  ///< the reference gradient
-  double eddy_exponent = 2.9;            ///< by which their strength grows with the gradient
-  double eddy_locality = 0.814;  ///< how far eddies follow the local gradient, not the parallel's
-  double gust_m_s = 3.34;        ///< of eddies' winds over the sea at the reference gradient
-  double cold_air_heat_j_m2_k = 6.18e+05;  ///< of air that evaporates as the sea warms it
-  double ascent_time_d = 26.2;             ///< convergence over this time multiplies rain-out by e
-  double descent_time_d = 1.9;             ///< the same of the descent that stationary waves make
-  double ascent_bound = 1.4;               ///< most that ascent adds to the logarithm of rain-out
-  double descent_bound = 3.57;             ///< most that descent takes from it
-  double eddy_descent_share = 0.45;        ///< of that descent which the rain of eddies feels
-  double ascent_latitude_deg = 43;   ///< at which converging winds make half as much rain as where
-                                     ///< rotation is weak
-  double ascent_smoothing_km = 529;  ///< over which ascent is felt
-  double convection_1_k = 0.02;      ///< growth of rain-out with excess moist static energy
-  double convection_latitude_deg = 36.7;  ///< to which the free atmosphere is level
-  double orographic_share = 0.01;         ///< of the mean height by which air is lifted over a cell
-  double blocking_height_m = 4.75e+03;    ///< height at which topography halves the moist flow
+  double eddy_exponent = 2.7;            ///< by which their strength grows with the gradient
+  double eddy_locality = 0.722;  ///< how far eddies follow the local gradient, not the parallel's
+  double gust_m_s = 6.82;        ///< of eddies' winds over the sea at the reference gradient
+  double cold_air_heat_j_m2_k = 9.08e+05;  ///< of air that evaporates as the sea warms it
+  double ascent_time_d = 27.5;             ///< convergence over this time multiplies rain-out by e
+  double descent_time_d = 2.35;            ///< the same of the descent that stationary waves make
+  double ascent_bound = 1.21;              ///< most that ascent adds to the logarithm of rain-out
+  double descent_bound = 3.2;              ///< most that descent takes from it
+  double eddy_descent_share = 0.145;       ///< of that descent which the rain of eddies feels
+  double ascent_latitude_deg = 67.9;  ///< at which converging winds make half as much rain as where
+                                      ///< rotation is weak
+  double ascent_smoothing_km = 510;   ///< over which ascent is felt
+  double convection_1_k = 0.0149;     ///< growth of rain-out with excess moist static energy
+  double sea_convection_1_k = 0.079;  ///< the same with sea that is warmer than the air
+  double sea_low_hpa_k = 0.0405;      ///< of the air over such sea
+  double convection_latitude_deg = 53.6;  ///< to which the free atmosphere is level
+  double orographic_share = 0.0193;       ///< of the mean height by which air is lifted over a cell
+  double blocking_height_m = 5.74e+03;    ///< height at which topography halves the moist flow
   double land_transpiration = 1.0;  ///< share of the soil's evaporation that returns to the air
 };
 
@@ -79,15 +81,17 @@ using TerrainAscent = std::function<std::vector<float>(std::span<const float> wi
 /// Q the insolation, T the air's temperature at the ground, k, g and Q_mixed the inversion's
 /// constants of EnergyBalance. Pressure comes from the meridional cells about the thermal equator,
 /// heat lows and the stationary waves that latent heat and warm land set up. Winds balance it with
-/// friction. Evaporation from the sea grows with the speed of the wind, and where that comes from
-/// the cold. Winds carry moisture, and so do eddies, which are strongest where temperature
-/// gradients are steepest. It rains where air is humid, rises, or has more moist static energy than
-/// the free atmosphere of the tropics; soil returns a part of the rain to the air. Waves and rain
-/// are iterated together. What `ascent` (empty: level ground) lets rain out over one cell the air
-/// lacks over the next; rain and evaporation of the whole surface agree every month. Months run in
-/// parallel; the same bits for any number of threads. `latitude_deg`: one value per row, from south
-/// to north; the others one per cell, `glacier_fraction` (of the cell's land that ice covers) or
-/// none; Bug otherwise.
+/// friction. Where currents bring the sea heat it is warmer than the air (sea_warmth_k): this adds
+/// to what evaporates, to the heating of the air above, to convection, and to the temperature
+/// gradients that eddies feel, and makes a shallow low. Evaporation from the sea grows with the
+/// speed of the wind, and where that comes from the cold. Winds carry moisture, and so do eddies,
+/// which are strongest where temperature gradients are steepest. It rains where air is humid,
+/// rises, or has more moist static energy than the free atmosphere of the tropics; soil returns a
+/// part of the rain to the air. Waves and rain are iterated together. What `ascent` (empty: level
+/// ground) lets rain out over one cell the air lacks over the next; rain and evaporation of the
+/// whole surface agree every month. Months run in parallel; the same bits for any number of
+/// threads. `latitude_deg`: one value per row, from south to north; the others one per cell,
+/// `glacier_fraction` (of the cell's land that ice covers) or none; Bug otherwise.
 SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& model,
                                       std::span<const double> latitude_deg,
                                       std::span<const float> land_fraction,

@@ -17,12 +17,12 @@ struct WaveMode {
 /// Constants of the response of an atmosphere to stationary heating and mountains.
 struct StationaryWave {
   /// What heating sets up: the first baroclinic mode, whose winds turn with height.
-  WaveMode internal{88.7, 3.18, 7.66, 0};
-  double heating_m4_s3_w = 8.18e-05;  ///< fall of the lower geopotential by 1 W m-2
+  WaveMode internal{88.6, 4.35, 8.48, 0};
+  double heating_m4_s3_w = 6.02e-05;  ///< fall of the lower geopotential by 1 W m-2
   /// What mountains set up: the external mode, nearly the same at all heights.
-  WaveMode external{200.0, 11.7, 20.0, 0.429};
-  double mountain_share = 0.0182;  ///< of the height of mountains that the flow goes over
-  double smoothing_km = 175;       ///< waves shorter than this are damped out of both
+  WaveMode external{200.0, 39.5, 20.0, 0.485};
+  double mountain_share = 0.0216;  ///< of the height of mountains that the flow goes over
+  double smoothing_km = 74.2;      ///< waves shorter than this are damped out of both
   int waves = 24;                  ///< zonal wave numbers 1 to this
 };
 
