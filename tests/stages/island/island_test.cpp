@@ -194,7 +194,7 @@ OnThePlanet detail_of(const std::vector<State>& islands) {
 // An even rim would be a frame round the map, and rivers would run along it.
 TEST(Island, EdgeIsAsRoughAsTheInside) {
   std::vector<State> islands;
-  for (const Index river : great_rivers(6)) {
+  for (const Index river : great_rivers(16)) {
     islands.push_back(make(around(place_of(river))).island);
   }
   const OnThePlanet found = detail_of(islands);

@@ -111,7 +111,7 @@ std::vector<Parameter> energy_rows(ClimateParameters& p) {
            "distance from that coast over which upwelling falls by e", "wyrtki1981"),
       real("climate.upwelling_trades_m_s", e.upwelling_trades_m_s, "m s-1", 0.1, 100.0,
            "wind from the east along the equator with which all of that wells up", "wyrtki1981"),
-      real("climate.upwelling_width_deg", e.upwelling_width_deg, "deg", 1.0, 30.0,
+      real("climate.upwelling_width_deg", e.upwelling_width_deg, "degree", 1.0, 30.0,
            "latitude over which upwelling falls by e", "wyrtki1981"),
       real("climate.coastal_upwelling_w_m2", e.coastal_upwelling_w_m2, "W m-2", 0.0, 500.0,
            "heat that water welling up along eastern coasts, and the clouds over it, take",
