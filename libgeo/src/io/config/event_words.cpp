@@ -62,6 +62,8 @@ std::string words_of(const EventRecord& event) {
                        : event.kind == "continental-collision" ? "Continents collide"
                        : event.kind == "subduction-initiation"
                            ? "Subduction begins at an old margin"
+                       : event.kind == "back-arc-opening" ? "A back-arc basin opens"
+                       : event.kind == "ridge-jump"       ? "A ridge jumps to a plume"
                        : event.kind == CrustChange::kKind ? "Crust changes its type"
                        : event.kind == PlumeChange::kKind ? "A plume begins or ends"
                                                           : "A plate breaks";

@@ -423,6 +423,11 @@ std::vector<Parameter> sphere_back_arc_rows(PlatesParameters& p) {
            "width of such an arc", "sdrolias2006"),
       real("plates.sphere.back_arc_lasts_myr", p.sphere.back_arc_lasts_myr, "Myr", 0.0, 1000.0,
            "how long an arc that is too small for a plate goes on as one", "sdrolias2006"),
+      real("plates.sphere.ridge_jump_km", p.sphere.ridge_jump_km, "km", 0.0, 2000.0,
+           "distance up to which a ridge jumps to a plume beside it; 0: none does",
+           "mittelstaedt2011"),
+      real("plates.sphere.ridge_jump_age_myr", p.sphere.ridge_jump_age_myr, "Myr", 0.0, 1000.0,
+           "age of the oldest floor above a plume to which a ridge jumps", "mittelstaedt2008"),
   };
 }
 

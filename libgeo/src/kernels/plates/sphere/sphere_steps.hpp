@@ -169,6 +169,8 @@ void join_small_pieces(SphereTectonics& model);
 /// Plates that hardly move beside a neighbour become one with it. Needs crust that has just been
 /// resampled.
 void weld_still_plates(SphereTectonics& model);
+/// Ridges jump to plumes beside them. Needs crust that has just been resampled.
+void jump_ridges(SphereTectonics& model);
 /// Ends the step: what follows happens at its end, and the next one may begin.
 void end_step(SphereTectonics& model);
 /// Uplift, erosion, volcanoes and rivers of a step. Needs margins.

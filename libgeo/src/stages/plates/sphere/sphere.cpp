@@ -371,6 +371,8 @@ std::string_view word_for(SphereEvent::Kind kind) {
       return "subduction-initiation";
     case SphereEvent::Kind::back_arc:
       return "back-arc-opening";
+    case SphereEvent::Kind::ridge_jump:
+      return "ridge-jump";
   }
   return "";
 }
@@ -380,7 +382,8 @@ void tell(const SphereTectonics& model, const Grid& grid, Context& context) {
   constexpr double kTold_km2 = 2e5;
   auto number = static_cast<int>(context.events.size());
   for (const SphereEvent& event : model.events) {
-    if (event.area_km2 < kTold_km2) continue;
+    const bool is_jump = event.kind == SphereEvent::Kind::ridge_jump;  // of narrow strips
+    if (event.area_km2 < kTold_km2 && !is_jump) continue;
     const Vector3 at = grid.to_axis(event.place);
     context.event_records.push_back(
         {.number = ++number,

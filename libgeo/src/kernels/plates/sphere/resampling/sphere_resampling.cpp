@@ -358,6 +358,7 @@ void resample(SphereTectonics& model) {
     tidy_pieces(resampled);
     derive_plates(resampled);
     weld_still_plates(resampled);
+    jump_ridges(resampled);
   });
 }
 
