@@ -41,13 +41,11 @@ MemoryPager::~MemoryPager() {
 void MemoryPager::look() { regions().store->allow(most_ - std::min(most_, taken_bytes())); }
 
 void MemoryPager::watch() {
-  // Nothing would ever go on where a cap is too small for what is wanted at once.
-  constexpr int kPatience = 10;
+  // Nothing would ever go on where a cap is too small for what is wanted at once: where all pages
+  // have been asked to leave and there is still no room, one part comes all the same. Time alone
+  // says nothing, as on a busy machine those that leave may be slow.
   const std::size_t least = std::max(kPart_bytes, regions().scratch.page);
-  if (taken_bytes() + least <= most_) {
-    without_room_ = 0;
-  } else if (++without_room_ == kPatience) {
-    without_room_ = 0;
+  if (taken_bytes() + least > most_ && nothing_leaves_.exchange(false)) {
     regions().store->allow(least);
     return;
   }
@@ -96,6 +94,7 @@ void MemoryPager::make_room() {
     if (left < taken) look();  // whoever waits for room need not wait for all of it
     taken = left;
   }
+  nothing_leaves_ = true;
   const auto now = std::chrono::steady_clock::now();
   if (now - trimmed_ > std::chrono::milliseconds(200)) {
     trimmed_ = now;

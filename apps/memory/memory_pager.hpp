@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <optional>
@@ -36,7 +37,8 @@ class MemoryPager {
   /// No page comes beyond `most_`; from `high_` on pages are sent away, until `low_`.
   const std::size_t most_, high_, low_;
   std::size_t hand_ = 0, most_on_disk_pages_ = 0;
-  int statm_ = -1, without_room_ = 0;
+  int statm_ = -1;
+  std::atomic<bool> nothing_leaves_{false};  ///< a round over all pages has not made enough room
   std::chrono::steady_clock::time_point trimmed_;
   std::optional<Repeating> watching_, sending_, cutting_;
 };
