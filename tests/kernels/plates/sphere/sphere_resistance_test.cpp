@@ -92,6 +92,20 @@ TEST(ContinentsThatMeet, AreSlowedAsTheirOverlapAndTheirPlatesHaveIt) {
   EXPECT_LT(slowest_mm_yr, 0.6 * kSpeed_mm_yr);
 }
 
+TEST(ContinentsThatMeet, AreSlowedAsMuchWhenWhatWentBelowHasBecomeARoot) {
+  const SampledSphere world(60000);
+  SphereSettings s = settings();
+  s.suture_drag = 100.0;
+  SphereTectonics model(world.mesh, s, two_continents(world), 1);
+  for (int k = 0; k < 8; ++k) advance(model);
+  const double before_mm_yr = meeting_mm_yr(model);
+  ASSERT_LT(before_mm_yr, 0.9 * kSpeed_mm_yr);
+  resample(model);
+  for (int k = 0; k < 3; ++k) advance(model);
+  EXPECT_LT(meeting_mm_yr(model), 1.1 * before_mm_yr);
+  EXPECT_GT(meeting_mm_yr(model), 0.4 * before_mm_yr);
+}
+
 TEST(ContinentsThatMeet, GoOnAsTheyAreDrivenWithoutDragOrWhereTheyAreHeld) {
   const SampledSphere world(20000);
   const auto meeting = [&](double drag, bool is_held) {

@@ -102,7 +102,8 @@ std::vector<Link> links_of_rifts(const SphereTectonics& model, const std::vector
 }
 
 /// Continents of which one is thrust below the other rub: k times the drag of the mantle, as far as
-/// they overlap.
+/// they overlap, and as far as they did when the crust was resampled, which has made a root of
+/// that.
 std::vector<Link> links_of_continents(const SphereTectonics& model) {
   const SphereCrust& crust = model.state.crust;
   const std::size_t plates = model.state.plates.size();
@@ -120,6 +121,26 @@ std::vector<Link> links_of_continents(const SphereTectonics& model) {
     for (int c = 0; c < 3; ++c) {
       for (int d = 0; d < 3; ++d) {
         overlap[at][c][d] += model.settings.suture_drag * ((c == d ? 1.0 : 0.0) - r[c] * r[d]);
+      }
+    }
+  }
+  const double spacing_km = model.settings.radius_km * model.mesh->samples().spacing();
+  for (const TrenchSample& front : model.margins.trenches) {
+    const std::int32_t below = model.margins.partner[front.sample];
+    if (below < 0 || crust.plate[front.sample] < 0 || crust.plate[below] < 0) continue;
+    if (crust.continental[front.sample] == 0 || crust.continental[below] == 0) continue;
+    const int upper = model.state.root(crust.plate[front.sample]),
+              lower = model.state.root(crust.plate[below]);
+    const double remembered = model.state.pair(lower, upper).under_km / spacing_km;
+    if (lower == upper || remembered <= 0.0) continue;
+    const Vector3 r =
+        times(model.frame[crust.plate[front.sample]], model.mesh->samples().position(front.sample));
+    const std::size_t at = std::min(lower, upper) * plates + std::max(lower, upper);
+    rubs[at] = 1;
+    for (int c = 0; c < 3; ++c) {
+      for (int d = 0; d < 3; ++d) {
+        overlap[at][c][d] +=
+            remembered * model.settings.suture_drag * ((c == d ? 1.0 : 0.0) - r[c] * r[d]);
       }
     }
   }
