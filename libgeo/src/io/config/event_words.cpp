@@ -58,15 +58,16 @@ std::string words_of(const EventRecord& event) {
                        std::abs(get(event, "water_km3")));
   }
   if (has(event, "time_myr")) {
-    const char* what = event.kind == PlateMotion::kKind        ? "A plate takes a new course"
-                       : event.kind == "continental-collision" ? "Continents collide"
-                       : event.kind == "subduction-initiation"
-                           ? "Subduction begins at an old margin"
-                       : event.kind == "back-arc-opening" ? "A back-arc basin opens"
-                       : event.kind == "ridge-jump"       ? "A ridge jumps to a plume"
-                       : event.kind == CrustChange::kKind ? "Crust changes its type"
-                       : event.kind == PlumeChange::kKind ? "A plume begins or ends"
-                                                          : "A plate breaks";
+    const char* what =
+        event.kind == PlateMotion::kKind          ? "A plate takes a new course"
+        : event.kind == "continental-collision"   ? "Continents collide"
+        : event.kind == "subduction-initiation"   ? "Subduction begins at an old margin"
+        : event.kind == "back-arc-opening"        ? "A back-arc basin opens"
+        : event.kind == "continental-indentation" ? "A block breaks off an indented continent"
+        : event.kind == "ridge-jump"              ? "A ridge jumps to a plume"
+        : event.kind == CrustChange::kKind        ? "Crust changes its type"
+        : event.kind == PlumeChange::kKind        ? "A plume begins or ends"
+                                                  : "A plate breaks";
     return fmt::format("{}{} after {:.4g} million years, at {} {}.", what, name,
                        get(event, "time_myr"), degrees(get(event, "latitude_deg"), 'N', 'S'),
                        degrees(get(event, "longitude_deg"), 'E', 'W'));

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "geo/core/random.hpp"
-#include "sphere_flood.hpp"
+#include "sphere_behind.hpp"
 #include "sphere_steps.hpp"
 
 namespace geo {
@@ -31,20 +31,6 @@ std::vector<std::vector<std::int32_t>> old_trenches(const SphereTectonics& model
   return of_plate;
 }
 
-/// The arc behind a stretch of trench, as wide as arcs are: connected samples, nearest first.
-std::vector<std::int32_t> arc_behind(const SphereTectonics& model, std::int32_t trench) {
-  const SphereMargins& margins = model.margins;
-  const std::int32_t start = margins.trenches[trench].sample;
-  const std::int16_t plate = model.state.crust.plate[start];
-  std::vector<std::uint8_t> seen(model.mesh->size(), 0);
-  return flooded_from(*model.mesh, start, seen, [&](std::int32_t i) {
-    if (model.state.crust.plate[i] != plate || margins.nearest_trench[i] < 0) return false;
-    const std::int32_t edge = margins.trenches[margins.nearest_trench[i]].sample;
-    return model.distance_km(edge, start) < 0.5 * kTrench_km &&
-           model.distance_km(edge, i) < model.settings.back_arc_km;
-  });
-}
-
 /// Axis, in the frame of the planet, about which an arc moves on its trench, or zero.
 Vector3 towards_trench(const SphereTectonics& model, std::span<const std::int32_t> arc) {
   Vector3 middle{}, edge{};
@@ -60,7 +46,10 @@ Vector3 towards_trench(const SphereTectonics& model, std::span<const std::int32_
 
 /// The slab below a stretch of trench sinks, the trench retreats, and the arc above follows it.
 void open_back_arc(SphereTectonics& model, int plate, std::int32_t trench) {
-  const std::vector<std::int32_t> arc = arc_behind(model, trench);
+  // As wide as arcs are.
+  const std::vector<std::int32_t> arc =
+      behind_trench(model, trench, kTrench_km, model.settings.back_arc_km,
+                    [](std::int32_t /*sample*/) { return true; });
   if (arc.size() < kLeast ||
       2 * std::ssize(arc) > static_cast<std::ptrdiff_t>(model.partition.cap(plate).samples))
     return;

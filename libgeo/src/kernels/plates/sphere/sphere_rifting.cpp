@@ -183,6 +183,8 @@ PlateLife::Origin origin_by(SphereEvent::Kind kind) {
       return PlateLife::Origin::subduction_initiation;
     case SphereEvent::Kind::back_arc:
       return PlateLife::Origin::back_arc;
+    case SphereEvent::Kind::indentation:
+      return PlateLife::Origin::block;
     default:
       return PlateLife::Origin::rift;
   }

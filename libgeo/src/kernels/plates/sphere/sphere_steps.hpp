@@ -148,6 +148,10 @@ bool sink_slabs(SphereTectonics& model);
 void open_back_arcs_by_chance(SphereTectonics& model);
 /// Whether a plate is such an arc.
 [[nodiscard]] bool is_back_arc(const SphereState& state, int plate);
+/// Needs margins. Continents above others that come fast break along blocks, by chance.
+void break_blocks_by_chance(SphereTectonics& model);
+/// Whether a plate is such a block.
+[[nodiscard]] bool is_block(const SphereState& state, int plate);
 /// Bounds how fast arcs leave the plates behind them, and derives motion.
 void hold_back_arcs(SphereTectonics& model);
 /// Fragments of a plate (-1 beside it) become plates, each turned about an axis on top of the old
@@ -166,6 +170,8 @@ void resample(SphereTectonics& model, const std::function<void(SphereTectonics&)
 /// Detached pieces of plates that are too small to be plates join the neighbour beside which they
 /// move slowest.
 void join_small_pieces(SphereTectonics& model);
+/// What is remembered of two plates, told of the first one of other numbers.
+[[nodiscard]] PlatePair seen_from(PlatePair pair, bool is_turned);
 /// Plates that hardly move beside a neighbour become one with it. Needs crust that has just been
 /// resampled.
 void weld_still_plates(SphereTectonics& model);

@@ -143,6 +143,7 @@ void advance(SphereTectonics& model) {
   rift_by_chance(model);
   initiate_subduction_by_chance(model);
   open_back_arcs_by_chance(model);
+  break_blocks_by_chance(model);
   if (sink_slabs(model)) derive_plates(model);
   model.step.plates = model.state.plates;
   model.step.pairs = model.state.pairs;

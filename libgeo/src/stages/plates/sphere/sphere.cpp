@@ -308,15 +308,20 @@ class Drift {
     if (plates().state.time_myr >= 0.0) return;
     const double step_myr = plates().settings.law.step_myr;
     const double arcs_last_myr = plates().settings.back_arc_lasts_myr;
+    const double blocks_last_myr = plates().settings.indentation_lasts_myr;
     while (plates().state.time_myr < -0.5 * step_myr) {
       progress(plates().state.time_myr);
-      // Arcs that have left their plates are not among the first plates.
-      if (plates().state.time_myr > -1.5 * step_myr) plates().settings.back_arc_lasts_myr = 0.0;
+      // Arcs that have left their plates, and blocks that have come to rest, are not among the
+      // first plates.
+      if (plates().state.time_myr > -1.5 * step_myr) {
+        plates().settings.back_arc_lasts_myr = plates().settings.indentation_lasts_myr = 0.0;
+      }
       advance();
     }
     // So that the first plates are those that the first frame shows.
     leader_ ? finish_both(crust(), plates()) : finish(crust());
     plates().settings.back_arc_lasts_myr = arcs_last_myr;
+    plates().settings.indentation_lasts_myr = blocks_last_myr;
     begin_history(plates());
     if (!leader_) return;
     begin_history(crust());
@@ -371,6 +376,8 @@ std::string_view word_for(SphereEvent::Kind kind) {
       return "subduction-initiation";
     case SphereEvent::Kind::back_arc:
       return "back-arc-opening";
+    case SphereEvent::Kind::indentation:
+      return "continental-indentation";
     case SphereEvent::Kind::ridge_jump:
       return "ridge-jump";
   }

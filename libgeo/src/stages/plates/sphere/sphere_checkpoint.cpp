@@ -102,7 +102,7 @@ void get_lives(const Checkpoint& from, SphereState& state) {
     fits = fits && size == origin.size();
   }
   for (const std::int8_t word : origin) {
-    fits = fits && word >= 0 && word <= static_cast<std::int8_t>(PlateLife::Origin::back_arc);
+    fits = fits && word >= 0 && word <= static_cast<std::int8_t>(PlateLife::Origin::block);
   }
   if (!fits) refuse();
   for (std::size_t p = 0; p < id.size(); ++p) state.plates[p].id = id[p];

@@ -25,6 +25,8 @@ std::string_view word_for(PlateLife::Origin origin) {
       return "terrane";
     case PlateLife::Origin::back_arc:
       return "back-arc";
+    case PlateLife::Origin::block:
+      return "block";
   }
   return "";
 }

@@ -41,12 +41,19 @@ struct SphereBudget {
 
 /// A happening worth telling.
 struct SphereEvent {
-  enum class Kind { collision, rift, subduction_initiation, back_arc, ridge_jump } kind;
+  enum class Kind {
+    collision,
+    rift,
+    subduction_initiation,
+    back_arc,
+    ridge_jump,
+    indentation
+  } kind;
   double time_myr;
   int first, second;  ///< plates: terrane's and collided one; that with the plume and the one
                       ///< beyond the ridge; or the plate that broke and -1
-  Vector3 place;    ///< centroid, or the plume, unit vector
-  double area_km2;  ///< of the terrane or plate, or of floor that has changed plates
+  Vector3 place;      ///< centroid, or the plume, unit vector
+  double area_km2;    ///< of the terrane or plate, or of floor that has changed plates
 };
 
 }  // namespace geo

@@ -60,6 +60,9 @@ struct SphereSettings {
   double back_arc_mm_yr = 40.0;           ///< most at which an arc leaves what is behind it
   double back_arc_km = 350.0;             ///< width of the arc that follows its trench
   double back_arc_lasts_myr = 20.0;       ///< before a small one joins a neighbour
+  double indentation_per_myr = 0.0;       ///< rate at which 1000 km of fast collision break a block
+  double indentation_km = 1200.0;         ///< how far behind the deformation front that reaches
+  double indentation_lasts_myr = 40.0;    ///< before it may weld as other plates do
   double ridge_jump_km = 0.0;             ///< from which a plume draws a ridge to itself; 0: none
   double ridge_jump_age_myr = 20.0;       ///< of the oldest floor that breaks there
   double coast_warp_km = 120.0;           ///< of crust that events change

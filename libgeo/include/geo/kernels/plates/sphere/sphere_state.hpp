@@ -65,8 +65,16 @@ struct SpherePlate {
 struct PlateLife {
   /// There from the beginning; from a rift; floor whose subduction began at a margin; a piece that
   /// was left over; a terrane whose new plate has gone down before they had become one; an arc
-  /// that has followed its trench.
-  enum class Origin : std::int8_t { first, rift, subduction_initiation, piece, terrane, back_arc };
+  /// that has followed its trench; a block of a continent that another one has indented.
+  enum class Origin : std::int8_t {
+    first,
+    rift,
+    subduction_initiation,
+    piece,
+    terrane,
+    back_arc,
+    block
+  };
 
   Origin origin = Origin::first;
   std::int16_t parent = -1;  ///< number of the plate of which it was a part

@@ -49,6 +49,13 @@ bool is_free(const SpherePlate& plate) {
   return plate.alive && plate.carrier < 0 && !plate.is_held && plate.driver < 0;
 }
 
+/// Whether a plate is a block that has had its time.
+bool is_spent_block(const SphereTectonics& model, int plate) {
+  return is_block(model.state, plate) &&
+         model.state.time_myr - model.state.plates[plate].born_myr >=
+             model.settings.indentation_lasts_myr;
+}
+
 /// Two plates that hardly move beside each other, if these do.
 std::optional<Neighbours> still_pair(const SphereTectonics& model, const Borders& borders, int a,
                                      int b) {
@@ -64,7 +71,10 @@ std::optional<Neighbours> still_pair(const SphereTectonics& model, const Borders
   }
   if (edges < kBordered * outline) return {};
   if (model.state.time_myr - model.state.pair(a, b).parted_myr < s.welding_after_myr) return {};
-  const double land = static_cast<double>(borders.of_continents[smaller * plates + larger]) / edges;
+  const bool holds_out = !is_spent_block(model, a) && !is_spent_block(model, b);
+  const double land =
+      holds_out ? static_cast<double>(borders.of_continents[smaller * plates + larger]) / edges
+                : 0.0;
   const double speed_mm_yr =
       speed_beside(model, static_cast<int>(smaller), static_cast<int>(larger));
   if (speed_mm_yr >= s.welding_mm_yr * (1.0 - s.welding_continental * land)) return {};
@@ -83,15 +93,6 @@ std::optional<Neighbours> stillest(const SphereTectonics& model) {
     }
   }
   return found;
-}
-
-/// What is remembered of two plates, told of the first one of other numbers.
-PlatePair seen_from(PlatePair pair, bool is_turned) {
-  if (!is_turned) return pair;
-  for (std::int8_t* top : {&pair.ocean_top, &pair.continent_top}) {
-    if (*top >= 0) *top = static_cast<std::int8_t>(1 - *top);
-  }
-  return pair;
 }
 
 /// The whole remembers of each other plate what that part does which has met it last.
@@ -130,6 +131,14 @@ void weld(SphereTectonics& model, const Neighbours& both) {
 }
 
 }  // namespace
+
+PlatePair seen_from(PlatePair pair, bool is_turned) {
+  if (!is_turned) return pair;
+  for (std::int8_t* top : {&pair.ocean_top, &pair.continent_top}) {
+    if (*top >= 0) *top = static_cast<std::int8_t>(1 - *top);
+  }
+  return pair;
+}
 
 void weld_still_plates(SphereTectonics& model) {
   if (model.settings.welding_mm_yr <= 0.0) return;
