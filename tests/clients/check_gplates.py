@@ -159,17 +159,53 @@ def area_to_the_left(ring):
     return np.sum(angle) - (len(ring) - 2) * np.pi
 
 
-def is_inside(places, rings):
-    """Whether rings with their region to the left go once round each place."""
+def beside(ring):
+    """A place just outside the region to the left of a line."""
+    middle = ring[0] + ring[1]
+    left = np.cross(middle, ring[1] - ring[0])
+    place = middle / np.linalg.norm(middle) - 0.005 * left / np.linalg.norm(left)
+    return place / np.linalg.norm(place)
+
+
+def turns_seen(places, rings):
+    """How often rings go round each place, less how often they go round its antipode, times 2 pi."""
     whole = np.zeros(len(places))
     for ring in rings:
-        for place_range in np.array_split(np.arange(len(places)), max(1, len(places) // 200)):
-            at = places[place_range, None, :]
+        for part in np.array_split(np.arange(len(places)), max(1, len(places) // 200)):
+            at = places[part, None, :]
             flat = ring[None] - np.sum(at * ring[None], axis=2, keepdims=True) * at
             a, b = flat[:, :-1], flat[:, 1:]
-            whole[place_range] += np.sum(
+            whole[part] += np.sum(
                 np.arctan2(np.sum(at * np.cross(a, b), axis=2), np.sum(a * b, axis=2)), axis=1)
-    return whole > np.pi
+    return whole
+
+
+def turns_on_map(places, rings):
+    """How often rings go round each place on a map on which a place outside them is infinitely far, times 2 pi."""
+    far = beside(rings[0])
+    first = np.cross(far, [0.0, 0.0, 1.0] if abs(far[2]) < 0.9 else [1.0, 0.0, 0.0])
+    first /= np.linalg.norm(first)
+    second = np.cross(first, far)
+
+    def on_map(positions):
+        return np.stack([positions @ first, positions @ second], 1) / np.maximum(1.0 - positions @ far, 1e-12)[:, None]
+
+    whole = np.zeros(len(places))
+    for line in map(on_map, rings):
+        for k, at in enumerate(on_map(places)):
+            a, b = line[:-1] - at, line[1:] - at
+            whole[k] += np.sum(np.arctan2(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], np.sum(a * b, axis=1)))
+    return whole
+
+
+def is_inside(places, rings):
+    """Whether rings with their region to the left go once round each place. Where they hold its antipode as well, which
+    they seem to go round the other way, a map tells."""
+    turns = turns_seen(places, rings)
+    inside = turns > np.pi
+    unclear = np.abs(turns) < np.pi
+    inside[unclear] = turns_on_map(places[unclear], rings) > np.pi
+    return inside
 
 
 def nearest_km(places, others):
