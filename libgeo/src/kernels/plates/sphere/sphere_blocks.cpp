@@ -84,8 +84,7 @@ void break_blocks_by_chance(SphereTectonics& model) {
   const double sample_length = model.settings.radius_km * model.mesh->samples().spacing() / 1000.0;
   for (int p = 0; p < std::ssize(fronts); ++p) {
     const SpherePlate& plate = model.state.plates[p];
-    if (fronts[p].empty() || !plate.alive || plate.carrier >= 0) continue;
-    if (plate.is_held || plate.driver >= 0 || is_block(model.state, p)) continue;
+    if (fronts[p].empty() || !is_free(plate) || is_block(model.state, p)) continue;
     const auto count = static_cast<double>(fronts[p].size());
     const double expected =
         model.settings.indentation_per_myr * count * sample_length * model.settings.law.step_myr;

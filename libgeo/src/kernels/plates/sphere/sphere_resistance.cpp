@@ -109,20 +109,25 @@ std::vector<Link> links_of_continents(const SphereTectonics& model) {
   const std::size_t plates = model.state.plates.size();
   std::vector<Matrix3> overlap(plates * plates, Matrix3{});
   std::vector<std::uint8_t> rubs(plates * plates, 0);
+  // What `samples` of them add that overlap at one of a plate.
+  const auto add_overlap = [&](int lower, int upper, std::int32_t at, double samples) {
+    const Vector3 r = times(model.frame[crust.plate[at]], model.mesh->samples().position(at));
+    const std::size_t pair = std::min(lower, upper) * plates + std::max(lower, upper);
+    rubs[pair] = 1;
+    for (int c = 0; c < 3; ++c) {
+      for (int d = 0; d < 3; ++d) {
+        overlap[pair][c][d] +=
+            samples * model.settings.suture_drag * ((c == d ? 1.0 : 0.0) - r[c] * r[d]);
+      }
+    }
+  };
   for (const std::int32_t i : model.margins.contacts) {
     const std::int32_t above = model.margins.partner[i];
     if (model.margins.hidden[i] == 0 || crust.continental[i] == 0 || crust.continental[above] == 0)
       continue;
     const int lower = model.state.root(crust.plate[i]),
               upper = model.state.root(crust.plate[above]);
-    const Vector3 r = times(model.frame[crust.plate[i]], model.mesh->samples().position(i));
-    const std::size_t at = std::min(lower, upper) * plates + std::max(lower, upper);
-    rubs[at] = 1;
-    for (int c = 0; c < 3; ++c) {
-      for (int d = 0; d < 3; ++d) {
-        overlap[at][c][d] += model.settings.suture_drag * ((c == d ? 1.0 : 0.0) - r[c] * r[d]);
-      }
-    }
+    add_overlap(lower, upper, i, 1.0);
   }
   const double spacing_km = model.settings.radius_km * model.mesh->samples().spacing();
   for (const TrenchSample& front : model.margins.trenches) {
@@ -133,16 +138,7 @@ std::vector<Link> links_of_continents(const SphereTectonics& model) {
               lower = model.state.root(crust.plate[below]);
     const double remembered = model.state.pair(lower, upper).under_km / spacing_km;
     if (lower == upper || remembered <= 0.0) continue;
-    const Vector3 r =
-        times(model.frame[crust.plate[front.sample]], model.mesh->samples().position(front.sample));
-    const std::size_t at = std::min(lower, upper) * plates + std::max(lower, upper);
-    rubs[at] = 1;
-    for (int c = 0; c < 3; ++c) {
-      for (int d = 0; d < 3; ++d) {
-        overlap[at][c][d] +=
-            remembered * model.settings.suture_drag * ((c == d ? 1.0 : 0.0) - r[c] * r[d]);
-      }
-    }
+    add_overlap(lower, upper, front.sample, remembered);
   }
   std::vector<Link> links;
   for (std::size_t at = 0; at < rubs.size(); ++at) {

@@ -50,6 +50,10 @@ void derive_ranks(SphereTectonics& model);
 void derive_followed_plates(SphereTectonics& model);
 /// Turns plates by a step and remembers where they were.
 void move_plates(SphereTectonics& model);
+/// Whether a plate is one of its own that nothing from outside moves.
+[[nodiscard]] inline bool is_free(const SpherePlate& plate) {
+  return plate.alive && plate.carrier < 0 && !plate.is_held && plate.driver < 0;
+}
 /// The rotation that drives a plate, without what it yields to others, rad/Myr.
 [[nodiscard]] Vector3 driven_rotation(const SphereState& state, int plate);
 /// Common rotation of the plates that are not held, rad/Myr.

@@ -404,10 +404,13 @@ void tell(const SphereTectonics& model, const Grid& grid, Context& context) {
 }
 
 /// Resamples all crust to be seen. Plates that have come apart show one number still: their pieces
-/// are plates once the drift itself resamples the crust.
+/// are plates once the drift itself resamples the crust, and ridges jump then.
 void finish_to_be_seen(SphereTectonics& model) {
   const std::size_t lives = model.state.lives.size();
+  const double jump_km = model.settings.ridge_jump_km;
+  model.settings.ridge_jump_km = 0.0;
   finish(model);
+  model.settings.ridge_jump_km = jump_km;
   for (SpherePlate& plate : model.state.plates) {
     while (plate.id >= static_cast<std::int64_t>(lives)) {
       plate.id = model.state.lives[plate.id].parent;

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "kernels/plates/sphere/sphere_flood.hpp"
@@ -14,10 +14,6 @@ namespace {
 constexpr double kBesideSpacings = 2.0;
 /// Plates that part more slowly have no ridge between them, mm/yr.
 constexpr double kOpening_mm_yr = 5.0;
-
-bool is_free(const SpherePlate& plate) {
-  return plate.alive && plate.carrier < 0 && !plate.is_held && plate.driver < 0;
-}
 
 /// A ridge beside a plume, as the plume sees it.
 struct RidgeBeside {
@@ -96,15 +92,15 @@ std::pair<double, double> extent_km(const SphereTectonics& model, const RidgeBes
   const auto bin_of = [&](std::int32_t sample) {
     return static_cast<int>(std::lround(ridge.along_km(model, sample) / ridge.spacing_km));
   };
-  std::map<int, bool> has_ridge;
+  std::set<int> with_ridge;
   for (const std::int32_t edge : ridge.floor) {
     if (ridge.ahead_km(model, edge) <= 0.0) continue;
     const std::int32_t over = floor_beyond(model, edge);
-    if (over >= 0 && model.state.crust.plate[over] == ridge.beyond) has_ridge[bin_of(edge)] = true;
+    if (over >= 0 && model.state.crust.plate[over] == ridge.beyond) with_ridge.insert(bin_of(edge));
   }
   int first = 0, last = 0;
-  while (has_ridge.contains(first - 1)) --first;
-  while (has_ridge.contains(last + 1)) ++last;
+  while (with_ridge.contains(first - 1)) --first;
+  while (with_ridge.contains(last + 1)) ++last;
   return {(first - 0.5) * ridge.spacing_km, (last + 0.5) * ridge.spacing_km};
 }
 

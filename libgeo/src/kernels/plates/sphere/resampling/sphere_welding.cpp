@@ -45,10 +45,6 @@ double speed_beside(const SphereTectonics& model, int moving, int at_rest) {
          std::sqrt(std::max(0.0, dot(relative, times(cap.inertia, relative))) / cap.samples);
 }
 
-bool is_free(const SpherePlate& plate) {
-  return plate.alive && plate.carrier < 0 && !plate.is_held && plate.driver < 0;
-}
-
 /// Whether a plate is a block that has had its time.
 bool is_spent_block(const SphereTectonics& model, int plate) {
   return is_block(model.state, plate) &&
