@@ -2,7 +2,6 @@
 #include <cmath>
 #include <vector>
 
-#include "geo/core/random.hpp"
 #include "sphere_behind.hpp"
 #include "sphere_steps.hpp"
 
@@ -17,18 +16,12 @@ constexpr double kSunk_km = 100.0;
 /// A plate that advances on its trench faster than this is shortened instead, mm/yr.
 constexpr double kAdvance_mm_yr = 10.0;
 
-/// Trenches of each plate below which floor is old enough to sink away from it, by number.
-std::vector<std::vector<std::int32_t>> old_trenches(const SphereTectonics& model) {
+/// Whether floor below an edge is old enough to sink away from it.
+bool is_old_below(const SphereTectonics& model, std::int32_t edge) {
   const SphereCrust& crust = model.state.crust;
-  std::vector<std::vector<std::int32_t>> of_plate(model.state.plates.size());
-  for (std::size_t k = 0; k < model.margins.trenches.size(); ++k) {
-    const std::int32_t edge = model.margins.trenches[k].sample;
-    const std::int32_t below = model.margins.partner[edge];
-    if (crust.plate[edge] < 0 || below < 0 || crust.continental[below] != 0) continue;
-    if (crust.age_myr[below] < model.settings.back_arc_age_myr) continue;
-    of_plate[crust.plate[edge]].push_back(static_cast<std::int32_t>(k));
-  }
-  return of_plate;
+  const std::int32_t below = model.margins.partner[edge];
+  return below >= 0 && crust.continental[below] == 0 &&
+         crust.age_myr[below] >= model.settings.back_arc_age_myr;
 }
 
 /// Axis, in the frame of the planet, about which an arc moves on its trench, or zero.
@@ -136,25 +129,14 @@ bool sink_slabs(SphereTectonics& model) {
   return has_sunk;
 }
 
-/// Each length of old trench begins to retreat at a rate: a Poisson process without a memory.
+/// Each length of trench above old floor begins to retreat at a rate.
 void open_back_arcs_by_chance(SphereTectonics& model) {
   if (model.settings.back_arc_per_myr <= 0.0) return;
-  const RandomStream random(model.seed, "plates.back_arcs");
-  const auto trenches = old_trenches(model);
-  const double sample_length = model.settings.radius_km * model.mesh->samples().spacing() / 1000.0;
-  for (int p = 0; p < std::ssize(trenches); ++p) {
-    const SpherePlate& plate = model.state.plates[p];
-    if (trenches[p].empty() || !plate.alive || plate.carrier >= 0 || plate.is_held) continue;
-    if (is_back_arc(model.state, p)) continue;
-    const auto count = static_cast<double>(trenches[p].size());
-    const double expected =
-        model.settings.back_arc_per_myr * count * sample_length * model.settings.law.step_myr;
-    const std::uint64_t descent = plate.chances.descent;
-    const auto step = static_cast<std::int32_t>(model.state.steps);
-    if (random.uniform(descent, draw_of(step, 0)) >= -std::expm1(-expected)) continue;
-    const auto drawn = static_cast<std::size_t>(count * random.uniform(descent, draw_of(step, 1)));
-    open_back_arc(model, p, trenches[p][std::min(drawn, trenches[p].size() - 1)]);
-  }
+  act_by_chance(
+      model, trenches_where(model, [&](std::int32_t edge) { return is_old_below(model, edge); }),
+      model.settings.back_arc_per_myr, "plates.back_arcs",
+      [&](int plate) { return !is_back_arc(model.state, plate); },
+      [&](int plate, std::int32_t trench) { open_back_arc(model, plate, trench); });
 }
 
 /// An arc follows its trench no faster than the slab sinks away below it.

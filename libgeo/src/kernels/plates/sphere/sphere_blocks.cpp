@@ -2,7 +2,6 @@
 #include <cmath>
 #include <vector>
 
-#include "geo/core/random.hpp"
 #include "sphere_behind.hpp"
 #include "sphere_steps.hpp"
 
@@ -18,23 +17,12 @@ constexpr double kIndenting_mm_yr = 10.0;
 bool is_indented(const SphereTectonics& model, std::int32_t edge) {
   const SphereCrust& crust = model.state.crust;
   const std::int32_t below = model.margins.partner[edge];
-  if (crust.plate[edge] < 0 || below < 0 || crust.plate[below] < 0) return false;
+  if (below < 0 || crust.plate[below] < 0) return false;
   if (crust.continental[edge] == 0 || crust.continental[below] == 0) return false;
   const int upper = crust.plate[edge], lower = crust.plate[below];
   const Vector3 at = times(model.frame[upper], model.mesh->samples().position(edge));
   const Vector3 relative = add(model.rotation[lower], model.rotation[upper], -1.0);
   return model.settings.radius_km * length(cross(relative, at)) >= kIndenting_mm_yr;
-}
-
-/// Deformation fronts of each plate that is indented, by their numbers among the trenches.
-std::vector<std::vector<std::int32_t>> indented_fronts(const SphereTectonics& model) {
-  std::vector<std::vector<std::int32_t>> of_plate(model.state.plates.size());
-  for (std::size_t k = 0; k < model.margins.trenches.size(); ++k) {
-    const std::int32_t edge = model.margins.trenches[k].sample;
-    if (!is_indented(model, edge)) continue;
-    of_plate[model.state.crust.plate[edge]].push_back(static_cast<std::int32_t>(k));
-  }
-  return of_plate;
 }
 
 /// A block remembers of other plates what the plate does of which it was a part: it stays above
@@ -75,25 +63,14 @@ bool is_block(const SphereState& state, int plate) {
   return id >= 0 && state.lives[id].origin == PlateLife::Origin::block;
 }
 
-/// Each length of a collision belt breaks the continent above at a rate: a Poisson process without
-/// a memory.
+/// Each length of a collision belt breaks the continent above at a rate.
 void break_blocks_by_chance(SphereTectonics& model) {
   if (model.settings.indentation_per_myr <= 0.0) return;
-  const RandomStream random(model.seed, "plates.blocks");
-  const auto fronts = indented_fronts(model);
-  const double sample_length = model.settings.radius_km * model.mesh->samples().spacing() / 1000.0;
-  for (int p = 0; p < std::ssize(fronts); ++p) {
-    const SpherePlate& plate = model.state.plates[p];
-    if (fronts[p].empty() || !is_free(plate) || is_block(model.state, p)) continue;
-    const auto count = static_cast<double>(fronts[p].size());
-    const double expected =
-        model.settings.indentation_per_myr * count * sample_length * model.settings.law.step_myr;
-    const std::uint64_t descent = plate.chances.descent;
-    const auto step = static_cast<std::int32_t>(model.state.steps);
-    if (random.uniform(descent, draw_of(step, 0)) >= -std::expm1(-expected)) continue;
-    const auto drawn = static_cast<std::size_t>(count * random.uniform(descent, draw_of(step, 1)));
-    break_block(model, p, fronts[p][std::min(drawn, fronts[p].size() - 1)]);
-  }
+  act_by_chance(
+      model, trenches_where(model, [&](std::int32_t edge) { return is_indented(model, edge); }),
+      model.settings.indentation_per_myr, "plates.blocks",
+      [&](int plate) { return !is_block(model.state, plate); },
+      [&](int plate, std::int32_t front) { break_block(model, plate, front); });
 }
 
 }  // namespace geo
