@@ -62,12 +62,15 @@ void on_great_rivers(std::initializer_list<std::uint64_t> seeds, Action&& action
   }
 }
 
-/// What the planet's lakes about an island lose to the air, m3/s: where the island's own are
-/// smaller, its rivers carry that on.
+/// What the planet's lakes about an island lose to the air of what they get from rivers and rain,
+/// m3/s: where the island's own are smaller, its rivers carry that on.
 double lost_in_lakes_m3_s(const IslandOnRiver& at) {
   const auto lake = at.whole.read(field::lake_id);
   const auto receiver = at.whole.read(field::flow_receiver);
   const auto discharge = at.whole.read(field::discharge);
+  const auto rain_mm_yr = at.whole.read(field::precipitation);
+  const Grid& grid = at.whole.grid();
+  constexpr double kMillimetresAYear = 1e-3 / (365.25 * 86400.0);  // m s-1
   std::set<std::int32_t> lakes;
   for (const Index cell : at.cell_of) {
     if (lake[cell] > 0) lakes.insert(lake[cell]);
@@ -79,6 +82,7 @@ double lost_in_lakes_m3_s(const IslandOnRiver& at) {
     for (Index c = 0; c < at.whole.grid().size(); ++c) {
       if (lake[c] != one) continue;
       out = discharge[c];
+      in += kMillimetresAYear * rain_mm_yr[c] * grid.area_m2(grid.row(c));
       if (lake[receiver[c]] != one) sills.insert(receiver[c]);
     }
     for (Index c = 0; c < at.whole.grid().size(); ++c) {

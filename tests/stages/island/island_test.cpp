@@ -148,15 +148,18 @@ TEST(Island, EdgeKeepsThePlanetsHeightsExceptInRiverGaps) {
   const Grid& fine = island.grid();
   const auto planets_m = planet().read(field::elevation);
   const auto z = island.read(field::elevation);
-  int edge = 0, same = 0;
+  int edge = 0, same = 0, filled = 0;
   for (Index c = 0; c < fine.size(); ++c) {
     if (!on_edge(fine, c)) continue;
     const CatmullRom stencil(planet().grid(), fine.position(fine.column(c), fine.row(c)));
     const double there_m = stencil.of(planets_m);
-    EXPECT_LT(z[c], there_m + 1.0);
+    // Hollows that lie across the edge are filled: a few cells of plains, by a few metres.
+    EXPECT_LT(z[c], there_m + 5.0);
+    if (z[c] > there_m + 1.0) ++filled;
     ++edge;
     if (z[c] > there_m - 1.0) ++same;
   }
+  EXPECT_LT(filled, 0.01 * edge);
   EXPECT_GT(same, 0.8 * edge);
 }
 
