@@ -327,11 +327,13 @@ TEST(ArraySizes, OfClimateAreChecked) {
     const Floats land(n(cells())), height(n(cells())), ice(n(cells()));
     static_cast<void>(solve_seasonal_climate(grid, {}, latitude, land, height, {}, ice));
   });
-  expect_refused("stationary_wave", 7, [&](Lengths& n) {
+  expect_refused("stationary_wave", 9, [&](Lengths& n) {
     const Doubles latitude(n(rows())), wind(n(rows()));
-    const Floats heating(n(cells())), height(n(cells()));
+    const Floats heating(n(cells())), push_east(n(cells())), push_north(n(cells()));
+    const Floats height(n(cells()));
     Floats east(n(cells())), north(n(cells())), descent(n(cells()));
-    stationary_wave(grid, {}, 7e-5, latitude, wind, heating, height, east, north, descent);
+    stationary_wave(grid, {}, 7e-5, latitude, wind, {heating, push_east, push_north, height},
+                    {east, north, descent});
   });
   expect_refused("cold_advection_k_s", 3, [&](Lengths& n) {
     const Floats warm(n(cells())), east(n(cells())), north(n(cells()));

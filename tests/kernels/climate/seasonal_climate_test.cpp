@@ -137,6 +137,40 @@ TEST(SeasonalClimate, SnowOfThePolarNightIsColderThanItsAir) {
   }
 }
 
+// Trades and westerlies lose their speed over rough land, and turn aside before they get there.
+TEST(SeasonalClimate, RoughLandTurnsTheWindAside) {
+  const Continent continent;
+  SeasonalClimate model;
+  model.land_drag = 0.0;
+  const SeasonalFields smooth = continent.solve(model);
+  model.land_drag = 10.0;
+  const SeasonalFields rough = continent.solve(model);
+  const auto mean = [&](int from, int to, auto&& of_cell) {
+    double sum = 0.0, area = 0.0;
+    for (Index c = 0; c < continent.grid.size(); ++c) {
+      const int row = continent.grid.row(c), column = continent.grid.column(c);
+      const double latitude = continent.latitude_deg[row];
+      if (column < from || column >= to || latitude < 5.0 || latitude > 25.0) continue;
+      sum += continent.grid.area_m2(row) * of_cell(c);
+      area += continent.grid.area_m2(row);
+    }
+    return sum / area;
+  };
+  constexpr int kJanuary = 0, kHalf = Continent::kEast - Continent::kWest;
+  const auto east_m_s = [&](const SeasonalFields& fields, int from, int to) {
+    return mean(from, to, [&](Index c) { return fields.wind_east[kJanuary][c]; });
+  };
+  const double over_smooth_m_s = east_m_s(smooth, Continent::kWest, Continent::kEast);
+  const double over_rough_m_s = east_m_s(rough, Continent::kWest, Continent::kEast);
+  EXPECT_LT(over_smooth_m_s, -1.0) << "the trade wind";
+  EXPECT_GT(over_rough_m_s, 0.8 * over_smooth_m_s);
+  // Before it gets there, on its way along the eastern coast.
+  const auto aside_m_s = mean(Continent::kEast, Continent::kEast + kHalf, [&](Index c) {
+    return std::abs(rough.wind_north[kJanuary][c] - smooth.wind_north[kJanuary][c]);
+  });
+  EXPECT_GT(aside_m_s, 0.1);
+}
+
 // Without what ascent adds, where and how fast air rises makes no difference.
 TEST(SeasonalClimate, AscentAddsNoMoreThanItsBound) {
   const Continent continent;

@@ -74,6 +74,42 @@ void SeasonalYear::evaporate_sea(AirOfMonth& month) const {
   }
 }
 
+/// Land holds the wind back by the force -d e v. What is known is the wind of the round before: the
+/// force goes towards that as far as the wind may answer, which is by 1 / e where the planet's
+/// rotation is weak.
+void SeasonalYear::hold_back(AirOfMonth& month) const {
+  const double damping_1_s = 1.0 / (model_.wave.internal.momentum_damping_d * kSecondsPerDay);
+  for (std::size_t cell = 0; cell < size_; ++cell) {
+    const double drag = model_.land_drag * land_[cell], share = 1.0 / (1.0 + drag);
+    const auto approach = [&](float& force, float wind) {
+      force += static_cast<float>(share * (-drag * damping_1_s * wind - force));
+    };
+    approach(month.force_east[cell], month.wind_east[cell]);
+    approach(month.force_north[cell], month.wind_north[cell]);
+  }
+}
+
+/// Winds that balance the pressure of cells and heat lows, and waves with them.
+void SeasonalYear::add_waves(AirOfMonth& month) const {
+  constexpr int kRounds = 2;  // of waves and the drag on them
+  const std::vector<float> balanced_east = month.wind_east, balanced_north = month.wind_north;
+  const auto add = [&] {
+    for (std::size_t cell = 0; cell < size_; ++cell) {
+      month.wind_east[cell] = balanced_east[cell] + month.wave_east[cell];
+      month.wind_north[cell] = balanced_north[cell] + month.wave_north[cell];
+    }
+  };
+  for (int round = 0; round < kRounds; ++round) {
+    add();
+    hold_back(month);
+    stationary_wave(grid_, model_.wave, model_.circulation.rotation_rad_s(), latitude_deg_,
+                    month.zonal_wind_m_s,
+                    {month.heating_w_m2, month.force_east, month.force_north, height_m_},
+                    {month.wave_east, month.wave_north, month.descent_1_s});
+  }
+  add();
+}
+
 /// Winds of cells, heat lows and waves.
 void SeasonalYear::blow() {
   for_months([&](AirOfMonth& month) {
@@ -81,14 +117,7 @@ void SeasonalYear::blow() {
                    month.wind_east, month.wind_north);
     if (grid_.topology() == Topology::sphere) {
       heat_air(month);
-      std::vector<float> east(size_), north(size_);
-      stationary_wave(grid_, model_.wave, model_.circulation.rotation_rad_s(), latitude_deg_,
-                      month.zonal_wind_m_s, month.heating_w_m2, height_m_, east, north,
-                      month.descent_1_s);
-      for (std::size_t cell = 0; cell < size_; ++cell) {
-        month.wind_east[cell] += east[cell];
-        month.wind_north[cell] += north[cell];
-      }
+      add_waves(month);
     }
     for (std::size_t cell = 0; cell < size_; ++cell) {
       month.wind_east[cell] *= month.open_flow[cell];

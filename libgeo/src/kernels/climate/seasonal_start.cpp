@@ -146,13 +146,29 @@ void SeasonalYear::begin_month(int m) {
 }
 
 void SeasonalYear::clear(AirOfMonth& month) const {
-  for (auto* values :
-       {&month.temperature_c, &month.pressure_hpa, &month.wind_east, &month.wind_north,
-        &month.descent_1_s, &month.open_flow, &month.diffusivity, &month.own_eddies, &month.eddies,
-        &month.activity, &month.saturated_mm, &month.open_water_1_d, &month.gust_m_s,
-        &month.potential_evapotranspiration_mm_d, &month.soil_evaporation_mm_d,
-        &month.land_evaporation_mm_d, &month.cold_air_evaporation_mm_d,
-        &month.given_evaporation_mm_d, &month.heating_w_m2}) {
+  for (auto* values : {&month.temperature_c,
+                       &month.pressure_hpa,
+                       &month.wind_east,
+                       &month.wind_north,
+                       &month.descent_1_s,
+                       &month.force_east,
+                       &month.force_north,
+                       &month.wave_east,
+                       &month.wave_north,
+                       &month.open_flow,
+                       &month.diffusivity,
+                       &month.own_eddies,
+                       &month.eddies,
+                       &month.activity,
+                       &month.saturated_mm,
+                       &month.open_water_1_d,
+                       &month.gust_m_s,
+                       &month.potential_evapotranspiration_mm_d,
+                       &month.soil_evaporation_mm_d,
+                       &month.land_evaporation_mm_d,
+                       &month.cold_air_evaporation_mm_d,
+                       &month.given_evaporation_mm_d,
+                       &month.heating_w_m2}) {
     values->assign(size_, 0.0F);
   }
   month.column_mm.resize(size_);

@@ -18,7 +18,9 @@ struct AirOfMonth {
   std::vector<float> pressure_hpa;   ///< of cells and heat lows, without waves
   std::vector<double> zonal_wind_m_s;
   std::vector<float> wind_east, wind_north, descent_1_s;
-  std::vector<float> open_flow;  ///< share of the flow that topography lets pass
+  std::vector<float> wave_east, wave_north;    ///< of the wind
+  std::vector<float> force_east, force_north;  ///< of land on it, m s-2
+  std::vector<float> open_flow;                ///< share of the flow that topography lets pass
   std::vector<float> diffusivity, own_eddies, eddies, activity, saturated_mm, open_water_1_d;
   std::vector<float> gust_m_s;  ///< of eddies
   std::vector<float> potential_evapotranspiration_mm_d, soil_evaporation_mm_d,
@@ -74,6 +76,8 @@ class SeasonalYear {
   void stir(AirOfMonth& month, std::span<const double> zonal_c) const;
   void moisten(AirOfMonth& month) const;
   void guess(AirOfMonth& month) const;
+  void hold_back(AirOfMonth& month) const;
+  void add_waves(AirOfMonth& month) const;
   void heat_air(AirOfMonth& month) const;
   void evaporate_sea(AirOfMonth& month) const;
   void activate(AirOfMonth& month) const;

@@ -73,6 +73,30 @@ class Wave {
             (at.coriolis * slope_east - at.drag * slope_north) / at.inertia()};
   }
 
+  /// Winds that a force, m s-2, makes at the middle of a row before pressure answers.
+  [[nodiscard]] std::pair<Complex, Complex> pushed(int j, Complex east, Complex north) const {
+    const Parallel& at = centre_[j];
+    return {(at.drag * east + at.coriolis * north) / at.inertia(),
+            (at.drag * north - at.coriolis * east) / at.inertia()};
+  }
+
+  /// Takes c^2 times the divergence of such winds from the forcing of the geopotential.
+  void take_divergence(const std::vector<Complex>& east, const std::vector<Complex>& north,
+                       std::vector<Complex>& forcing) const {
+    const double speed2 = model_.speed_m_s * model_.speed_m_s;
+    for (int j = 0; j < rows_; ++j) {
+      forcing[j] -= speed2 * centre_[j].wave_number * pushed(j, east[j], north[j]).first;
+    }
+    for (int j = 0; j + 1 < rows_; ++j) {
+      const Parallel& face = face_[j];
+      const Complex along = 0.5 * (east[j] + east[j + 1]), across = 0.5 * (north[j] + north[j + 1]);
+      const Complex flow = speed2 * face.cosine / step_m_ *
+                           (face.drag * across - face.coriolis * along) / face.inertia();
+      forcing[j] -= flow / centre_[j].cosine;
+      forcing[j + 1] += flow / centre_[j + 1].cosine;
+    }
+  }
+
   /// From the forcing of the geopotential to its response.
   void respond(std::vector<Complex>& values) const {
     const double speed2 = model_.speed_m_s * model_.speed_m_s;
@@ -166,16 +190,23 @@ class Response {
         north_(calm),
         descent_(calm) {}
 
-  /// What heating sets up in one wave number: the internal mode.
-  void add_heating(int number, const Spectra& heating_w_m2) {
+  /// What heating and forces set up in one wave number: the internal mode.
+  void add_internal(int number, const Spectra& heating_w_m2, const Spectra& force_east,
+                    const Spectra& force_north) {
     const double speed2 = model_.internal.speed_m_s * model_.internal.speed_m_s;
     const Wave wave = wave_of(model_.internal, number);
+    std::vector<Complex> pushed_east(rows()), pushed_north(rows());
     for (int j = 0; j < rows(); ++j) {
-      values_[j] = -model_.heating_m4_s3_w * smoothed(number, j) * heating_w_m2[j][number];
+      const double share = smoothed(number, j);
+      values_[j] = -model_.heating_m4_s3_w * share * heating_w_m2[j][number];
+      pushed_east[j] = share * force_east[j][number];
+      pushed_north[j] = share * force_north[j][number];
     }
+    wave.take_divergence(pushed_east, pushed_north, values_);
     wave.respond(values_);
     for (int j = 0; j < rows(); ++j) {
-      add_wind(wave, number, j);
+      add_wind(number, j, wave.wind(j, values_));
+      add_wind(number, j, wave.pushed(j, pushed_east[j], pushed_north[j]));
       descent_[j][number] = -wave.thermal(j) * values_[j] / speed2;
     }
   }
@@ -189,7 +220,7 @@ class Response {
                    height_m[j][number];
     }
     wave.respond(values_);
-    for (int j = 0; j < rows(); ++j) add_wind(wave, number, j);
+    for (int j = 0; j < rows(); ++j) add_wind(number, j, wave.wind(j, values_));
   }
 
   /// Fields are real: negative wave numbers are conjugates.
@@ -215,8 +246,8 @@ class Response {
         1000.0 * model_.smoothing_km * number / (radius_m_ * std::cos(latitude_deg_[j] * kRadians));
     return 1.0 / (1.0 + scale * scale);
   }
-  void add_wind(const Wave& wave, int number, int j) {
-    const auto [along, across] = wave.wind(j, values_);
+  void add_wind(int number, int j, const std::pair<Complex, Complex>& wind) {
+    const auto& [along, across] = wind;
     east_[j][number] += along;
     north_[j][number] += across;
   }
@@ -232,33 +263,35 @@ class Response {
 
 void stationary_wave(const Grid& grid, const StationaryWave& model, double rotation_rad_s,
                      std::span<const double> latitude_deg, std::span<const double> zonal_wind_m_s,
-                     std::span<const float> heating_w_m2, std::span<const float> height_m,
-                     std::span<float> wind_east, std::span<float> wind_north,
-                     std::span<float> descent_1_s) {
+                     const WaveForcing& forcing, const WaveWinds& winds) {
   check_sizes("stationary_wave", grid.ny(),
               {{"latitude_deg", latitude_deg.size()}, {"zonal_wind_m_s", zonal_wind_m_s.size()}});
   check_sizes("stationary_wave", grid.size(),
-              {{"heating_w_m2", heating_w_m2.size()},
-               {"height_m", height_m.size()},
-               {"wind_east", wind_east.size()},
-               {"wind_north", wind_north.size()},
-               {"descent_1_s", descent_1_s.size()}});
+              {{"heating_w_m2", forcing.heating_w_m2.size()},
+               {"force_east", forcing.force_east.size()},
+               {"force_north", forcing.force_north.size()},
+               {"height_m", forcing.height_m.size()},
+               {"east", winds.east.size()},
+               {"north", winds.north.size()},
+               {"descent_1_s", winds.descent_1_s.size()}});
   if (grid.topology() != Topology::sphere) throw Bug("stationary_wave: the grid is no sphere");
   ParallelTransform transform(grid);
-  const Spectra heating = transform.analyse(heating_w_m2);
+  const Spectra heating = transform.analyse(forcing.heating_w_m2);
+  const Spectra force_east = transform.analyse(forcing.force_east);
+  const Spectra force_north = transform.analyse(forcing.force_north);
   const bool mountains = model.mountain_share > 0.0;
-  const Spectra height = mountains ? transform.analyse(height_m) : Spectra();
+  const Spectra height = mountains ? transform.analyse(forcing.height_m) : Spectra();
   Response response(model, grid.figure().radius_m, rotation_rad_s, latitude_deg, zonal_wind_m_s,
                     transform.none());
   const int waves = std::min(model.waves, grid.nx() / 2 - 1);
   for (int number = 1; number <= waves; ++number) {
-    response.add_heating(number, heating);
+    response.add_internal(number, heating, force_east, force_north);
     if (mountains) response.add_mountains(number, height);
     response.mirror(number);
   }
-  transform.synthesise(response.east(), wind_east);
-  transform.synthesise(response.north(), wind_north);
-  transform.synthesise(response.descent(), descent_1_s);
+  transform.synthesise(response.east(), winds.east);
+  transform.synthesise(response.north(), winds.north);
+  transform.synthesise(response.descent(), winds.descent_1_s);
 }
 
 }  // namespace geo

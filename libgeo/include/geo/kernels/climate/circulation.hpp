@@ -22,14 +22,14 @@ struct Circulation {
   double rotation_period_h = 23.934;
   bool retrograde = false;
   double air_density_kg_m3 = 1.2;
-  double drag_ocean_s = 2.95e-05;  ///< r over the sea, s-1
-  double drag_land_s = 2.06e-05;
-  double displacement_decay = 5.26;    ///< exponent p of the cells' displacement with the trough
-  double subtropical_high_hpa = 1.21;  ///< above the equatorial trough
-  double subpolar_low_hpa = 3.05;      ///< below the subtropical high
+  double drag_ocean_s = 2.62e-05;  ///< r over the sea, s-1
+  double drag_land_s = 1.67e-05;
+  double displacement_decay = 5.49;    ///< exponent p of the cells' displacement with the trough
+  double subtropical_high_hpa = 1.27;  ///< above the equatorial trough
+  double subpolar_low_hpa = 3.79;      ///< below the subtropical high
   double polar_high_hpa = 1.51;        ///< above the subpolar low
-  double thermal_low_hpa_k = 0.352;    ///< fall of pressure per kelvin of heat anomaly
-  double cold_high_share = 1.06;       ///< of it, where the anomaly is cold and shallow
+  double thermal_low_hpa_k = 0.411;    ///< fall of pressure per kelvin of heat anomaly
+  double cold_high_share = 1.07;       ///< of it, where the anomaly is cold and shallow
 
   /// Angular velocity, negative if retrograde.
   [[nodiscard]] double rotation_rad_s() const;

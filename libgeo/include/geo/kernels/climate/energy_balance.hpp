@@ -41,7 +41,7 @@ struct EnergyBalance {
   double sunlit_air_share = 0.287;    ///< of the absorbed sunlight that air over the sea absorbs
   double ice_heat_capacity_w_yr_m2_k = 0.976;  ///< of sea ice that does not melt
   double melt_w_m2_k = 5.69;         ///< heat that melting ice takes for each kelvin above -1 degC
-  double gyre_heat_w_m2 = 9.96;      ///< heat that gyres release along a western coast of an ocean
+  double gyre_heat_w_m2 = 9.2;       ///< heat that gyres release along a western coast of an ocean
   double gyre_reach_km = 1.34e+03;   ///< e-folding distance of a coast's influence
   double subpolar_heat_w_m2 = 46.9;  ///< heat that subpolar gyres release along an eastern coast
   double subpolar_reach_km = 2.64e+03;
@@ -49,11 +49,11 @@ struct EnergyBalance {
   double lapse_k_m = 0.00511;
   double heat_wind_share = 0.232;       ///< of the zonal wind in mid-troposphere that carries heat
   double heat_wave_share = 0;           ///< of the winds about warm and cold ground that carries it
-  double upwelling_w_m2 = 182;          ///< heat that water welling up along the equator takes
+  double upwelling_w_m2 = 184;          ///< heat that water welling up along the equator takes
   double upwelling_trades_m_s = 1.73;   ///< wind from the east with which all of that wells up
   double upwelling_width_deg = 5.36;    ///< of latitude, over which it falls by e
   double upwelling_reach_km = 4.4e+03;  ///< to the west of a coast, over which that falls by e
-  double coastal_upwelling_w_m2 = 49.4;  ///< heat that water and clouds off eastern coasts take
+  double coastal_upwelling_w_m2 = 44.5;  ///< heat that water and clouds off eastern coasts take
   double coastal_upwelling_reach_km =
       3.77e+03;                        ///< to the west of a coast, over which that falls by e
   double dry_warming_k_m2_w = 0.0282;  ///< by which dry ground is warmer for each W m-2 of sunlight
