@@ -10,6 +10,7 @@
 
 #include "geo/core/projection.hpp"
 #include "geo/kernels/remapping/planet_cells.hpp"
+#include "geo/kernels/water/water_balance.hpp"
 #include "stages/island/island_of_planet.hpp"
 
 namespace geo {
@@ -62,13 +63,14 @@ void on_great_rivers(std::initializer_list<std::uint64_t> seeds, Action&& action
   }
 }
 
-/// What the planet's lakes about an island lose to the air of what they get from rivers and rain,
+/// What the planet's lakes about an island lose to the air beyond what land in their place would,
 /// m3/s: where the island's own are smaller, its rivers carry that on.
 double lost_in_lakes_m3_s(const IslandOnRiver& at) {
   const auto lake = at.whole.read(field::lake_id);
   const auto receiver = at.whole.read(field::flow_receiver);
   const auto discharge = at.whole.read(field::discharge);
   const auto rain_mm_yr = at.whole.read(field::precipitation);
+  const auto potential_mm_yr = at.whole.read(field::potential_evapotranspiration);
   const Grid& grid = at.whole.grid();
   constexpr double kMillimetresAYear = 1e-3 / (365.25 * 86400.0);  // m s-1
   std::set<std::int32_t> lakes;
@@ -82,7 +84,8 @@ double lost_in_lakes_m3_s(const IslandOnRiver& at) {
     for (Index c = 0; c < at.whole.grid().size(); ++c) {
       if (lake[c] != one) continue;
       out = discharge[c];
-      in += kMillimetresAYear * rain_mm_yr[c] * grid.area_m2(grid.row(c));
+      in += kMillimetresAYear * grid.area_m2(grid.row(c)) *
+            (rain_mm_yr[c] - land_evaporation(rain_mm_yr[c], potential_mm_yr[c]));
       if (lake[receiver[c]] != one) sills.insert(receiver[c]);
     }
     for (Index c = 0; c < at.whole.grid().size(); ++c) {

@@ -82,17 +82,18 @@ using TerrainAscent = std::function<std::vector<float>(std::span<const float> wi
 /// Q the insolation, T the air's temperature at the ground, k, g and Q_mixed the inversion's
 /// constants of EnergyBalance. Pressure comes from the meridional cells about the thermal equator,
 /// heat lows and the stationary waves that latent heat and warm land set up, and the drag of land,
-/// which turns winds aside. Winds balance it with friction. Where currents bring the sea heat it is warmer than the air (sea_warmth_k): this adds
-/// to what evaporates, to the heating of the air above, to convection, and to the temperature
-/// gradients that eddies feel, and makes a shallow low. Evaporation from the sea grows with the
-/// speed of the wind, and where that comes from the cold. Winds carry moisture, and so do eddies,
-/// which are strongest where temperature gradients are steepest. It rains where air is humid,
-/// rises, or has more moist static energy than the free atmosphere of the tropics; soil returns a
-/// part of the rain to the air. Waves and rain are iterated together. What `ascent` (empty: level
-/// ground) lets rain out over one cell the air lacks over the next; rain and evaporation of the
-/// whole surface agree every month. Months run in parallel; the same bits for any number of
-/// threads. `latitude_deg`: one value per row, from south to north; the others one per cell,
-/// `glacier_fraction` (of the cell's land that ice covers) or none; Bug otherwise.
+/// which turns winds aside. Winds balance it with friction. Where currents bring the sea heat it is
+/// warmer than the air (sea_warmth_k): this adds to what evaporates, to the heating of the air
+/// above, to convection, and to the temperature gradients that eddies feel, and makes a shallow
+/// low. Evaporation from the sea grows with the speed of the wind, and where that comes from the
+/// cold. Winds carry moisture, and so do eddies, which are strongest where temperature gradients
+/// are steepest. It rains where air is humid, rises, or has more moist static energy than the free
+/// atmosphere of the tropics; soil returns a part of the rain to the air. Waves and rain are
+/// iterated together. What `ascent` (empty: level ground) lets rain out over one cell the air lacks
+/// over the next; rain and evaporation of the whole surface agree every month. Months run in
+/// parallel; the same bits for any number of threads. `latitude_deg`: one value per row, from south
+/// to north; the others one per cell, `glacier_fraction` (of the cell's land that ice covers) or
+/// none; Bug otherwise.
 SeasonalFields solve_seasonal_climate(const Grid& grid, const SeasonalClimate& model,
                                       std::span<const double> latitude_deg,
                                       std::span<const float> land_fraction,

@@ -32,7 +32,7 @@ std::vector<std::int32_t> behind_trench(const SphereTectonics& model, std::int32
 /// Some of the trenches of each plate, by their numbers.
 using TrenchesOfPlates = std::vector<std::vector<std::int32_t>>;
 
-/// The trenches of each plate of which something is true, asked of their numbers.
+/// The trenches of each plate of which something is true, asked of the samples at their edges.
 template <class IsWanted>
 TrenchesOfPlates trenches_where(const SphereTectonics& model, IsWanted&& is_wanted) {
   TrenchesOfPlates of_plate(model.state.plates.size());
