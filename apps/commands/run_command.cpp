@@ -65,7 +65,8 @@ void print_prediction(const geo::io::RunSession& session, const RunOptions& opti
   } else if (!options.memory.is_given()) {
     fmt::print("memory  about {}\n", shown_bytes(prediction.memory_bytes));
   } else {
-    const auto taken = memory_under_cap(options.memory.bytes(), prediction.memory_bytes);
+    const auto taken =
+        memory_under_cap(options.memory.bytes(), prediction.memory_bytes, available_memory_bytes());
     seconds *= taken.times_as_long;
     fmt::print("memory  about {}\n", shown_bytes(taken.resident_bytes));
     fmt::print("scratch about {} in {}\n", shown_bytes(taken.scratch_bytes),

@@ -56,11 +56,11 @@ class MemoryCap {
 double peak_resident_bytes();
 
 /// What a run that takes so much without a cap takes under one: of memory, of the scratch region,
-/// and of time, in times of that without.
+/// and of time, in times of that without, on a machine that has so much memory to spare.
 struct MemoryUnderCap {
   double resident_bytes = 0.0, scratch_bytes = 0.0, times_as_long = 1.0;
 };
-MemoryUnderCap memory_under_cap(double cap_bytes, double uncapped_bytes);
+MemoryUnderCap memory_under_cap(double cap_bytes, double uncapped_bytes, double available_bytes);
 
 /// The cap of each of so many ranks for a run that takes so much without one.
 double cap_of_rank(double uncapped_bytes, int ranks);
