@@ -9,10 +9,12 @@
 #include "geo/kernels/climate/distance_to_coast.hpp"
 #include "geo/kernels/climate/energy_balance.hpp"
 #include "geo/kernels/climate/moisture.hpp"
+#include "geo/kernels/climate/mountain_barrier.hpp"
 #include "geo/kernels/climate/ocean_heat.hpp"
 #include "geo/kernels/climate/orography.hpp"
 #include "geo/kernels/climate/seasonal_climate.hpp"
 #include "geo/kernels/climate/stationary_wave.hpp"
+#include "geo/kernels/climate/evaporation.hpp"
 #include "geo/kernels/landscape/deltas.hpp"
 #include "geo/kernels/landscape/hypsometric_curve.hpp"
 #include "geo/kernels/landscape/marine_deposition.hpp"
@@ -38,7 +40,6 @@
 #include "geo/kernels/water/surface_rivers.hpp"
 #include "geo/kernels/water/valley_width.hpp"
 #include "geo/kernels/water/water_balance.hpp"
-#include "kernels/climate/sea_evaporation.hpp"
 #include "kernels/refused_arrays.hpp"
 
 namespace geo {
@@ -344,6 +345,18 @@ TEST(ArraySizes, OfClimateAreChecked) {
     const Floats land(n(cells())), height(n(cells()));
     Floats rain(n(cells()));
     blueprint_orographic_precipitation(grid, {}, latitude, land, height, rain);
+  });
+  expect_refused("mountain_barrier", 1, [&](Lengths& n) {
+    const MountainBarrier barrier(grid, Floats(n(cells())));
+  });
+  const MountainBarrier barrier(grid, Floats(cells(), 1.0F));
+  expect_refused("turn_aside", 2, [&](Lengths& n) {
+    Floats east(n(cells())), north(n(cells()));
+    barrier.turn_aside(0.5, east, north);
+  });
+  expect_refused("cell_winds", 2, [&](Lengths& n) {
+    const Doubles latitude(n(rows())), pressure(n(rows()));
+    static_cast<void>(cell_winds(grid, {}, latitude, pressure));
   });
   expect_refused("moisture", 9, [&](Lengths& n) {
     Floats arrays[8];

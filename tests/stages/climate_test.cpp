@@ -413,7 +413,7 @@ TEST(Climate, LeeOfARangeIsDrierThanItsWindwardFoot) {
   for (float& height : plain) height = std::min(height, 200.0F);
   ClimateParameters windy = quick();
   windy.seasonal.circulation.subtropical_high_hpa = 12.0;
-  windy.seasonal.circulation.subpolar_low_hpa = 24.0;
+  windy.seasonal.circulation.subpolar_low_hpa = 36.0;
   const State state = run(grid, relief(*grid), windy), flat = run(grid, plain, windy);
   const int row = static_cast<int>((52 + 90) * 2);
   const auto gain = [&](double longitude_deg) {

@@ -2,19 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <vector>
 
 #include "geo/kernels/climate/blueprint_climate.hpp"
 #include "geo/kernels/climate/circulation.hpp"
+#include "geo/kernels/climate/evaporation.hpp"
 #include "geo/kernels/climate/moisture.hpp"
 #include "geo/kernels/climate/orography.hpp"
 #include "geo/kernels/climate/thermodynamics.hpp"
 #include "geo/kernels/remapping/conservative_remapping.hpp"
-#include "kernels/climate/sea_evaporation.hpp"
 
 namespace geo {
 namespace {
+
+constexpr double kRadians = std::numbers::pi / 180.0;
 
 TEST(ThreeCellWind, BlowsWhereTheAirGoes) {
   EXPECT_LT(three_cell_wind(15).east, -0.9) << "trades come from the east";
@@ -48,6 +51,60 @@ TEST(BalancedWinds, CellsGiveTradesAndWesterlies) {
       EXPECT_GT(east[grid.cell(0, j)], 0.0F) << latitude[j];
       EXPECT_GT(poleward, 0.0) << latitude[j];
     }
+  }
+}
+
+// Without mixing each row has the wind that balances its own pressure; with it trades blow at the
+// equator as well.
+TEST(CellWinds, BalancePressureRotationAndDrag) {
+  const Grid grid = Grid::sphere(72, 36);
+  std::vector<double> latitude, pressure;
+  Circulation model;
+  for (int j = 0; j < grid.ny(); ++j) {
+    latitude.push_back(grid.latitude_deg(j));
+    pressure.push_back(three_cell_pressure_hpa(latitude[j], model));
+  }
+  model.cell_mixing_km = 0.0;
+  model.overturning_share = 1.0;
+  const CellWinds alone = cell_winds(grid, model, latitude, pressure);
+  for (int j = 1; j + 1 < grid.ny(); ++j) {
+    const double f = 2.0 * model.rotation_rad_s() * std::sin(latitude[j] * kRadians);
+    const double push = -100.0 * (pressure[j + 1] - pressure[j - 1]) /
+                        (2.0 * grid.spacing_north_m(j)) / model.air_density_kg_m3;
+    EXPECT_NEAR(model.drag_ocean_s * alone.east[j] - f * alone.north[j], 0.0, 1e-9);
+    EXPECT_NEAR(model.drag_ocean_s * alone.north[j] + f * alone.east[j], push, 1e-3 * 1e-4);
+  }
+  model.cell_mixing_km = 800.0;
+  const CellWinds mixed = cell_winds(grid, model, latitude, pressure);
+  const int equator = grid.ny() / 2;
+  EXPECT_LT(mixed.east[equator], -0.3) << "trades";
+  EXPECT_GT(mixed.east[equator], mixed.east[equator + 2]);
+  EXPECT_GT(mixed.east[27], 0.5) << "westerlies";
+  model.overturning_share = 0.5;
+  const CellWinds returning = cell_winds(grid, model, latitude, pressure);
+  for (int j = 0; j < grid.ny(); ++j) {
+    EXPECT_DOUBLE_EQ(returning.east[j], mixed.east[j]);
+    EXPECT_DOUBLE_EQ(returning.north[j], 0.5 * mixed.north[j]);
+  }
+}
+
+TEST(CellWinds, EddiesMixTheirMomentum) {
+  const Grid grid = Grid::sphere(72, 36);
+  std::vector<double> latitude, pressure;
+  Circulation model;
+  model.cell_mixing_km = 1200.0;
+  model.overturning_share = 1.0;
+  for (int j = 0; j < grid.ny(); ++j) {
+    latitude.push_back(grid.latitude_deg(j));
+    pressure.push_back(three_cell_pressure_hpa(latitude[j], model));
+  }
+  const CellWinds winds = cell_winds(grid, model, latitude, pressure);
+  for (int j = 1; j + 1 < grid.ny(); ++j) {
+    const double f = 2.0 * model.rotation_rad_s() * std::sin(latitude[j] * kRadians);
+    const double rows = 1.2e6 / grid.spacing_north_m(j);
+    const double curvature = winds.east[j + 1] - 2.0 * winds.east[j] + winds.east[j - 1];
+    EXPECT_NEAR(model.drag_ocean_s * (winds.east[j] - rows * rows * curvature), f * winds.north[j],
+                1e-10);
   }
 }
 

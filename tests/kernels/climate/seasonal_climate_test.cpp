@@ -256,6 +256,7 @@ TEST(SeasonalClimate, EddiesRainLessUnderSinkingAir) {
   SeasonalClimate model;
   model.ascent_bound = 1e-9;  // so that ascent alone makes no difference
   model.eddy_rain = 1.0;
+  model.circulation.overturning_share = 1.0;  // so that highs sink fast
   const auto rain_mm = [&](double share) {
     model.eddy_descent_share = share;
     return continent.solve(model).precipitation_mm[0];

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 #include "geo/core/array_sizes.hpp"
+#include "kernels/numerics/thomas.hpp"
 
 namespace geo {
 namespace {
@@ -60,6 +62,36 @@ double three_cell_pressure_hpa(double latitude_deg, const Circulation& model, do
     pressure += cell_rise_hpa(cell, model) * 0.5 * (1.0 - std::cos(kPi * along));
   }
   return pressure;
+}
+
+CellWinds cell_winds(const Grid& grid, const Circulation& model,
+                     std::span<const double> latitude_deg, std::span<const double> pressure_hpa) {
+  using Complex = std::complex<double>;
+  const int ny = grid.ny();
+  check_sizes("cell_winds", ny,
+              {{"latitude_deg", latitude_deg.size()}, {"pressure_hpa", pressure_hpa.size()}});
+  // With w = u + i v the two equations are one: (r + i f) w - r L^2 w'' = -i p' / rho.
+  const double drag = model.drag_ocean_s;
+  std::vector<Complex> to_south(ny), own(ny), to_north(ny), wind(ny);
+  for (int j = 0; j < ny; ++j) {
+    const int south = std::max(j - 1, 0), north = std::min(j + 1, ny - 1);
+    const double row_m = grid.spacing_north_m(std::min(j, ny - 2));
+    const double slope = 100.0 * (pressure_hpa[north] - pressure_hpa[south]) / (2.0 * row_m);
+    const double rows_mixed = 1000.0 * model.cell_mixing_km / row_m;
+    const double mixing = drag * rows_mixed * rows_mixed;
+    const double coriolis = 2.0 * model.rotation_rad_s() * std::sin(latitude_deg[j] * kRadians);
+    to_south[j] = to_north[j] = -mixing;  // no wind at the poles
+    own[j] = Complex(drag + 2.0 * mixing, coriolis);
+    wind[j] = Complex(0.0, -slope / model.air_density_kg_m3);
+  }
+  factor_tridiagonal<Complex>(to_south, to_north, own);
+  solve_tridiagonal<Complex>(to_south, to_north, own, wind);
+  CellWinds winds;
+  for (const Complex& w : wind) {
+    winds.east.push_back(w.real());
+    winds.north.push_back(model.overturning_share * w.imag());
+  }
+  return winds;
 }
 
 void balanced_winds(const Grid& grid, const Circulation& model,

@@ -7,10 +7,10 @@
 
 #include "geo/core/array_sizes.hpp"
 #include "geo/core/parallel_errors.hpp"
+#include "geo/kernels/climate/evaporation.hpp"
 #include "geo/kernels/climate/thermodynamics.hpp"
 #include "geo/kernels/numerics/area_sum.hpp"
 #include "geo/kernels/numerics/smoothing.hpp"
-#include "kernels/climate/sea_evaporation.hpp"
 #include "kernels/climate/zonal.hpp"
 #include "seasonal_year.hpp"
 
@@ -89,7 +89,7 @@ void SeasonalYear::hold_back(AirOfMonth& month) const {
   }
 }
 
-/// Winds that balance the pressure of cells and heat lows, and waves with them.
+/// Winds of cells and heat lows, and waves with them.
 void SeasonalYear::add_waves(AirOfMonth& month) const {
   constexpr int kRounds = 2;  // of waves and the drag on them
   const std::vector<float> balanced_east = month.wind_east, balanced_north = month.wind_north;
@@ -110,19 +110,25 @@ void SeasonalYear::add_waves(AirOfMonth& month) const {
   add();
 }
 
-/// Winds of cells, heat lows and waves.
+void SeasonalYear::add_cells(AirOfMonth& month) const {
+  for (std::size_t cell = 0; cell < size_; ++cell) {
+    const int row = grid_.row(static_cast<Index>(cell));
+    month.wind_east[cell] += static_cast<float>(month.cells.east[row]);
+    month.wind_north[cell] += static_cast<float>(month.cells.north[row]);
+  }
+}
+
+/// Winds of cells, heat lows and waves, as mountains turn them.
 void SeasonalYear::blow() {
   for_months([&](AirOfMonth& month) {
     balanced_winds(grid_, model_.circulation, latitude_deg_, land_, month.pressure_hpa,
                    month.wind_east, month.wind_north);
     if (grid_.topology() == Topology::sphere) {
+      add_cells(month);
       heat_air(month);
       add_waves(month);
     }
-    for (std::size_t cell = 0; cell < size_; ++cell) {
-      month.wind_east[cell] *= month.open_flow[cell];
-      month.wind_north[cell] *= month.open_flow[cell];
-    }
+    barrier_.turn_aside(model_.turned_share, month.wind_east, month.wind_north);
     if (has_sea_) evaporate_sea(month);
     activate(month);
   });

@@ -12,6 +12,15 @@
 
 namespace geo {
 
+std::vector<float> SeasonalYear::share_of_open_flow() const {
+  std::vector<float> open(size_);
+  for (std::size_t cell = 0; cell < size_; ++cell) {
+    const double relative = height_m_[cell] / model_.blocking_height_m;
+    open[cell] = static_cast<float>(1.0 / (1.0 + relative * relative));
+  }
+  return open;
+}
+
 /// Pressure over ground that is warmer or colder than its parallel is through the year, hPa.
 double SeasonalYear::thermal_pressure_hpa(double warmer_k) const {
   return -model_.circulation.thermal_low_hpa_k * warmer_k *
@@ -155,7 +164,6 @@ void SeasonalYear::clear(AirOfMonth& month) const {
                        &month.force_north,
                        &month.wave_east,
                        &month.wave_north,
-                       &month.open_flow,
                        &month.diffusivity,
                        &month.own_eddies,
                        &month.eddies,
@@ -175,25 +183,35 @@ void SeasonalYear::clear(AirOfMonth& month) const {
   month.rain_mm_d.assign(size_, 0.0);
 }
 
-/// Pressure of the three cells about the trough, and of heat lows and cold highs. Both are as deep
-/// as the troposphere, which warms and cools later than the ground.
+/// Winds of the cells about the trough, which blow along whole parallels; and pressure: by how much
+/// the cells' differs where their trough does, and of heat lows and cold highs. All are as deep as
+/// the troposphere, which warms and cools later than the ground.
 void SeasonalYear::press(AirOfMonth& month, std::span<const float> trough_c,
                          std::span<const float> low_c,
                          std::span<const double> annual_mean_c) const {
   const std::vector<double> trough_deg = trough_latitudes_deg(
       grid_, latitude_deg_, trough_c, row_means<float>(grid_, trough_c), model_.itcz_locality);
+  std::vector<float> cells_hpa(size_);
   for (std::size_t cell = 0; cell < size_; ++cell) {
     const Index here = static_cast<Index>(cell);
-    const int row = grid_.row(here);
+    cells_hpa[cell] = static_cast<float>(
+        three_cell_pressure_hpa(latitude_deg_[grid_.row(here)], model_.circulation,
+                                model_.itcz_share * trough_deg[grid_.column(here)]));
+  }
+  const std::vector<double> mean_hpa = row_means<float>(grid_, cells_hpa);
+  if (grid_.topology() == Topology::sphere) {
+    month.cells = cell_winds(grid_, model_.circulation, latitude_deg_, mean_hpa);
+  }
+  for (std::size_t cell = 0; cell < size_; ++cell) {
+    const int row = grid_.row(static_cast<Index>(cell));
     month.pressure_hpa[cell] = static_cast<float>(
-        three_cell_pressure_hpa(latitude_deg_[row], model_.circulation,
-                                model_.itcz_share * trough_deg[grid_.column(here)]) +
-        thermal_pressure_hpa(low_c[cell] - annual_mean_c[row]) -
+        cells_hpa[cell] - mean_hpa[row] + thermal_pressure_hpa(low_c[cell] - annual_mean_c[row]) -
         model_.sea_low_hpa_k * (1.0 - land_[cell]) * sea_warmer_k_[cell]);
   }
 }
 
-/// Eddies, which mix the air's water and let it rain; mountains hold the flow back.
+/// Eddies, which mix the air's water and let it rain: their winds grow with the gradient of
+/// temperature, and what they mix with their winds. Mountains hold the flow back.
 void SeasonalYear::stir(AirOfMonth& month, std::span<const double> zonal_c) const {
   constexpr double kFastest_1_s = 0.01;  // on tiny planets: what mixes in minutes is mixed
   std::vector<float> surface_c = month.temperature_c;
@@ -202,16 +220,13 @@ void SeasonalYear::stir(AirOfMonth& month, std::span<const double> zonal_c) cons
       eddy_strength(grid_, latitude_deg_, surface_c, zonal_c, model_.eddy_gradient_k_1000km,
                     model_.eddy_exponent, model_.eddy_locality);
   for (std::size_t cell = 0; cell < size_; ++cell) {
-    const double relative = height_m_[cell] / model_.blocking_height_m;
-    month.open_flow[cell] = static_cast<float>(1.0 / (1.0 + relative * relative));
     const double spacing_m = grid_.spacing_north_m(grid_.row(static_cast<Index>(cell)));
-    month.diffusivity[cell] = static_cast<float>(
-        std::min(month.open_flow[cell] *
-                     (model_.base_diffusivity_m2_s + model_.eddy_diffusivity_m2_s * eddies[cell]),
-                 kFastest_1_s * spacing_m * spacing_m));
+    const double gradient = std::pow(eddies[cell], 1.0 / model_.eddy_exponent);
+    month.diffusivity[cell] = static_cast<float>(std::min(
+        open_flow_[cell] * (model_.base_diffusivity_m2_s + model_.eddy_diffusivity_m2_s * gradient),
+        kFastest_1_s * spacing_m * spacing_m));
     month.own_eddies[cell] = static_cast<float>(model_.eddy_rain * eddies[cell]);
-    month.gust_m_s[cell] =
-        static_cast<float>(model_.gust_m_s * std::pow(eddies[cell], 1.0 / model_.eddy_exponent));
+    month.gust_m_s[cell] = static_cast<float>(model_.gust_m_s * gradient);
   }
 }
 

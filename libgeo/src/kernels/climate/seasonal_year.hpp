@@ -8,6 +8,7 @@
 
 #include "geo/core/parallel_errors.hpp"
 #include "geo/kernels/climate/moisture.hpp"
+#include "geo/kernels/climate/mountain_barrier.hpp"
 #include "geo/kernels/climate/seasonal_climate.hpp"
 
 namespace geo {
@@ -15,12 +16,12 @@ namespace geo {
 /// One month's air and what it exchanges with the ground, one value per cell.
 struct AirOfMonth {
   std::vector<float> temperature_c;  ///< at sea level
-  std::vector<float> pressure_hpa;   ///< of cells and heat lows, without waves
+  std::vector<float> pressure_hpa;   ///< along parallels, without waves
+  CellWinds cells;
   std::vector<double> zonal_wind_m_s;
   std::vector<float> wind_east, wind_north, descent_1_s;
   std::vector<float> wave_east, wave_north;    ///< of the wind
   std::vector<float> force_east, force_north;  ///< of land on it, m s-2
-  std::vector<float> open_flow;                ///< share of the flow that topography lets pass
   std::vector<float> diffusivity, own_eddies, eddies, activity, saturated_mm, open_water_1_d;
   std::vector<float> gust_m_s;  ///< of eddies
   std::vector<float> potential_evapotranspiration_mm_d, soil_evaporation_mm_d,
@@ -48,6 +49,8 @@ class SeasonalYear {
         height_m_(height_m),
         glacier_(glacier_fraction),
         size_(static_cast<std::size_t>(grid.size())),
+        open_flow_(share_of_open_flow()),
+        barrier_(grid, open_flow_),
         ascent_(size_, 1.0F),
         has_sea_(model.moisture.evaporation_velocity_1_d > 0.0 &&
                  std::any_of(land_fraction.begin(), land_fraction.end(),
@@ -63,6 +66,7 @@ class SeasonalYear {
   [[nodiscard]] SeasonalFields fields() const;
 
  private:
+  [[nodiscard]] std::vector<float> share_of_open_flow() const;
   [[nodiscard]] double thermal_pressure_hpa(double warmer_k) const;
   void carry_heat(std::span<const float> month_c, std::span<const double> annual_mean_c,
                   std::span<float> east, std::span<float> north) const;
@@ -78,6 +82,7 @@ class SeasonalYear {
   void guess(AirOfMonth& month) const;
   void hold_back(AirOfMonth& month) const;
   void add_waves(AirOfMonth& month) const;
+  void add_cells(AirOfMonth& month) const;
   void heat_air(AirOfMonth& month) const;
   void evaporate_sea(AirOfMonth& month) const;
   void activate(AirOfMonth& month) const;
@@ -101,7 +106,9 @@ class SeasonalYear {
   std::size_t size_;
   std::array<AirOfMonth, kMonths> months_;
   std::optional<EnergyBalanceYear> temperatures_;  ///< until winds have said where water wells up
-  std::vector<float> ascent_;                      ///< of single ranges
+  std::vector<float> open_flow_;                   ///< share of it that topography lets pass
+  MountainBarrier barrier_;
+  std::vector<float> ascent_;        ///< of single ranges
   std::vector<float> sea_warmer_k_;  ///< than the air above it, where currents bring heat
   std::vector<float> warmer_below_eddies_k_;
   std::vector<double> most_evaporation_mm_d_;

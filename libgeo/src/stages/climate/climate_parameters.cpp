@@ -155,6 +155,13 @@ std::vector<Parameter> wind_rows(ClimateParameters& p) {
            "fall of pressure from 30 to 60 deg", "peixoto1992"),
       real("climate.polar_high_hpa", c.polar_high_hpa, "hPa", 0.0, 50.0,
            "rise of pressure from 60 deg to the pole", "peixoto1992"),
+      real("climate.cell_mixing_km", c.cell_mixing_km, "km", 0.0, 10000.0,
+           "distance over which eddies mix the momentum of the cells' winds", "peixoto1992"),
+      real(
+          "climate.overturning_share", c.overturning_share, "1", 0.0, 2.0,
+          "share of the cells' meridional wind, which turns back aloft, in the mean over the moist "
+          "layer",
+          "peixoto1992"),
       real("climate.thermal_low_hpa_k", c.thermal_low_hpa_k, "hPa K-1", 0.0, 5.0,
            "fall of pressure per kelvin of heat anomaly", "lindzen1987"),
       real("climate.cold_high_share", c.cold_high_share, "1", 0.0, 2.0,
@@ -278,6 +285,9 @@ std::vector<Parameter> moisture_rows(ClimateParameters& p) {
            "share of the mean height of a coarse cell by which moist air is lifted", "roe2005"),
       real("climate.blocking_height_m", seasonal.blocking_height_m, "m", 100.0, 1e6,
            "mean height at which topography halves the moist flow", "roe2005"),
+      real("climate.turned_share", seasonal.turned_share, "1", 0.0, 1.0,
+           "share of the flow held back by topography that turns aside along it; the rest rises",
+           "sherman1978"),
       real("climate.land_drag", seasonal.land_drag, "1", 0.0, 100.0,
            "drag of land on the wind, over the damping that stationary waves have everywhere",
            "garratt1977"),

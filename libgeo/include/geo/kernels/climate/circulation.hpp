@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "geo/core/grid.hpp"
 
@@ -22,14 +23,16 @@ struct Circulation {
   double rotation_period_h = 23.934;
   bool retrograde = false;
   double air_density_kg_m3 = 1.2;
-  double drag_ocean_s = 2.62e-05;  ///< r over the sea, s-1
-  double drag_land_s = 1.67e-05;
-  double displacement_decay = 5.49;    ///< exponent p of the cells' displacement with the trough
-  double subtropical_high_hpa = 1.27;  ///< above the equatorial trough
-  double subpolar_low_hpa = 3.79;      ///< below the subtropical high
-  double polar_high_hpa = 1.51;        ///< above the subpolar low
-  double thermal_low_hpa_k = 0.411;    ///< fall of pressure per kelvin of heat anomaly
-  double cold_high_share = 1.07;       ///< of it, where the anomaly is cold and shallow
+  double drag_ocean_s = 2.23e-05;  ///< r over the sea, s-1
+  double drag_land_s = 2.55e-05;
+  double displacement_decay = 6;       ///< exponent p of the cells' displacement with the trough
+  double subtropical_high_hpa = 4.67;  ///< above the equatorial trough
+  double subpolar_low_hpa = 5.71;      ///< below the subtropical high
+  double polar_high_hpa = 2.01;        ///< above the subpolar low
+  double cell_mixing_km = 380;       ///< L, over which eddies mix the momentum of the cells' winds
+  double overturning_share = 0.258;  ///< of the cells' meridional wind, as it turns back aloft
+  double thermal_low_hpa_k = 0.34;   ///< fall of pressure per kelvin of heat anomaly
+  double cold_high_share = 1.16;     ///< of it, where the anomaly is cold and shallow
 
   /// Angular velocity, negative if retrograde.
   [[nodiscard]] double rotation_rad_s() const;
@@ -47,6 +50,21 @@ struct Circulation {
 /// @param trough_deg  latitude of the trough
 [[nodiscard]] double three_cell_pressure_hpa(double latitude_deg, const Circulation& model,
                                              double trough_deg = 0.0);
+
+/// Winds of the cells, m s-1, one value per row, where the air goes: means over the moist layer.
+struct CellWinds {
+  std::vector<double> east, north;
+};
+/// Those that balance the cells' pressure p on a sphere, with drag r as over the sea, while eddies
+/// mix momentum over the distance L:
+///   r u - f v = r L^2 u'',   r v + f u = -p' / rho + r L^2 v''   (' = d/dy).
+/// So trades blow at the equator too, where pressure and rotation alone would leave a calm. In the
+/// moist layer the zonal wind changes little with height, but the meridional wind turns back above
+/// the boundary layer (Peixoto & Oort 1992): v counts by its overturning share. O(rows).
+/// @param latitude_deg, pressure_hpa  per row. Throws Bug where sizes differ.
+[[nodiscard]] CellWinds cell_winds(const Grid& grid, const Circulation& model,
+                                   std::span<const double> latitude_deg,
+                                   std::span<const double> pressure_hpa);
 
 /// Winds of one month on a sphere or torus.
 /// @param latitude_deg     per row
