@@ -23,16 +23,16 @@ struct Circulation {
   double rotation_period_h = 23.934;
   bool retrograde = false;
   double air_density_kg_m3 = 1.2;
-  double drag_ocean_s = 2.23e-05;  ///< r over the sea, s-1
-  double drag_land_s = 2.55e-05;
+  double drag_ocean_s = 2.34e-05;  ///< r over the sea, s-1
+  double drag_land_s = 2.61e-05;
   double displacement_decay = 6;       ///< exponent p of the cells' displacement with the trough
-  double subtropical_high_hpa = 4.67;  ///< above the equatorial trough
-  double subpolar_low_hpa = 5.71;      ///< below the subtropical high
-  double polar_high_hpa = 2.01;        ///< above the subpolar low
-  double cell_mixing_km = 380;       ///< L, over which eddies mix the momentum of the cells' winds
-  double overturning_share = 0.258;  ///< of the cells' meridional wind, as it turns back aloft
-  double thermal_low_hpa_k = 0.34;   ///< fall of pressure per kelvin of heat anomaly
-  double cold_high_share = 1.16;     ///< of it, where the anomaly is cold and shallow
+  double subtropical_high_hpa = 4.86;  ///< above the equatorial trough
+  double subpolar_low_hpa = 5.69;      ///< below the subtropical high
+  double polar_high_hpa = 2.02;        ///< above the subpolar low
+  double cell_mixing_km = 371;       ///< L, over which eddies mix the momentum of the cells' winds
+  double overturning_share = 0.249;  ///< of the cells' meridional wind, as it turns back aloft
+  double thermal_low_hpa_k = 0.328;  ///< fall of pressure per kelvin of heat anomaly
+  double cold_high_share = 1.19;     ///< of it, where the anomaly is cold and shallow
 
   /// Angular velocity, negative if retrograde.
   [[nodiscard]] double rotation_rad_s() const;

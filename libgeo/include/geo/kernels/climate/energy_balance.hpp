@@ -19,10 +19,10 @@ struct EnergyBalance {
   Orbit orbit;
   double outgoing_w_m2 = 190;          ///< A at 0 degC
   double outgoing_slope_w_m2_k = 2.4;  ///< B
-  double diffusivity_w_m2_k = 0.622;   ///< D at 15 degC, on the unit sphere
+  double diffusivity_w_m2_k = 0.617;   ///< D at 15 degC, on the unit sphere
   double channel_share = 0.62;     ///< of D that is missing where a channel runs round the planet
   double moist_transport = 0.653;  ///< share of latent heat in D's change with temperature
-  double advected_heat_j_m2_k = 6.9e+06;  ///< of the air that winds move
+  double advected_heat_j_m2_k = 7.2e+06;  ///< of the air that winds move
   double coalbedo = 0.662;                ///< mean absorbed share without snow and ice
   double coalbedo_p2 = -0.108;            ///< its second Legendre coefficient in latitude
   double snow_coalbedo = 0.581;           ///< of snow beneath trees
@@ -37,26 +37,26 @@ struct EnergyBalance {
   double land_heat_capacity_w_yr_m2_k = 0.213;
   double freezing_heat_w_yr_m2 = 3.2;  ///< that the ground's water and snow give as they freeze
   double ocean_heat_capacity_w_yr_m2_k = 6.17;
-  double sea_exchange_w_m2_k = 17.4;  ///< heat and vapour from sea to air, per kelvin, at 15 degC
+  double sea_exchange_w_m2_k = 17.7;  ///< heat and vapour from sea to air, per kelvin, at 15 degC
   double sunlit_air_share = 0.287;    ///< of the absorbed sunlight that air over the sea absorbs
   double ice_heat_capacity_w_yr_m2_k = 0.976;  ///< of sea ice that does not melt
   double melt_w_m2_k = 5.69;         ///< heat that melting ice takes for each kelvin above -1 degC
-  double gyre_heat_w_m2 = 5.67;      ///< heat that gyres release along a western coast of an ocean
+  double gyre_heat_w_m2 = 5.7;       ///< heat that gyres release along a western coast of an ocean
   double gyre_reach_km = 1.34e+03;   ///< e-folding distance of a coast's influence
-  double subpolar_heat_w_m2 = 46.1;  ///< heat that subpolar gyres release along an eastern coast
+  double subpolar_heat_w_m2 = 47.1;  ///< heat that subpolar gyres release along an eastern coast
   double subpolar_reach_km = 2.64e+03;
-  double blocking_height_m = 1.56e+03;  ///< of topography that halves the heat passing over
+  double blocking_height_m = 1.51e+03;  ///< of topography that halves the heat passing over
   double lapse_k_m = 0.00511;
-  double heat_wind_share = 0.289;      ///< of the zonal wind in mid-troposphere that carries heat
+  double heat_wind_share = 0.299;      ///< of the zonal wind in mid-troposphere that carries heat
   double heat_wave_share = 0;          ///< of the winds about warm and cold ground that carries it
-  double upwelling_w_m2 = 180;         ///< heat that water welling up along the equator takes
-  double upwelling_trades_m_s = 1.73;  ///< wind from the east with which all of that wells up
+  double upwelling_w_m2 = 156;         ///< heat that water welling up along the equator takes
+  double upwelling_trades_m_s = 3.05;  ///< wind from the east with which all of that wells up
   double upwelling_width_deg = 5.36;   ///< of latitude, over which it falls by e
-  double upwelling_reach_km = 4.94e+03;  ///< to the west of a coast, over which that falls by e
-  double coastal_upwelling_w_m2 = 43.2;  ///< heat that water and clouds off eastern coasts take
+  double upwelling_reach_km = 4.63e+03;  ///< to the west of a coast, over which that falls by e
+  double coastal_upwelling_w_m2 = 48.8;  ///< heat that water and clouds off eastern coasts take
   double coastal_upwelling_reach_km =
-      4e+03;                           ///< to the west of a coast, over which that falls by e
-  double dry_warming_k_m2_w = 0.0376;  ///< by which dry ground is warmer for each W m-2 of sunlight
+      3.8e+03;                         ///< to the west of a coast, over which that falls by e
+  double dry_warming_k_m2_w = 0.0361;  ///< by which dry ground is warmer for each W m-2 of sunlight
   double dry_warming_from_w_m2 = 201;  ///< above this
   double inversion_k = 1.74;           ///< by which snow is colder than the air in polar nights
   double inversion_growth = 0.128;     ///< more for each kelvin that it is colder than -10 degC

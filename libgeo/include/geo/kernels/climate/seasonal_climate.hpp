@@ -23,35 +23,35 @@ struct SeasonalClimate {
   OceanCurrents currents;
   MoistureBudget moisture;
   SoilMoisture soil;
-  double itcz_share = 0.522;          ///< of the thermal equator's excursion that the cells follow
+  double itcz_share = 0.518;          ///< of the thermal equator's excursion that the cells follow
   double itcz_lag_month = 1;          ///< by which the trough follows the warmth of the air
-  double heat_low_lag_month = 0.342;  ///< the same of heat lows and cold highs
-  double itcz_locality = 0.022;    ///< how far the trough follows its meridian's warmest latitude
-  double sensible_w_m2_k = 0.798;  ///< heating of the air over ground warmer than its parallel
+  double heat_low_lag_month = 0.332;  ///< the same of heat lows and cold highs
+  double itcz_locality = 0.0218;   ///< how far the trough follows its meridian's warmest latitude
+  double sensible_w_m2_k = 0.777;  ///< heating of the air over ground warmer than its parallel
   double base_diffusivity_m2_s = 2.07e+06;
-  double eddy_diffusivity_m2_s = 4.94e+05;  ///< at the reference temperature gradient
+  double eddy_diffusivity_m2_s = 4.91e+05;  ///< at the reference temperature gradient
   double eddy_rain = 0.108;  ///< rain-out by eddies there, whether the mean air rises or sinks
-  double eddy_gradient_k_1000km = 5.37;  ///< the reference gradient
-  double eddy_exponent = 3.41;           ///< by which their strength grows with the gradient
-  double eddy_locality = 0.898;  ///< how far eddies follow the local gradient, not the parallel's
-  double gust_m_s = 6.82;        ///< of eddies' winds over the sea at the reference gradient
-  double cold_air_heat_j_m2_k = 1.11e+06;  ///< of air that evaporates as the sea warms it
-  double ascent_time_d = 21.1;             ///< convergence over this time multiplies rain-out by e
-  double descent_time_d = 2.57;            ///< the same of the descent that stationary waves make
+  double eddy_gradient_k_1000km = 5.27;  ///< the reference gradient
+  double eddy_exponent = 3.25;           ///< by which their strength grows with the gradient
+  double eddy_locality = 0.909;  ///< how far eddies follow the local gradient, not the parallel's
+  double gust_m_s = 6.33;        ///< of eddies' winds over the sea at the reference gradient
+  double cold_air_heat_j_m2_k = 1.06e+06;  ///< of air that evaporates as the sea warms it
+  double ascent_time_d = 22;               ///< convergence over this time multiplies rain-out by e
+  double descent_time_d = 2.51;            ///< the same of the descent that stationary waves make
   double ascent_bound = 1.04;              ///< most that ascent adds to the logarithm of rain-out
-  double descent_bound = 4.73;             ///< most that descent takes from it
-  double eddy_descent_share = 0.0889;      ///< of that descent which the rain of eddies feels
-  double ascent_latitude_deg = 60;   ///< at which converging winds make half as much rain as where
-                                     ///< rotation is weak
-  double ascent_smoothing_km = 579;  ///< over which ascent is felt
-  double convection_1_k = 0.0218;    ///< growth of rain-out with excess moist static energy
-  double sea_convection_1_k = 0.0717;     ///< the same with sea that is warmer than the air
-  double sea_low_hpa_k = 0.0327;          ///< of the air over such sea
-  double convection_latitude_deg = 40.8;  ///< to which the free atmosphere is level
-  double orographic_share = 0.0215;       ///< of the mean height by which air is lifted over a cell
-  double blocking_height_m = 1.47e+03;    ///< height at which topography halves the moist flow
-  double turned_share = 0.506;  ///< of what it holds back, which turns aside; the rest rises
-  double land_drag = 3.85;      ///< on the wind over land, over the damping of the internal mode
+  double descent_bound = 4.71;             ///< most that descent takes from it
+  double eddy_descent_share = 0.0878;      ///< of that descent which the rain of eddies feels
+  double ascent_latitude_deg = 58.7;  ///< at which converging winds make half as much rain as where
+                                      ///< rotation is weak
+  double ascent_smoothing_km = 573;   ///< over which ascent is felt
+  double convection_1_k = 0.0209;     ///< growth of rain-out with excess moist static energy
+  double sea_convection_1_k = 0.0655;     ///< the same with sea that is warmer than the air
+  double sea_low_hpa_k = 0.0335;          ///< of the air over such sea
+  double convection_latitude_deg = 39.4;  ///< to which the free atmosphere is level
+  double orographic_share = 0.0212;       ///< of the mean height by which air is lifted over a cell
+  double blocking_height_m = 1.43e+03;    ///< height at which topography halves the moist flow
+  double turned_share = 0.512;  ///< of what it holds back, which turns aside; the rest rises
+  double land_drag = 3.86;      ///< on the wind over land, over the damping of the internal mode
   double land_transpiration = 1.0;  ///< share of the soil's evaporation that returns to the air
 };
 
