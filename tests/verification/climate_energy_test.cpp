@@ -350,6 +350,7 @@ TEST(EnergyBalance, SnowAndIceNeverDarkenWhatTheyLieOn) {
 TEST(EnergyBalance, OpenSnowDelaysSpringWhereSummersAreTooColdForTrees) {
   const PolarContinent planet;
   EnergyBalance model;
+  model.channel_share = 0.0;  // else it has ice of its own accord
   model.freezing_heat_w_yr_m2 = 0.0;
   model.open_snow_coalbedo = 0.4;
   model.tree_temperature_c = 60.0;  // trees nowhere

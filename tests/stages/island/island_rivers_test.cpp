@@ -226,7 +226,9 @@ TEST(Island, PlainsHaveNoLakesThatThePlanetLacks) {
 TEST(Island, RiversOfLowlandsStayAboveTheLevelOfTheSea) {
   constexpr double kRiver_m2 = 1e9;
   double rivers = 0.0, at_sea_level = 0.0;
-  on_great_rivers({1, 2, 3, 4, 5, 6, 7, 8}, [&](const IslandOnRiver& at) {
+  const auto sixteen = {1UL, 2UL,  3UL,  4UL,  5UL,  6UL,  7UL,  8UL,
+                        9UL, 10UL, 11UL, 12UL, 13UL, 14UL, 15UL, 16UL};
+  on_great_rivers(sixteen, [&](const IslandOnRiver& at) {
     const auto planets_m = at.whole.read(field::elevation);
     const auto receiver = at.whole.read(field::flow_receiver);
     const auto z = at.island.read(field::elevation);
