@@ -8,13 +8,13 @@
 #include "geo/kernels/climate/circulation.hpp"
 #include "geo/kernels/climate/distance_to_coast.hpp"
 #include "geo/kernels/climate/energy_balance.hpp"
+#include "geo/kernels/climate/evaporation.hpp"
 #include "geo/kernels/climate/moisture.hpp"
 #include "geo/kernels/climate/mountain_barrier.hpp"
 #include "geo/kernels/climate/ocean_heat.hpp"
 #include "geo/kernels/climate/orography.hpp"
 #include "geo/kernels/climate/seasonal_climate.hpp"
 #include "geo/kernels/climate/stationary_wave.hpp"
-#include "geo/kernels/climate/evaporation.hpp"
 #include "geo/kernels/landscape/deltas.hpp"
 #include "geo/kernels/landscape/hypsometric_curve.hpp"
 #include "geo/kernels/landscape/marine_deposition.hpp"
@@ -346,9 +346,8 @@ TEST(ArraySizes, OfClimateAreChecked) {
     Floats rain(n(cells()));
     blueprint_orographic_precipitation(grid, {}, latitude, land, height, rain);
   });
-  expect_refused("mountain_barrier", 1, [&](Lengths& n) {
-    const MountainBarrier barrier(grid, Floats(n(cells())));
-  });
+  expect_refused("mountain_barrier", 1,
+                 [&](Lengths& n) { const MountainBarrier barrier(grid, Floats(n(cells()))); });
   const MountainBarrier barrier(grid, Floats(cells(), 1.0F));
   expect_refused("turn_aside", 2, [&](Lengths& n) {
     Floats east(n(cells())), north(n(cells()));
