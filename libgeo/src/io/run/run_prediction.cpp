@@ -12,18 +12,18 @@ namespace {
 
 constexpr double kBaseMemory_bytes = 75e6;    // program and libraries
 constexpr double kBesideIsland_bytes = 65.0;  // per cell of a planet while an island is made
-constexpr double kWriting_ns = 15.0;          // per value: what is not written beside the stages
-constexpr double kLastWriting_ns = 55.0;      // of the last stage: nothing is beside it
+constexpr double kWriting_ns = 11.0;          // per value: what is not written beside the stages
+constexpr double kLastWriting_ns = 40.0;      // of the last stage: nothing is beside it
 constexpr double kCompression = 0.55;         // NetCDF values after deflate
 constexpr double kVtkCompression = 0.51;      // the same without shuffling, in VTK files
-constexpr double kMaps_s = 1.3;               // all maps at their default width, one thread
+constexpr double kMaps_s = 3.0;               // all maps at their default width, one thread
 constexpr double kMaps_bytes = 12e6;
 constexpr double kMapWidth_px = 1800.0;
 constexpr double kPictures_bytes = 90e6;        // memory of all maps at that width, drawn at once
 constexpr double kPicturesOfCell_bytes = 90.0;  // of the fields that they are drawn from
 constexpr double kPicturesOfIsland_bytes = 200.0;  // the same per cell of an island
 constexpr double kParallelShare = 0.75;            // of the time, Amdahl
-constexpr double kReference_s = 0.0102;  // MachineSpeed::one_thread_s where the costs were measured
+constexpr double kReference_s = 0.0075;  // MachineSpeed::one_thread_s where the costs were measured
 
 double value_bytes(const FieldSpec& spec) {
   switch (spec.type) {

@@ -1,7 +1,6 @@
 #include "geo/kernels/climate/energy_balance.hpp"
 
 #include <Eigen/IterativeLinearSolvers>
-#include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -12,7 +11,7 @@
 #include "geo/kernels/climate/ocean_heat.hpp"
 #include "geo/kernels/climate/thermodynamics.hpp"
 #include "kernels/climate/heat_advection.hpp"
-#include "kernels/climate/row_preconditioner.hpp"
+#include "kernels/climate/ring_equations.hpp"
 
 namespace geo {
 namespace {
@@ -42,41 +41,32 @@ class HeatOperator {
   }
 
   /// (loss + conductances + wind) T = source, loss in W K-1 per cell.
-  [[nodiscard]] RowPreconditioner::Matrix matrix(std::span<const double> diffusivity_w_m2_k,
-                                                 std::span<const Complex> loss) const {
+  [[nodiscard]] RingEquations equations(std::span<const double> diffusivity_w_m2_k,
+                                        std::span<const Complex> loss) const {
     const double radius2 = grid_.figure().radius_m * grid_.figure().radius_m;
-    std::vector<Eigen::Triplet<Complex>> entries;
-    entries.reserve(loss.size() * 9);
-    const auto exchange = [&](Index here, Index there, double w_k) {
-      entries.emplace_back(here, here, w_k);
-      entries.emplace_back(there, there, w_k);
-      entries.emplace_back(here, there, -w_k);
-      entries.emplace_back(there, here, -w_k);
-    };
+    RingEquations result(grid_);
     for (int j = 0; j < grid_.ny(); ++j) {
       const double per_east = radius2 * grid_.face_east_m(j) / grid_.spacing_east_m(j);
       const double per_north = radius2 * grid_.face_north_m(j) / grid_.spacing_north_m(j);
       const bool pole = grid_.topology() == Topology::sphere && j == grid_.ny() - 1;
       for (int i = 0; i < grid_.nx(); ++i) {
-        const Index here = grid_.cell(i, j), east = grid_.neighbour(i, j, kEast);
+        const Index here = grid_.cell(i, j);
         const auto mean = [&](Index there) {
           return 0.5 * (diffusivity_w_m2_k[here] + diffusivity_w_m2_k[there]);
         };
-        entries.emplace_back(here, here, loss[here]);
-        exchange(here, east, per_east * mean(east));
+        result.add_own(here, loss[here]);
+        const double to_east = per_east * mean(grid_.neighbour(i, j, kEast));
+        result.add_exchange(i, j, kEast, to_east);
+        result.add_exchange((i + 1) % grid_.nx(), j, kWest, to_east);
         if (!pole) {
-          const Index north = grid_.neighbour(i, j, kNorth);
-          exchange(here, north, per_north * mean(north));
+          const double to_north = per_north * mean(grid_.neighbour(i, j, kNorth));
+          result.add_exchange(i, j, kNorth, to_north);
+          result.add_exchange(i, (j + 1) % grid_.ny(), kSouth, to_north);
         }
         const double wind = carried_w_k_[j];
-        const Index upwind = wind > 0.0 ? grid_.neighbour(i, j, kWest) : east;
-        entries.emplace_back(here, here, std::abs(wind));
-        entries.emplace_back(here, upwind, -std::abs(wind));
+        result.add_exchange(i, j, wind > 0.0 ? kWest : kEast, std::abs(wind));
       }
     }
-    const auto size = static_cast<Eigen::Index>(loss.size());
-    RowPreconditioner::Matrix result(size, size);
-    result.setFromTriplets(entries.begin(), entries.end());
     return result;
   }
 
@@ -88,26 +78,25 @@ class HeatOperator {
 /// One harmonic's system.
 class HarmonicSolver {
  public:
-  void factor(RowPreconditioner::Matrix matrix, int nx) {
-    matrix_ = std::move(matrix);
-    solver_.preconditioner().set_row_length(nx);
+  void factor(RingEquations equations) {
+    equations_ = std::move(equations);
     solver_.setMaxIterations(500);
-    solver_.compute(matrix_);
+    solver_.compute(equations_);
   }
   /// Improves `temperature` until the equations hold to a share of their right-hand sides.
   void solve(std::span<const Complex> source, double tolerance, std::span<Complex> temperature) {
-    const auto size = static_cast<Eigen::Index>(source.size());
-    const Eigen::VectorXcd right = Eigen::Map<const Eigen::VectorXcd>(source.data(), size);
-    Eigen::Map<Eigen::VectorXcd> unknown(temperature.data(), size);
+    RingEquations::Vector right, guess;
+    equations_.gather(source, right);
+    equations_.gather(temperature, guess);
     solver_.setTolerance(tolerance);
-    const Eigen::VectorXcd solution = solver_.solveWithGuess(right, unknown);
+    const RingEquations::Vector solution = solver_.solveWithGuess(right, guess);
     if (solver_.info() != Eigen::Success) throw Bug("energy balance: the solver does not converge");
-    unknown = solution;
+    equations_.scatter(solution, temperature);
   }
 
  private:
-  RowPreconditioner::Matrix matrix_;
-  Eigen::BiCGSTAB<RowPreconditioner::Matrix, RowPreconditioner> solver_;
+  RingEquations equations_;
+  Eigen::BiCGSTAB<RingEquations, ZebraRows> solver_;
 };
 
 /// Albedo, heat capacity and diffusivity as the temperatures have them.
@@ -398,7 +387,7 @@ class PeriodicYear {
                    grid_.area_m2(grid_.row(static_cast<Index>(cell)));
     }
     const HeatOperator heat(grid_, model_.advected_heat_j_m2_k, advection_.mean_wind_m_s());
-    solvers_[k].factor(heat.matrix(diffusivity_, loss), grid_.nx());
+    solvers_[k].factor(heat.equations(diffusivity_, loss));
   }
 
   void solve(int k, double tolerance) {

@@ -140,7 +140,7 @@ class BiomesStage final : public Stage {
   [[nodiscard]] const StageInfo& info() const override { return info_; }
   [[nodiscard]] std::vector<Parameter> parameters() override { return p_.declarations(); }
   [[nodiscard]] StageCost cost(std::span<const Parameter> /*configuration*/) const override {
-    return {.per_cell_ns = 70.0, .cell_bytes = 105.0};
+    return {.per_cell_ns = 140.0, .cell_bytes = 105.0};
   }
 
   void run(StageIo& io, Context& context) const override {

@@ -113,7 +113,7 @@ void warn_of_slow_rotation(const Circulation& circulation, Context& context) {
 
 /// Time of one thread for the air on its own grid, as in StageCost.
 double air_seconds(const ClimateParameters& p) {
-  constexpr double kAtTwoDegrees_s = 2.0, kGrowth = 2.3;
+  constexpr double kAtTwoDegrees_s = 2.4, kGrowth = 2.3;
   if (p.model == "blueprint") return 0.0;
   return kAtTwoDegrees_s * std::pow(2.0 / p.resolution_deg, kGrowth);
 }
@@ -124,7 +124,7 @@ class ClimateStage final : public Stage {
   [[nodiscard]] const StageInfo& info() const override { return info_; }
   [[nodiscard]] std::vector<Parameter> parameters() override { return p_.declarations(); }
   [[nodiscard]] StageCost cost(std::span<const Parameter> /*configuration*/) const override {
-    return {.per_cell_ns = 300.0, .fixed_s = air_seconds(p_), .cell_bytes = 112.0};
+    return {.per_cell_ns = 200.0, .fixed_s = air_seconds(p_), .cell_bytes = 112.0};
   }
 
   void run(StageIo& io, Context& context) const override {

@@ -26,7 +26,7 @@ class ErosionStage final : public Stage {
   }
   [[nodiscard]] std::vector<Parameter> parameters() override { return parameters_.declarations(); }
   [[nodiscard]] StageCost cost(std::span<const Parameter> configuration) const override {
-    constexpr double kStep_ns = 259.0, kIce_ns = 1600.0;  // cold and warm times, and today
+    constexpr double kStep_ns = 190.0, kIce_ns = 2550.0;  // cold and warm times, and today
     constexpr double kAir_bytes = 50e6;
     const auto steps = static_cast<double>(parameters_.steps);
     const bool follows_rain = parameters_.discharge == "rain" && parameters_.steps > 0;

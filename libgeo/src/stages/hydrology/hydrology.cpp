@@ -145,7 +145,7 @@ class HydrologyStage final : public Stage {
   [[nodiscard]] const StageInfo& info() const override { return info_; }
   [[nodiscard]] std::vector<Parameter> parameters() override { return p_.declarations(); }
   [[nodiscard]] StageCost cost(std::span<const Parameter> /*configuration*/) const override {
-    return {.per_cell_ns = 100.0, .cell_bytes = 108.0};
+    return {.per_cell_ns = 150.0, .cell_bytes = 108.0};
   }
 
   void run(StageIo& io, Context& context) const override {

@@ -96,7 +96,7 @@ class IslandStage final : public Stage {
   }
   [[nodiscard]] std::vector<Parameter> parameters() override { return p_.declarations(); }
   [[nodiscard]] StageCost cost(std::span<const Parameter> /*configuration*/) const override {
-    return {.per_cell_ns = 2900.0, .cell_bytes = 210.0, .fixed_bytes = 65e6};
+    return {.per_cell_ns = 5000.0, .cell_bytes = 210.0, .fixed_bytes = 65e6};
   }
 
   void check(const Grid& grid,

@@ -30,12 +30,12 @@ class PlatesStage final : public Stage {
   }
   [[nodiscard]] std::vector<Parameter> parameters() override { return parameters_.declarations(); }
   [[nodiscard]] StageCost cost(std::span<const Parameter> configuration) const override {
-    constexpr double kMesh_s = 0.45;     // plates that grow, on a mesh of their own
-    constexpr double kDrift_ns = 136.0;  // per sample and million years
-    constexpr double kRivers_ns = 225.0;
+    constexpr double kMesh_s = 0.33;     // plates that grow, on a mesh of their own
+    constexpr double kDrift_ns = 100.0;  // per sample and million years
+    constexpr double kRivers_ns = 165.0;
     // 1200 steps of maps of 512 columns: on a torus, and on a lattice of samples on the sphere,
     // which outgrows the processor's caches.
-    constexpr double kTorus_s = 1.3, kRaster_s = 15.0, kColumns = 512.0, kSteps = 1200.0;
+    constexpr double kTorus_s = 0.96, kRaster_s = 11.0, kColumns = 512.0, kSteps = 1200.0;
     constexpr double kMoreColumns = 2.5;
     constexpr double kSample_bytes = 290.0;
     const std::string& model = parameters_.model;
@@ -53,7 +53,7 @@ class PlatesStage final : public Stage {
     const double steps = static_cast<double>(raster.cycles * raster.cycle_steps) / kSteps;
     const double wider = static_cast<double>(raster.columns) / kColumns;
     const double torus_s = steps * wider * wider * kTorus_s;
-    return {.per_cell_ns = 500.0,
+    return {.per_cell_ns = 420.0,
             .fixed_s = model == "sphere"   ? drift_s
                        : model == "raster" ? torus_s
                        : model == "growth" ? kMesh_s
