@@ -20,12 +20,14 @@
 #include "geo/io/files/atomic_file.hpp"
 #include "io/sample_snapshot.hpp"
 #include "io/temporary_folder.hpp"
+#include "support/difference_of.hpp"
 #include "support/message_of.hpp"
 #include "support/text_of.hpp"
 
 namespace geo::io {
 namespace {
 
+using test::difference_of;
 using test::message_of;
 using test::text_of;
 using testing::HasSubstr;
@@ -240,8 +242,8 @@ TEST(StageFile, SameContentGivesTheSameBytes) {
   for (const char* name : {"a.vti", "b.vti"}) {
     write_vti(folder / name, sample_snapshot(Grid::sphere(640, 320)), sample_provenance());
   }
-  EXPECT_TRUE(text_of(folder / "a.nc") == text_of(folder / "b.nc"));
-  EXPECT_TRUE(text_of(folder / "a.vti") == text_of(folder / "b.vti"));
+  EXPECT_EQ(difference_of(folder / "a.nc", folder / "b.nc"), "");
+  EXPECT_EQ(difference_of(folder / "a.vti", folder / "b.vti"), "");
 }
 
 TEST(StageFile, HasTheSameBytesWhateverThreadsPackIt) {
@@ -252,8 +254,8 @@ TEST(StageFile, HasTheSameBytesWhateverThreadsPackIt) {
                  sample_provenance());
   }
   omp_set_num_threads(omp_get_num_procs());
-  EXPECT_TRUE(text_of(folder / "1.nc") == text_of(folder / "3.nc"));
-  EXPECT_TRUE(text_of(folder / "1.nc") == text_of(folder / "40.nc"));
+  EXPECT_EQ(difference_of(folder / "1.nc", folder / "3.nc"), "");
+  EXPECT_EQ(difference_of(folder / "1.nc", folder / "40.nc"), "");
 }
 
 /// What a read of every variable leaves in memory that held `before`.

@@ -353,9 +353,13 @@ TEST(ArraySizes, OfClimateAreChecked) {
     Floats east(n(cells())), north(n(cells()));
     barrier.turn_aside(0.5, east, north);
   });
-  expect_refused("cell_winds", 2, [&](Lengths& n) {
-    const Doubles latitude(n(rows())), pressure(n(rows()));
-    static_cast<void>(cell_winds(grid, {}, latitude, pressure));
+  expect_refused("eddy_driven_wind_m_s", 3, [&](Lengths& n) {
+    const Doubles latitude(n(rows())), warm(n(rows())), rough(n(rows()));
+    static_cast<void>(eddy_driven_wind_m_s(grid, {}, latitude, warm, rough));
+  });
+  expect_refused("cell_winds", 3, [&](Lengths& n) {
+    const Doubles latitude(n(rows())), pressure(n(rows())), driven(n(rows()));
+    static_cast<void>(cell_winds(grid, {}, latitude, pressure, driven));
   });
   expect_refused("moisture", 9, [&](Lengths& n) {
     Floats arrays[8];

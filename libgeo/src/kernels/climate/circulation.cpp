@@ -14,6 +14,10 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kRadians = kPi / 180.0;
 
+double hadley_edge_deg(const Circulation& model) {
+  return std::min(90.0, 30.0 * model.cell_width());
+}
+
 /// Latitude as the cells see it: displaced with the trough at the trough, less and less from there
 /// to the pole, which stays.
 double cell_latitude_deg(double latitude_deg, double trough_deg, double decay) {
@@ -22,12 +26,6 @@ double cell_latitude_deg(double latitude_deg, double trough_deg, double decay) {
   // A displacement that fell off faster would turn the order of latitudes round.
   const double steepest = (90.0 + std::abs(trough_deg)) / std::max(std::abs(trough_deg), 1e-9);
   return latitude_deg - trough_deg * std::pow(to_pole, std::min(decay, steepest));
-}
-
-double cell_rise_hpa(int cell, const Circulation& model) {
-  if (cell == 0) return model.subtropical_high_hpa;
-  if (cell == 1) return -model.subpolar_low_hpa;
-  return cell % 2 == 0 ? model.polar_high_hpa : -model.polar_high_hpa;
 }
 
 }  // namespace
@@ -52,24 +50,62 @@ double Circulation::cell_width() const {
   return std::sqrt(rotation_period_h / kSiderealDay_h);
 }
 
-double three_cell_pressure_hpa(double latitude_deg, const Circulation& model, double trough_deg) {
-  const double seen_deg = std::min(
-      std::abs(cell_latitude_deg(latitude_deg, trough_deg, model.displacement_decay)), 90.0);
-  const double width_deg = std::min(90.0, 30.0 * model.cell_width());
-  double pressure = 0.0;
-  for (int cell = 0; cell == 0 || width_deg * cell < 90.0 - 1e-9; ++cell) {
-    const double along = std::clamp((seen_deg - width_deg * cell) / width_deg, 0.0, 1.0);
-    pressure += cell_rise_hpa(cell, model) * 0.5 * (1.0 - std::cos(kPi * along));
+double hadley_pressure_hpa(double latitude_deg, const Circulation& model, double trough_deg) {
+  const double seen_deg =
+      std::abs(cell_latitude_deg(latitude_deg, trough_deg, model.displacement_decay));
+  const double along = std::min(seen_deg / hadley_edge_deg(model), 1.0);
+  return model.subtropical_high_hpa * 0.5 * (1.0 - std::cos(kPi * along));
+}
+
+std::vector<double> eddy_driven_wind_m_s(const Grid& grid, const Circulation& model,
+                                         std::span<const double> latitude_deg,
+                                         std::span<const double> zonal_temperature_c,
+                                         std::span<const double> roughness) {
+  constexpr double kEddy_deg = 8.0, kReference_k_m = 5.0e-6, kStable_c = 10.0;
+  const int ny = grid.ny();
+  check_sizes("eddy_driven_wind_m_s", ny,
+              {{"latitude_deg", latitude_deg.size()},
+               {"zonal_temperature_c", zonal_temperature_c.size()},
+               {"roughness", roughness.size()}});
+  const int reach = std::max(1, static_cast<int>(std::lround(kEddy_deg / 180.0 * ny)));
+  const double turning = model.rotation_rad_s() / Circulation{}.rotation_rad_s();
+  const double row_deg = 180.0 / ny;
+  const double edge_deg = hadley_edge_deg(model);
+  const double rows_spread = model.cell_width() * model.eddy_reach_deg / row_deg;
+  std::vector<double> source(ny), to_south(ny, 0.0), own(ny, 1.0), to_north(ny, 0.0);
+  for (int j = 0; j < ny; ++j) {
+    const int south = std::max(j - reach, 0), north = std::min(j + reach, ny - 1);
+    const double across_m = (north - south) * grid.spacing_north_m(0);
+    const double slope_k_m =
+        std::abs(zonal_temperature_c[north] - zonal_temperature_c[south]) / across_m;
+    source[j] = std::pow(std::min(std::abs(latitude_deg[j]) / edge_deg, 1.0), 4) *
+                std::abs(turning * std::sin(latitude_deg[j] * kRadians)) * slope_k_m /
+                kReference_k_m *
+                std::exp(model.stability_1_k * std::min(zonal_temperature_c[j] - kStable_c, 0.0));
+    const auto arm2 = [](double at_deg) { return std::pow(std::cos(at_deg * kRadians), 2); };
+    const double spread = rows_spread * rows_spread / arm2(latitude_deg[j]);
+    if (j > 0) to_south[j] = -spread * arm2(latitude_deg[j] - 0.5 * row_deg);
+    if (j + 1 < ny) to_north[j] = -spread * arm2(latitude_deg[j] + 0.5 * row_deg);
+    own[j] -= to_south[j] + to_north[j];
   }
-  return pressure;
+  std::vector<double> breaking = source;
+  factor_tridiagonal<double>(to_south, to_north, own);
+  solve_tridiagonal<double>(to_south, to_north, own, breaking);
+  std::vector<double> wind_m_s(ny);
+  const double along = model.retrograde ? -model.eddy_wind_m_s : model.eddy_wind_m_s;
+  for (int j = 0; j < ny; ++j) wind_m_s[j] = along * (source[j] - breaking[j]) / roughness[j];
+  return wind_m_s;
 }
 
 CellWinds cell_winds(const Grid& grid, const Circulation& model,
-                     std::span<const double> latitude_deg, std::span<const double> pressure_hpa) {
+                     std::span<const double> latitude_deg, std::span<const double> pressure_hpa,
+                     std::span<const double> eddy_driven_m_s) {
   using Complex = std::complex<double>;
   const int ny = grid.ny();
   check_sizes("cell_winds", ny,
-              {{"latitude_deg", latitude_deg.size()}, {"pressure_hpa", pressure_hpa.size()}});
+              {{"latitude_deg", latitude_deg.size()},
+               {"pressure_hpa", pressure_hpa.size()},
+               {"eddy_driven_m_s", eddy_driven_m_s.size()}});
   // With w = u + i v the two equations are one: (r + i f) w - r L^2 w'' = -i p' / rho.
   const double drag = model.drag_ocean_s;
   std::vector<Complex> to_south(ny), own(ny), to_north(ny), wind(ny);
@@ -82,7 +118,7 @@ CellWinds cell_winds(const Grid& grid, const Circulation& model,
     const double coriolis = 2.0 * model.rotation_rad_s() * std::sin(latitude_deg[j] * kRadians);
     to_south[j] = to_north[j] = -mixing;  // no wind at the poles
     own[j] = Complex(drag + 2.0 * mixing, coriolis);
-    wind[j] = Complex(0.0, -slope / model.air_density_kg_m3);
+    wind[j] = Complex(0.0, coriolis * eddy_driven_m_s[j] - slope / model.air_density_kg_m3);
   }
   factor_tridiagonal<Complex>(to_south, to_north, own);
   solve_tridiagonal<Complex>(to_south, to_north, own, wind);

@@ -148,8 +148,8 @@ void SeasonalYear::begin_month(int m) {
     }
     return late_c;
   };
-  press(month, some_time_ago(model_.itcz_lag_month), some_time_ago(model_.heat_low_lag_month),
-        row_means<double>(grid_, annual_c));
+  press(month, zonal_c, some_time_ago(model_.itcz_lag_month),
+        some_time_ago(model_.heat_low_lag_month), row_means<double>(grid_, annual_c));
   stir(month, zonal_c);
   moisten(month);
 }
@@ -183,24 +183,33 @@ void SeasonalYear::clear(AirOfMonth& month) const {
   month.rain_mm_d.assign(size_, 0.0);
 }
 
+/// How much rougher parallels are than the sea.
+std::vector<double> SeasonalYear::roughness_of_rows() const {
+  std::vector<double> roughness = row_means<float>(grid_, land_);
+  for (double& of_row : roughness) of_row = 1.0 + model_.land_drag * of_row;
+  return roughness;
+}
+
 /// Winds of the cells about the trough, which blow along whole parallels; and pressure: by how much
 /// the cells' differs where their trough does, and of heat lows and cold highs. All are as deep as
 /// the troposphere, which warms and cools later than the ground.
-void SeasonalYear::press(AirOfMonth& month, std::span<const float> trough_c,
-                         std::span<const float> low_c,
+void SeasonalYear::press(AirOfMonth& month, std::span<const double> zonal_c,
+                         std::span<const float> trough_c, std::span<const float> low_c,
                          std::span<const double> annual_mean_c) const {
   const std::vector<double> trough_deg = trough_latitudes_deg(
       grid_, latitude_deg_, trough_c, row_means<float>(grid_, trough_c), model_.itcz_locality);
   std::vector<float> cells_hpa(size_);
   for (std::size_t cell = 0; cell < size_; ++cell) {
     const Index here = static_cast<Index>(cell);
-    cells_hpa[cell] = static_cast<float>(
-        three_cell_pressure_hpa(latitude_deg_[grid_.row(here)], model_.circulation,
-                                model_.itcz_share * trough_deg[grid_.column(here)]));
+    cells_hpa[cell] =
+        static_cast<float>(hadley_pressure_hpa(latitude_deg_[grid_.row(here)], model_.circulation,
+                                               model_.itcz_share * trough_deg[grid_.column(here)]));
   }
   const std::vector<double> mean_hpa = row_means<float>(grid_, cells_hpa);
   if (grid_.topology() == Topology::sphere) {
-    month.cells = cell_winds(grid_, model_.circulation, latitude_deg_, mean_hpa);
+    month.cells = cell_winds(grid_, model_.circulation, latitude_deg_, mean_hpa,
+                             eddy_driven_wind_m_s(grid_, model_.circulation, latitude_deg_, zonal_c,
+                                                  roughness_of_rows()));
   }
   for (std::size_t cell = 0; cell < size_; ++cell) {
     const int row = grid_.row(static_cast<Index>(cell));

@@ -75,8 +75,9 @@ class SeasonalYear {
   void find_warm_sea(std::span<const double> equatorial_wind_m_s);
   void begin_month(int m);
   void clear(AirOfMonth& month) const;
-  void press(AirOfMonth& month, std::span<const float> trough_c, std::span<const float> low_c,
-             std::span<const double> annual_mean_c) const;
+  [[nodiscard]] std::vector<double> roughness_of_rows() const;
+  void press(AirOfMonth& month, std::span<const double> zonal_c, std::span<const float> trough_c,
+             std::span<const float> low_c, std::span<const double> annual_mean_c) const;
   void stir(AirOfMonth& month, std::span<const double> zonal_c) const;
   void moisten(AirOfMonth& month) const;
   void guess(AirOfMonth& month) const;

@@ -8,12 +8,14 @@ std::array<double, kMonths> soil_evaporation_mm(const SoilMoisture& model,
                                                 const std::array<double, kMonths>& temperature_c,
                                                 const std::array<double, kMonths>& precipitation_mm,
                                                 const std::array<double, kMonths>& potential_mm) {
-  constexpr int kYears = 6;
+  constexpr int kMostYears = 40;
+  constexpr double kSteady_mm = 1e-4;
   constexpr double kAllSnow_c = -1.0, kAllRain_c = 3.0, kMostSnow_mm = 1000.0;
   std::array<double, kMonths> evaporation{};
   // From dry ground on: no year gives back more than it got.
   double soil_mm = 0.0, snow_mm = 0.0;
-  for (int year = 0; year < kYears; ++year) {
+  for (int year = 0; year < kMostYears; ++year) {
+    const double soil_before_mm = soil_mm, snow_before_mm = snow_mm;
     for (int m = 0; m < kMonths; ++m) {
       const double rain_share =
           std::clamp((temperature_c[m] - kAllSnow_c) / (kAllRain_c - kAllSnow_c), 0.0, 1.0);
@@ -26,6 +28,7 @@ std::array<double, kMonths> soil_evaporation_mm(const SoilMoisture& model,
       evaporation[m] = std::min(water_mm, wetness * potential_mm[m]);
       soil_mm = std::min(model.capacity_mm, water_mm - evaporation[m]);
     }
+    if (soil_mm - soil_before_mm < kSteady_mm && snow_mm - snow_before_mm < kSteady_mm) break;
   }
   return evaporation;
 }

@@ -56,11 +56,11 @@ std::vector<double> smooth_rows(std::span<const double> latitude_deg,
   return means;
 }
 
-double three_cell_zonal_wind_m_s(double latitude_deg, const Circulation& model, double radius_m) {
+double trade_wind_m_s(double latitude_deg, const Circulation& model, double radius_m) {
   constexpr double kStep_deg = 1.0;
   const double slope_pa_m = 100.0 *
-                            (three_cell_pressure_hpa(latitude_deg + 0.5 * kStep_deg, model) -
-                             three_cell_pressure_hpa(latitude_deg - 0.5 * kStep_deg, model)) /
+                            (hadley_pressure_hpa(latitude_deg + 0.5 * kStep_deg, model) -
+                             hadley_pressure_hpa(latitude_deg - 0.5 * kStep_deg, model)) /
                             (kStep_deg * kRadians * radius_m);
   const double coriolis = 2.0 * model.rotation_rad_s() * std::sin(latitude_deg * kRadians);
   const double drag = model.drag_ocean_s;
@@ -83,7 +83,7 @@ std::vector<double> thermal_wind_m_s(const Grid& grid, const Circulation& model,
     const double turning = 2.0 * model.rotation_rad_s();
     const double coriolis = turning * std::sin(latitude_deg[j] * kRadians);
     const double least = turning * std::sin(kTropics_deg * kRadians);
-    wind[j] = three_cell_zonal_wind_m_s(latitude_deg[j], model, radius_m) -
+    wind[j] = trade_wind_m_s(latitude_deg[j], model, radius_m) -
               kGasConstantOverLayer * slope_k_m * coriolis / (coriolis * coriolis + least * least);
   }
   return wind;

@@ -23,8 +23,8 @@ std::vector<double> row_means(const Grid& grid, std::span<const T> values) {
 std::vector<double> smooth_rows(std::span<const double> latitude_deg,
                                 std::span<const double> values, double reach_deg);
 
-/// Annual mean wind near the ground of the three cells over the sea, eastwards.
-double three_cell_zonal_wind_m_s(double latitude_deg, const Circulation& model, double radius_m);
+/// Annual mean wind near the ground that the Hadley cells' pressure makes over the sea, eastwards.
+double trade_wind_m_s(double latitude_deg, const Circulation& model, double radius_m);
 
 /// Zonal wind half-way up the troposphere over that near the ground, per row: the thermal wind of
 /// the zonal mean temperature, held down within some 10 degrees of the equator.

@@ -151,12 +151,17 @@ std::vector<Parameter> wind_rows(ClimateParameters& p) {
            "lindzen1987"),
       real("climate.subtropical_high_hpa", c.subtropical_high_hpa, "hPa", 0.0, 50.0,
            "rise of pressure from the equatorial trough to 30 deg", "peixoto1992"),
-      real("climate.subpolar_low_hpa", c.subpolar_low_hpa, "hPa", 0.0, 80.0,
-           "fall of pressure from 30 to 60 deg", "peixoto1992"),
-      real("climate.polar_high_hpa", c.polar_high_hpa, "hPa", 0.0, 50.0,
-           "rise of pressure from 60 deg to the pole", "peixoto1992"),
       real("climate.cell_mixing_km", c.cell_mixing_km, "km", 0.0, 10000.0,
            "distance over which eddies mix the momentum of the cells' winds", "peixoto1992"),
+      real("climate.eddy_wind_m_s", c.eddy_wind_m_s, "m s-1", 0.0, 500.0,
+           "westerlies that eddies would drive if they broke far away, at a pole on whose side "
+           "temperature falls by 5 K per 1000 km",
+           "edmon1980"),
+      real("climate.eddy_reach_deg", c.eddy_reach_deg, "degree", 1.0, 90.0,
+           "distance over which eddies spread before they break", "edmon1980"),
+      real("climate.stability_1_k", c.stability_1_k, "K-1", 0.0, 0.5,
+           "growth of static stability per kelvin below 10 degC, which holds eddies back",
+           "edmon1980"),
       real(
           "climate.overturning_share", c.overturning_share, "1", 0.0, 2.0,
           "share of the cells' meridional wind, which turns back aloft, in the mean over the moist "

@@ -23,16 +23,17 @@ struct Circulation {
   double rotation_period_h = 23.934;
   bool retrograde = false;
   double air_density_kg_m3 = 1.2;
-  double drag_ocean_s = 2.34e-05;  ///< r over the sea, s-1
-  double drag_land_s = 2.61e-05;
+  double drag_ocean_s = 2.29e-05;  ///< r over the sea, s-1
+  double drag_land_s = 3.37e-05;
   double displacement_decay = 6;       ///< exponent p of the cells' displacement with the trough
-  double subtropical_high_hpa = 4.86;  ///< above the equatorial trough
-  double subpolar_low_hpa = 5.69;      ///< below the subtropical high
-  double polar_high_hpa = 2.02;        ///< above the subpolar low
-  double cell_mixing_km = 371;       ///< L, over which eddies mix the momentum of the cells' winds
-  double overturning_share = 0.249;  ///< of the cells' meridional wind, as it turns back aloft
-  double thermal_low_hpa_k = 0.328;  ///< fall of pressure per kelvin of heat anomaly
-  double cold_high_share = 1.19;     ///< of it, where the anomaly is cold and shallow
+  double subtropical_high_hpa = 3.84;  ///< above the equatorial trough
+  double cell_mixing_km = 283;       ///< L, over which eddies mix the momentum of the cells' winds
+  double overturning_share = 0.23;   ///< of the cells' meridional wind, as it turns back aloft
+  double eddy_wind_m_s = 11.5;       ///< U_0, driven by a source of 1 that does not spread
+  double eddy_reach_deg = 33.1;      ///< over which eddies spread before they break, on the Earth
+  double stability_1_k = 0.0353;     ///< growth of static stability per kelvin, below 10 C
+  double thermal_low_hpa_k = 0.336;  ///< fall of pressure per kelvin of heat anomaly
+  double cold_high_share = 1.04;     ///< of it, where the anomaly is cold and shallow
 
   /// Angular velocity, negative if retrograde.
   [[nodiscard]] double rotation_rad_s() const;
@@ -41,15 +42,33 @@ struct Circulation {
   [[nodiscard]] double cell_width() const;
 };
 
-/// Pressure of the three cells at a latitude, hPa relative to the equatorial trough: half cosines
-/// between the trough, the high at 30, the low at 60 and the high at 90 deg; wider cells end at
-/// the pole, narrower ones are followed by more, like the polar one.
+/// Pressure that the Hadley cells make at a latitude, hPa relative to the equatorial trough: a half
+/// cosine from the trough to the subtropical high at 30 deg, or where wider cells end, and level
+/// beyond, where it is the eddies that drive the wind.
 /// Cells follow the trough through the year, the subtropical highs by a part of its excursion, the
 /// pole not at all: what lies x of the way from the trough to a pole is displaced by
 /// trough (1 - x)^p.
 /// @param trough_deg  latitude of the trough
-[[nodiscard]] double three_cell_pressure_hpa(double latitude_deg, const Circulation& model,
-                                             double trough_deg = 0.0);
+[[nodiscard]] double hadley_pressure_hpa(double latitude_deg, const Circulation& model,
+                                         double trough_deg = 0.0);
+
+/// Westerlies that eddies drive, m s-1 along the planet's rotation, one value per row. Baroclinic
+/// eddies are Rossby waves above: they leave where the ground's temperature falls off towards the
+/// pole, by the upward part S of the Eliassen-Palm flux (Edmon, Hoskins & McIntyre 1980), and break
+/// some distance L away. Momentum converges where they leave and is lacking where they break:
+///   S = h |f T'| exp(s min(T - 10 C, 0)) / (2 Omega_E 5 K per 1000 km),   d U = U_0 (S - B),
+///   B - L^2 (cos^2 B')' / cos^2 = S   (' = d/dy),
+/// which adds nothing to the planet's angular momentum. T' over some 16 degrees, as wide as an
+/// eddy; cold air is stable, which holds them back; Hadley cells end where eddies begin (Held
+/// 2000): h grows from 0 at the equator to 1 there with the fourth power of latitude; d is how much
+/// rougher a parallel is than the sea.
+/// L is as wide as the cells. O(rows).
+/// @param latitude_deg, zonal_temperature_c, roughness  per row, evenly spaced from pole to pole.
+/// Throws Bug where sizes differ.
+[[nodiscard]] std::vector<double> eddy_driven_wind_m_s(const Grid& grid, const Circulation& model,
+                                                       std::span<const double> latitude_deg,
+                                                       std::span<const double> zonal_temperature_c,
+                                                       std::span<const double> roughness);
 
 /// Winds of the cells, m s-1, one value per row, where the air goes: means over the moist layer.
 struct CellWinds {
@@ -57,14 +76,16 @@ struct CellWinds {
 };
 /// Those that balance the cells' pressure p on a sphere, with drag r as over the sea, while eddies
 /// mix momentum over the distance L:
-///   r u - f v = r L^2 u'',   r v + f u = -p' / rho + r L^2 v''   (' = d/dy).
+///   r u - f v = r L^2 u'',   r v + f u = -p' / rho + f U + r L^2 v''   (' = d/dy).
+/// U is the wind that eddies drive: pressure comes to balance it, as well as rotation does.
 /// So trades blow at the equator too, where pressure and rotation alone would leave a calm. In the
 /// moist layer the zonal wind changes little with height, but the meridional wind turns back above
 /// the boundary layer (Peixoto & Oort 1992): v counts by its overturning share. O(rows).
 /// @param latitude_deg, pressure_hpa  per row. Throws Bug where sizes differ.
 [[nodiscard]] CellWinds cell_winds(const Grid& grid, const Circulation& model,
                                    std::span<const double> latitude_deg,
-                                   std::span<const double> pressure_hpa);
+                                   std::span<const double> pressure_hpa,
+                                   std::span<const double> eddy_driven_m_s);
 
 /// Winds of one month on a sphere or torus.
 /// @param latitude_deg     per row

@@ -23,35 +23,35 @@ struct SeasonalClimate {
   OceanCurrents currents;
   MoistureBudget moisture;
   SoilMoisture soil;
-  double itcz_share = 0.518;          ///< of the thermal equator's excursion that the cells follow
+  double itcz_share = 0.45;           ///< of the thermal equator's excursion that the cells follow
   double itcz_lag_month = 1;          ///< by which the trough follows the warmth of the air
-  double heat_low_lag_month = 0.332;  ///< the same of heat lows and cold highs
-  double itcz_locality = 0.0218;   ///< how far the trough follows its meridian's warmest latitude
-  double sensible_w_m2_k = 0.777;  ///< heating of the air over ground warmer than its parallel
-  double base_diffusivity_m2_s = 2.07e+06;
-  double eddy_diffusivity_m2_s = 4.91e+05;  ///< at the reference temperature gradient
-  double eddy_rain = 0.108;  ///< rain-out by eddies there, whether the mean air rises or sinks
-  double eddy_gradient_k_1000km = 5.27;  ///< the reference gradient
-  double eddy_exponent = 3.25;           ///< by which their strength grows with the gradient
-  double eddy_locality = 0.909;  ///< how far eddies follow the local gradient, not the parallel's
-  double gust_m_s = 6.33;        ///< of eddies' winds over the sea at the reference gradient
-  double cold_air_heat_j_m2_k = 1.06e+06;  ///< of air that evaporates as the sea warms it
-  double ascent_time_d = 22;               ///< convergence over this time multiplies rain-out by e
-  double descent_time_d = 2.51;            ///< the same of the descent that stationary waves make
-  double ascent_bound = 1.04;              ///< most that ascent adds to the logarithm of rain-out
-  double descent_bound = 4.71;             ///< most that descent takes from it
-  double eddy_descent_share = 0.0878;      ///< of that descent which the rain of eddies feels
-  double ascent_latitude_deg = 58.7;  ///< at which converging winds make half as much rain as where
-                                      ///< rotation is weak
-  double ascent_smoothing_km = 573;   ///< over which ascent is felt
-  double convection_1_k = 0.0209;     ///< growth of rain-out with excess moist static energy
-  double sea_convection_1_k = 0.0655;     ///< the same with sea that is warmer than the air
-  double sea_low_hpa_k = 0.0335;          ///< of the air over such sea
-  double convection_latitude_deg = 39.4;  ///< to which the free atmosphere is level
-  double orographic_share = 0.0212;       ///< of the mean height by which air is lifted over a cell
-  double blocking_height_m = 1.43e+03;    ///< height at which topography halves the moist flow
-  double turned_share = 0.512;  ///< of what it holds back, which turns aside; the rest rises
-  double land_drag = 3.86;      ///< on the wind over land, over the damping of the internal mode
+  double heat_low_lag_month = 0.386;  ///< the same of heat lows and cold highs
+  double itcz_locality = 0.0205;  ///< how far the trough follows its meridian's warmest latitude
+  double sensible_w_m2_k = 1.99;  ///< heating of the air over ground warmer than its parallel
+  double base_diffusivity_m2_s = 1.35e6;
+  double eddy_diffusivity_m2_s = 7.17e+05;  ///< at the reference temperature gradient
+  double eddy_rain = 0.12;  ///< rain-out by eddies there, whether the mean air rises or sinks
+  double eddy_gradient_k_1000km = 4.4;  ///< the reference gradient
+  double eddy_exponent = 2.6;           ///< by which their strength grows with the gradient
+  double eddy_locality = 0.707;  ///< how far eddies follow the local gradient, not the parallel's
+  double gust_m_s = 7.28;        ///< of eddies' winds over the sea at the reference gradient
+  double cold_air_heat_j_m2_k = 5.88e+05;  ///< of air that evaporates as the sea warms it
+  double ascent_time_d = 30;               ///< convergence over this time multiplies rain-out by e
+  double descent_time_d = 1.59;            ///< the same of the descent that stationary waves make
+  double ascent_bound = 0.895;             ///< most that ascent adds to the logarithm of rain-out
+  double descent_bound = 5.56;             ///< most that descent takes from it
+  double eddy_descent_share = 0.114;       ///< of that descent which the rain of eddies feels
+  double ascent_latitude_deg = 87;   ///< at which converging winds make half as much rain as where
+                                     ///< rotation is weak
+  double ascent_smoothing_km = 746;  ///< over which ascent is felt
+  double convection_1_k = 0.0105;    ///< growth of rain-out with excess moist static energy
+  double sea_convection_1_k = 0.0482;     ///< the same with sea that is warmer than the air
+  double sea_low_hpa_k = 0.0278;          ///< of the air over such sea
+  double convection_latitude_deg = 50.6;  ///< to which the free atmosphere is level
+  double orographic_share = 0.0128;       ///< of the mean height by which air is lifted over a cell
+  double blocking_height_m = 850;         ///< height at which topography halves the moist flow
+  double turned_share = 0.595;  ///< of what it holds back, which turns aside; the rest rises
+  double land_drag = 3.57;      ///< on the wind over land, over the damping of the internal mode
   double land_transpiration = 1.0;  ///< share of the soil's evaporation that returns to the air
 };
 

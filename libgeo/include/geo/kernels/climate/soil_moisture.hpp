@@ -8,8 +8,8 @@ namespace geo {
 
 /// Water that soil and snow hold from month to month (the bucket of Manabe 1969).
 struct SoilMoisture {
-  double capacity_mm = 145;
-  double stressed_share = 0.766;  ///< of it, below which evaporation falls with the soil's water
+  double capacity_mm = 175;
+  double stressed_share = 1;      ///< of it, below which evaporation falls with the soil's water
   double melt_mm_k_month = 90.0;  ///< snow that melts per kelvin above freezing
 };
 

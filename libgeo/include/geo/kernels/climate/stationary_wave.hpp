@@ -17,13 +17,13 @@ struct WaveMode {
 /// Constants of the response of an atmosphere to stationary heating and mountains.
 struct StationaryWave {
   /// What heating sets up: the first baroclinic mode, whose winds turn with height.
-  WaveMode internal{91.9, 3.19, 13.2, 0};
-  double heating_m4_s3_w = 8.67e-05;  ///< fall of the lower geopotential by 1 W m-2
+  WaveMode internal{109, 3.32, 11, 0};
+  double heating_m4_s3_w = 0.000106;  ///< fall of the lower geopotential by 1 W m-2
   /// What mountains set up: the external mode, nearly the same at all heights.
-  WaveMode external{200.0, 45.8, 20.0, 0.342};
-  double mountain_share = 0.019;  ///< of the height of mountains that the flow goes over
-  double smoothing_km = 77.3;     ///< waves shorter than this are damped out of both
-  int waves = 24;                 ///< zonal wave numbers 1 to this
+  WaveMode external{200.0, 28.7, 20.0, 0.39};
+  double mountain_share = 0.0172;  ///< of the height of mountains that the flow goes over
+  double smoothing_km = 291;       ///< waves shorter than this are damped out of both
+  int waves = 24;                  ///< zonal wave numbers 1 to this
 };
 
 /// What sets waves up, one value per cell.
