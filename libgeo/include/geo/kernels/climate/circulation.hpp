@@ -29,10 +29,10 @@ struct Circulation {
   double subtropical_high_hpa = 3.84;  ///< above the equatorial trough
   double cell_mixing_km = 283;       ///< L, over which eddies mix the momentum of the cells' winds
   double overturning_share = 0.23;   ///< of the cells' meridional wind, as it turns back aloft
-  double eddy_wind_m_s = 11.5;       ///< U_0, driven by a source of 1 that does not spread
+  double eddy_wind_m_s = 11.0;       ///< U_0, driven by a source of 1 that does not spread
   double eddy_reach_deg = 33.1;      ///< over which eddies spread before they break, on the Earth
   double stability_1_k = 0.0353;     ///< growth of static stability per kelvin, below 10 C
-  double thermal_low_hpa_k = 0.336;  ///< fall of pressure per kelvin of heat anomaly
+  double thermal_low_hpa_k = 0.328;  ///< fall of pressure per kelvin of heat anomaly
   double cold_high_share = 1.04;     ///< of it, where the anomaly is cold and shallow
 
   /// Angular velocity, negative if retrograde.

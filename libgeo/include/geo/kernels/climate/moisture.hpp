@@ -14,7 +14,7 @@ struct MoistureBudget {
   double rain_time_d = 6.2;            ///< rain-out time of a saturated column
   std::int64_t humidity_exponent = 2;  ///< how sharply rain follows the column's relative humidity
   double evaporation_velocity_1_d = 1.56;  ///< v under 8 m s-1 where energy does not limit it
-  double evaporating_share = 1.02;         ///< of the annual insolation, at most
+  double evaporating_share = 0.95;         ///< of the annual insolation, at most
   int sweeps = 44;
 };
 

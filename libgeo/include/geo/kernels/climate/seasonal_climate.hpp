@@ -30,7 +30,7 @@ struct SeasonalClimate {
   double sensible_w_m2_k = 1.99;  ///< heating of the air over ground warmer than its parallel
   double base_diffusivity_m2_s = 1.35e6;
   double eddy_diffusivity_m2_s = 7.17e+05;  ///< at the reference temperature gradient
-  double eddy_rain = 0.12;  ///< rain-out by eddies there, whether the mean air rises or sinks
+  double eddy_rain = 0.127;  ///< rain-out by eddies there, whether the mean air rises or sinks
   double eddy_gradient_k_1000km = 4.4;  ///< the reference gradient
   double eddy_exponent = 2.6;           ///< by which their strength grows with the gradient
   double eddy_locality = 0.707;  ///< how far eddies follow the local gradient, not the parallel's
@@ -49,7 +49,7 @@ struct SeasonalClimate {
   double sea_low_hpa_k = 0.0278;          ///< of the air over such sea
   double convection_latitude_deg = 50.6;  ///< to which the free atmosphere is level
   double orographic_share = 0.0128;       ///< of the mean height by which air is lifted over a cell
-  double blocking_height_m = 850;         ///< height at which topography halves the moist flow
+  double blocking_height_m = 822;         ///< height at which topography halves the moist flow
   double turned_share = 0.595;  ///< of what it holds back, which turns aside; the rest rises
   double land_drag = 3.57;      ///< on the wind over land, over the damping of the internal mode
   double land_transpiration = 1.0;  ///< share of the soil's evaporation that returns to the air
