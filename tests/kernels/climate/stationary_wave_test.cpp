@@ -250,5 +250,16 @@ TEST(SoilMoisture, ServesTheDrySeasonFromTheWetOne) {
   EXPECT_LT(evaporation[11], 0.3 * evaporation[6]) << "long after";
 }
 
+// Soil that loses little fills for decades.
+TEST(SoilMoisture, OfAClimateWithoutSeasonsHasNone) {
+  SoilMoisture model;
+  model.capacity_mm = 500.0;
+  std::array<double, kMonths> t{}, p{}, e{};
+  t.fill(10.0), p.fill(5.0), e.fill(10.0);
+  for (const double evaporation : soil_evaporation_mm(model, t, p, e)) {
+    EXPECT_NEAR(evaporation, 5.0, 1e-3);
+  }
+}
+
 }  // namespace
 }  // namespace geo
