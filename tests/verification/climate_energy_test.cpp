@@ -387,6 +387,7 @@ EnergyBalance only_upwelling() {
   model.gyre_heat_w_m2 = model.subpolar_heat_w_m2 = model.coastal_upwelling_w_m2 = 0.0;
   model.upwelling_w_m2 = 50.0;
   model.upwelling_reach_km = 6000.0;
+  model.upwelling_width_deg = 5.0;
   return model;
 }
 
