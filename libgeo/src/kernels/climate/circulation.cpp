@@ -106,7 +106,7 @@ CellWinds cell_winds(const Grid& grid, const Circulation& model,
               {{"latitude_deg", latitude_deg.size()},
                {"pressure_hpa", pressure_hpa.size()},
                {"eddy_driven_m_s", eddy_driven_m_s.size()}});
-  // With w = u + i v the two equations are one: (r + i f) w - r L^2 w'' = -i p' / rho.
+  // With w = u + i v the two equations are one: (r + i f) w - r L^2 w'' = i (f U - p' / rho).
   const double drag = model.drag_ocean_s;
   std::vector<Complex> to_south(ny), own(ny), to_north(ny), wind(ny);
   for (int j = 0; j < ny; ++j) {

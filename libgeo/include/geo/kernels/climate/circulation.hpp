@@ -61,8 +61,7 @@ struct Circulation {
 /// which adds nothing to the planet's angular momentum. T' over some 16 degrees, as wide as an
 /// eddy; cold air is stable, which holds them back; Hadley cells end where eddies begin (Held
 /// 2000): h grows from 0 at the equator to 1 there with the fourth power of latitude; d is how much
-/// rougher a parallel is than the sea.
-/// L is as wide as the cells. O(rows).
+/// rougher a parallel is than the sea. L widens with the cells. O(rows).
 /// @param latitude_deg, zonal_temperature_c, roughness  per row, evenly spaced from pole to pole.
 /// Throws Bug where sizes differ.
 [[nodiscard]] std::vector<double> eddy_driven_wind_m_s(const Grid& grid, const Circulation& model,
@@ -81,7 +80,7 @@ struct CellWinds {
 /// So trades blow at the equator too, where pressure and rotation alone would leave a calm. In the
 /// moist layer the zonal wind changes little with height, but the meridional wind turns back above
 /// the boundary layer (Peixoto & Oort 1992): v counts by its overturning share. O(rows).
-/// @param latitude_deg, pressure_hpa  per row. Throws Bug where sizes differ.
+/// @param latitude_deg, pressure_hpa, eddy_driven_m_s  per row. Throws Bug where sizes differ.
 [[nodiscard]] CellWinds cell_winds(const Grid& grid, const Circulation& model,
                                    std::span<const double> latitude_deg,
                                    std::span<const double> pressure_hpa,
